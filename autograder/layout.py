@@ -15,7 +15,7 @@ A course is a folder with a `course.yaml`. Its lines, of which only the first tw
 
 A process works on one course: the one around the autograder, or the one that the environment variable
 AUTOGRADER_COURSE names, which `autograder --course FOLDER` sets. An autograder that was installed as a wheel has none
-around it, and takes the one around the working folder.
+around it, and takes the one around the working folder. The course is read when it is first needed, never by an import.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from __future__ import annotations
 import os
 import shutil
 from dataclasses import dataclass, fields
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -93,25 +94,42 @@ def _chosen() -> Path:
     return Path(os.environ.get(COURSE_VARIABLE) or next(around, ROOT)).resolve()
 
 
-COURSE = Course.read(_chosen())
-if COURSE.root != ROOT:
-    os.environ[COURSE_VARIABLE] = str(COURSE.root)  # what is started from here may have another working folder
-CHAPTERS = COURSE.root / COURSE.chapters
-SOLUTIONS = COURSE.root / COURSE.solutions
-CHECKS = COURSE.root / COURSE.checks
-WORLDS = COURSE.root / COURSE.worlds
-BUILD = COURSE.root / ".build"
+@cache
+def course() -> Course:
+    """Return the course of this process. Raises UsageError if there is none, or its file is wrong."""
+    chosen = Course.read(_chosen())
+    if chosen.root != ROOT:
+        os.environ[COURSE_VARIABLE] = str(chosen.root)  # what is started from here may have another working folder
+    return chosen
+
+
+def _folder(name: str) -> Path:
+    return course().root / (".build" if name == "build" else getattr(course(), name))
+
+
+CHAPTERS: Path
+SOLUTIONS: Path
+CHECKS: Path
+WORLDS: Path
+BUILD: Path
+
+
+def __getattr__(name: str) -> Path:
+    """Return the path of a folder of the course, such as `layout.CHAPTERS`."""
+    if name not in ("CHAPTERS", "SOLUTIONS", "CHECKS", "WORLDS", "BUILD"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return _folder(name.lower())
 
 
 def check_folders() -> tuple[Path, ...]:
     """Return the folders with checks, which every sandbox hides: the course's, and those around the autograder."""
     around = ROOT / "autograder" / "checks"
-    return tuple(sorted({*around.glob("ch*")} | ({CHECKS} - {around})))
+    return tuple(sorted({*around.glob("ch*")} | ({_folder("checks")} - {around})))
 
 
 def chapter(assignment: str) -> Path:
     """Return an assignment's source folder; a UsageError lists the existing ones."""
-    folder = CHAPTERS / assignment
+    folder = _folder("chapters") / assignment
     if "/" in assignment or not (folder / f"{assignment}.ipynb").is_file():
         raise UsageError(f"there is no assignment {assignment!r}; there are: {', '.join(assignments()) or 'none'}")
     return folder
@@ -119,7 +137,7 @@ def chapter(assignment: str) -> Path:
 
 def world(name: str) -> Path:
     """Return the path of a world of the course or of the simulator; a UsageError lists the existing ones."""
-    there = {path.stem: path for folder in (SHARED_WORLDS, WORLDS) for path in sorted(folder.glob("*.yaml"))}
+    there = {path.stem: path for folder in (SHARED_WORLDS, _folder("worlds")) for path in sorted(folder.glob("*.yaml"))}
     if name not in there:
         raise UsageError(f"there is no world {name!r}; there are: {', '.join(sorted(there))}")
     return there[name]
@@ -127,7 +145,7 @@ def world(name: str) -> Path:
 
 def assignments() -> list[str]:
     """Return the names of the course's assignments, in order."""
-    return sorted(path.parent.name for path in CHAPTERS.glob("*/*.ipynb") if path.stem == path.parent.name)
+    return sorted(path.parent.name for path in _folder("chapters").glob("*/*.ipynb") if path.stem == path.parent.name)
 
 
 def source_notebook(assignment: str) -> Path:
@@ -137,4 +155,4 @@ def source_notebook(assignment: str) -> Path:
 
 def judged_later(assignment: str) -> Path:
     """Return the file with the titles of an assignment's hidden checks that students may read."""
-    return CHECKS / f"ch{assignment}" / "visible" / "judged_later.json"
+    return _folder("checks") / f"ch{assignment}" / "visible" / "judged_later.json"

@@ -6,14 +6,15 @@ import sys
 
 import click
 
+from autograder import layout
 from autograder.author.course.cells import is_graded
 from autograder.author.course.contract_rules import broken_contract
 from autograder.author.course.findings import Finding
 from autograder.author.course.notebook_rules import broken_rules
 from autograder.author.course.sync import Chapter, chapters, find_outdated, sync_chapter
-from autograder.author.course.tables import PAGE, course_page, titles
+from autograder.author.course.tables import course_page, titles
 from autograder.author.course.workload import outdated_time_sentence
-from autograder.author.verification import checks_page
+from autograder.author.verification.checks_page import checks_page
 from autograder.cli.terminal import echo
 from autograder.suite import suites
 
@@ -60,5 +61,7 @@ def tables() -> None:
     page, problems = course_page()
     for finding in problems:
         echo(str(finding))
-    for path, text in {**titles(), PAGE: page, checks_page.PAGE: checks_page.checks_page()}.items():
+    course = layout.course()
+    pages = {layout.CHAPTERS / "README.md": page, course.root / course.guide: checks_page()}
+    for path, text in {**titles(), **pages}.items():
         path.write_text(text, encoding="utf-8")

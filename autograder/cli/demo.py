@@ -29,7 +29,7 @@ def demo(jobs: int, isolation: str, json_file: Path | None) -> None:
     The exit status is 0 when the reference has all marks and no flawed submission has, and 1 otherwise.
     """
     out = layout.BUILD / "demo"
-    assignment = layout.COURSE.demo or suites.graded_assignments()[0]
+    assignment = layout.course().demo or suites.graded_assignments()[0]
     sources = suites.hidden(assignment).sources
     shown = [mutant for mutant in mutants(assignment) if mutant.demo]
     with tempfile.TemporaryDirectory(prefix="demo-") as folder:

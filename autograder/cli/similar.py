@@ -7,12 +7,12 @@ from pathlib import Path
 
 import click
 
+from autograder import layout
 from autograder.author.course.release import write_bundle
 from autograder.cli.options import json_option
 from autograder.cli.terminal import echo, on_line
 from autograder.exceptions import StudentError, UsageError
 from autograder.grade.batch import discover
-from autograder.layout import COURSE
 from autograder.result.model import write_json
 from autograder.submission.intake import read_submission
 
@@ -48,7 +48,7 @@ def similar(paths: tuple[Path, ...], assignment: str, out: Path, least: float, j
     codes = {}
     with tempfile.TemporaryDirectory() as name:
         write_bundle(Path(name) / "given", (assignment,))
-        given = code(read_submission(Path(name) / "given" / COURSE.chapters / assignment, assignment))
+        given = code(read_submission(Path(name) / "given" / layout.course().chapters / assignment, assignment))
     for entry in discover(paths, assignment).entries:
         try:
             codes[entry.student] = code(read_submission(entry.path, assignment))

@@ -56,7 +56,7 @@ HEADINGS = ("submission", "marks", "claim")
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),
-    default=layout.BUILD / "verify",
+    default=lambda: layout.BUILD / "verify",
     help="The folder for the results.",
 )
 @jobs_option

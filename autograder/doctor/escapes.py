@@ -31,10 +31,15 @@ class Escape:
     network: bool = False
     endings: tuple[Ending, ...] = (Ending.EXITED,)
 
+    @property
+    def program(self) -> str:
+        """The code, with HIDDEN, the folders of the course that no program may read."""
+        return f"HIDDEN = {[*map(str, (*layout.check_folders(), layout.SOLUTIONS))]}\n{self.code}"
 
-_READ = f"""
+
+_READ = """
 import os
-for path in {[*map(str, (*layout.check_folders(), layout.SOLUTIONS))]}:
+for path in HIDDEN:
     if any(files for _, _, files in os.walk(path)):
         print("OUT", path)
 for path in ("/root", "/home", "/etc/shadow", "/etc/passwd", "/var", "/run", "/sys", "/boot"):

@@ -32,7 +32,7 @@ def attempt(escape: Escape, home: Path, port: int, profile: str | None) -> str:
         profile: what the interpreter from which the program is forked has imported; it is started if there is none.
     """
     program = home / "program.py"
-    program.write_text(f"PORT, OUTSIDE = {port}, {os.getpid()}\n{escape.code}")
+    program.write_text(f"PORT, OUTSIDE = {port}, {os.getpid()}\n{escape.program}")
     spec = Sandbox(home, mounts=(Mount(home, writable=True),), network=escape.network, limits=escape.limits)
     before = processes()
     with launch([sys.executable, str(program)], spec, profile=profile) as process:

@@ -157,7 +157,7 @@ def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
     environment = {
         **plain.environment,
         GRADING_VARIABLE: "1",
-        layout.COURSE_VARIABLE: str(layout.COURSE.root),
+        layout.COURSE_VARIABLE: str(layout.course().root),
         "USER": "student",  # the sandbox has no /etc/passwd, and ros2 pkg create asks for the user's name
         "IPYTHONDIR": str(workspace.scratch / "ipython"),
         "MPLCONFIGDIR": str(workspace.scratch / "matplotlib"),
@@ -167,6 +167,6 @@ def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
     environment["PYTHONPATH"] = os.pathsep.join([*filter(None, [environment["PYTHONPATH"]]), str(layout.ROOT)])
     code = (Path(autograder.__file__).parent, Path(sim.__file__).parent)
     worlds = filter(Path.is_dir, {layout.SHARED_WORLDS, layout.WORLDS})
-    readable = (HOST, *code, *worlds, layout.COURSE.root / layout.COURSE_FILE)
+    readable = (HOST, *code, *worlds, layout.course().root / layout.COURSE_FILE)
     mounts = (*plain.mounts, *map(Mount, readable), Mount(folder, writable=True))
     return replace(plain, workdir=folder, mounts=mounts, environment=environment, network=False)

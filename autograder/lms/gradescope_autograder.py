@@ -33,7 +33,7 @@ def write_autograder(assignment: str, out: Path, tier: Tier) -> None:
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         copy_tool(COPIED, folder / "course")
-        copy_course(layout.COURSE.parts, folder / "course")
+        copy_course(layout.course().parts, folder / "course")
         for script in SCRIPTS.iterdir():
             text = script.read_text(encoding="utf-8").replace("ASSIGNMENT", assignment).replace("ISOLATION", tier.value)
             shutil.copy2(script, folder)

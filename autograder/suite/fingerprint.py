@@ -53,20 +53,20 @@ def files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
     home = layout.ROOT
     shared = _below(home, (home / name for name in ("autograder", "sim", "assets/worlds")))
     read = (path for path in shared if _is_read(path.relative_to(home).parts))
-    course = layout.COURSE
+    course = layout.course()
     return sorted({*read, *_below(course.root, (course.root / course.worlds,)), *chapter_files(assignment, reads)})
 
 
 def chapter_files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
     """Return the sorted paths of a chapter's files and of what its checks read; the arguments are as in `version`."""
-    return sorted(_below(layout.COURSE.root, places(assignment, reads)))
+    return sorted(_below(layout.course().root, places(assignment, reads)))
 
 
 def _digest(paths: Iterable[Path]) -> str:
     """Return a digest of the names and contents of files, as 12 hexadecimal digits."""
     found = hashlib.sha256()
     for path in paths:
-        name = path.relative_to(layout.COURSE.root if path.is_relative_to(layout.COURSE.root) else layout.ROOT)
+        name = path.relative_to(layout.course().root if path.is_relative_to(layout.course().root) else layout.ROOT)
         found.update(f"{name}\0{path.stat().st_size}\0".encode() + path.read_bytes())
     return found.hexdigest()[:12]
 
@@ -82,7 +82,7 @@ def places(assignment: str, reads: Iterable[str] = (), *, parts: Iterable[str] =
         reads: files and folders that its checks read beside their own, as paths in the course's folder.
         parts: which of its suites.
     """
-    course = layout.COURSE
+    course = layout.course()
     checks, chapter = course.root / course.checks, course.root / course.chapters / assignment
     suite = checks / f"ch{assignment}"
     unread = PROOF | {"__pycache__"} | {"visible", "hidden"}.difference(parts)

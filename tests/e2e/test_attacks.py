@@ -16,8 +16,8 @@ import pytest
 from autograder import layout
 from autograder.author.verification.cases import attacks
 from autograder.author.verification.claims import Attack, hidden_lines
-from autograder.author.verification.leaks import found_in, texts_of
-from autograder.author.verification.payloads import CANARY, LOOT
+from autograder.author.verification.leaks import LOOT, found_in, texts_of
+from autograder.author.verification.payloads import CANARY
 from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, all_checks
 from autograder.grade import grade_submission
 from autograder.grade.job import Scope

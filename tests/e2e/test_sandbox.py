@@ -171,7 +171,7 @@ def test_neither_the_grader_nor_anything_outside_can_be_signalled_or_traced() ->
 @pytest.mark.parametrize("name", ["files", "processes", "network", "unmapped memory"])
 def test_without_a_sandbox_the_same_programs_get_out(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CANARY", CANARY)
-    code = next(escape.code for escape in ESCAPES if escape.id == name)
+    code = next(escape.program for escape in ESCAPES if escape.id == name)
     with socket.create_server(("127.0.0.1", 0)) as server:
         head = f"PORT, OUTSIDE = {server.getsockname()[1]}, {os.getpid()}\n"
         done = subprocess.run([sys.executable, "-c", head + code], capture_output=True, text=True, check=True)

@@ -13,7 +13,6 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from autograder import layout
-from autograder.author.course.syllabus import SYLLABUS
 from autograder.author.course.sync import Chapter, sync_chapter
 from autograder.author.course.tables import titles
 from autograder.author.course.workload import effort, time_sentence
@@ -39,9 +38,10 @@ def write_chapter(assignment: str) -> tuple[Path, ...]:
     _require_new(*folders)
     for part, folder in zip(("chapter", "checks", "solution"), folders, strict=True):
         _write(TEMPLATES / "chapter" / part, folder, words)
-    listed = SYLLABUS.read_text(encoding="utf-8") if SYLLABUS.is_file() else OBJECTIVES
+    syllabus = layout.course().root / layout.course().syllabus
+    listed = syllabus.read_text(encoding="utf-8") if syllabus.is_file() else OBJECTIVES
     objective = f"{OBJECTIVES}  {package}: {title}\n"
-    SYLLABUS.write_text(listed.replace(OBJECTIVES, objective, 1), encoding="utf-8")
+    syllabus.write_text(listed.replace(OBJECTIVES, objective, 1), encoding="utf-8")
     _complete(Chapter(folders[0]))
     return folders
 

@@ -45,14 +45,14 @@ def write_bundle(out: Path, names: tuple[str, ...] = (), newest: str = "") -> li
         bundle = Path(scratch) / out.name
         copy_tool(COPIED, bundle)
         _withhold(bundle)
-        copy_course((layout.COURSE_FILE, layout.COURSE.worlds, *layout.COURSE.released), bundle)
+        copy_course((layout.COURSE_FILE, layout.course().worlds, *layout.course().released), bundle)
         checks = [path for path in layout.CHECKS.glob("ch*/*") if path.name in STUDENT_CHECKS]
-        copy_course((str(path.relative_to(layout.COURSE.root)) for path in checks), bundle)
+        copy_course((str(path.relative_to(layout.course().root)) for path in checks), bundle)
         for chapter in chosen:
-            write_released(chapter, bundle / layout.COURSE.chapters / chapter.assignment)
+            write_released(chapter, bundle / layout.course().chapters / chapter.assignment)
         shutil.copytree(STUDENT_FILES, bundle, dirs_exist_ok=True)
         readme = (STUDENT_FILES / "README.md").read_text(encoding="utf-8")
-        readme = readme.replace("TITLE", layout.COURSE.title).replace("FIRST", chosen[0].assignment)
+        readme = readme.replace("TITLE", layout.course().title).replace("FIRST", chosen[0].assignment)
         (bundle / "README.md").write_text(readme, encoding="utf-8")
         write_manifest(bundle, datetime.now(timezone.utc).isoformat(timespec="seconds"), newest)
         bundle.rename(out)
@@ -68,7 +68,7 @@ def copy_tool(parts: Iterable[str], folder: Path) -> None:
 
 def copy_course(parts: Iterable[str], folder: Path) -> None:
     """Copy those files and folders of the course that it has, by their paths in it, to `folder`."""
-    _copy(layout.COURSE.root, (part for part in parts if (layout.COURSE.root / part).exists()), folder)
+    _copy(layout.course().root, (part for part in parts if (layout.course().root / part).exists()), folder)
 
 
 def _copy(root: Path, parts: Iterable[str], folder: Path) -> None:

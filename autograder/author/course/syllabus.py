@@ -22,7 +22,6 @@ from autograder.author.course.cells import metadata
 from autograder.author.course.findings import Finding
 from autograder.suite import Check
 
-SYLLABUS = layout.COURSE.root / layout.COURSE.syllabus
 PARTS = ("sections", "examples", "steps", "questions")
 _HEADING = re.compile(r"^#{1,6} +(?!BEGIN |END )(.+)$", re.MULTILINE)
 
@@ -39,7 +38,7 @@ class Syllabus:
     errata: dict[int, tuple[str, str]]
 
     @classmethod
-    def read(cls, path: Path = SYLLABUS) -> Syllabus:
+    def read(cls, path: Path) -> Syllabus:
         """Read the YAML file."""
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
         items = {key: text for part in PARTS for key, text in data.get(part, {}).items()}
@@ -100,7 +99,7 @@ def find_coverage(
         findings += wrong
     served = {row.objective for row in rows if row.checks}
     findings += [
-        Finding(layout.COURSE.syllabus, None, f"no {what} covers {key!r}: {text}")
+        Finding(layout.course().syllabus, None, f"no {what} covers {key!r}: {text}")
         for what, missing in (
             ("hidden check", {k: t for k, t in syllabus.objectives.items() if k not in served}),
             ("notebook", {k: t for k, t in syllabus.items.items() if not items[k]}),

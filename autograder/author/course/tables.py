@@ -10,6 +10,7 @@ import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from autograder import layout
 from autograder.author.course.findings import Finding
 from autograder.author.course.markdown_table import table
 from autograder.author.course.syllabus import Location, Syllabus, SyllabusCoverage, find_coverage
@@ -23,21 +24,19 @@ from autograder.author.course.workload import (
     duration_text,
     effort,
 )
-from autograder.layout import CHAPTERS, COURSE, judged_later
 from autograder.suite import suites
 
-PAGE = CHAPTERS / "README.md"
-
-HEAD = f"""# The course, chapter by chapter
+HEAD = """# The course, chapter by chapter
 
 One notebook an assignment; its folder is what students get. `autograder course tables` writes this page from the
-notebooks' metadata, the hidden checks and `{COURSE.syllabus}`; a test holds it.
+notebooks' metadata, the hidden checks and `{syllabus}`; a test holds it.
 """
 
 
 def course_page() -> tuple[str, tuple[Finding, ...]]:
     """Return the instructors' page of the course, and the problems found in its notebooks and syllabus."""
-    syllabus, have_suites = Syllabus.read(), suites.graded_assignments()
+    course, have_suites = layout.course(), suites.graded_assignments()
+    syllabus = Syllabus.read(course.root / course.syllabus)
     notebooks = {chapter.assignment: chapter.read() for chapter in chapters()}
     covered = find_coverage(
         syllabus,
@@ -53,7 +52,7 @@ def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str], 
     points = {name: _points(covered, name) for name in titles}
     return "\n".join(
         [
-            HEAD,
+            HEAD.format(syllabus=layout.course().syllabus),
             "## Chapters\n",
             *table(
                 (
@@ -107,7 +106,7 @@ def _where(locations: Sequence[Location]) -> str:
 def titles() -> dict[Path, str]:
     """Return the text of each assignment's file of titles for students, by its path."""
     return {
-        judged_later(name): _titles(name)
+        layout.judged_later(name): _titles(name)
         for name in sorted({*suites.checkable_assignments()} & {*suites.graded_assignments()})
     }
 

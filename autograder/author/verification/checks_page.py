@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from autograder import layout
 from autograder.author.course.markdown_table import table
 from autograder.author.verification.mutants import Mutant, mutants
 from autograder.suite import Check, suites
 from autograder.suite.contract import Sentence, contract
 
-PAGE = layout.COURSE.root / layout.COURSE.guide
 HEAD = """# The hidden checks, and what proves them
 
 For instructors; nothing of this page reaches students. Each check is named with the sentence that the student reads,

@@ -13,8 +13,8 @@ from functools import cache
 from pathlib import Path
 
 from autograder import layout
+from autograder.author.verification.leaks import LOOT
 from autograder.author.verification.mutants import Mutant
-from autograder.author.verification.payloads import LOOT
 from autograder.diagnosis import Kind
 from autograder.result.model import Result
 from autograder.suite import Outcome, suites

@@ -17,6 +17,7 @@ from PIL import Image
 
 from autograder.probes.leak_markers import markers_in
 
+LOOT = "STOLEN /"  # what a payload of an attack prints before a path that it could read or write
 TEXTS = (".json", ".html", ".ipynb", ".svg", ".csv", ".txt")
 PICTURES = (".png",)
 _HEX = re.compile(r"(?:[0-9a-fA-F]{2}[ :,-]?){20,}")

@@ -186,4 +186,4 @@ def prepared_run(assignment: str, workers: WorkerPool, seed: int) -> Iterator[Mu
 def _version(assignment: str) -> str:
     """Return a digest of what the suite and the reference are read from."""
     suite = suites.hidden(assignment)
-    return digest(assignment, (*suite.reads, *(f"{layout.COURSE.solutions}/{source}" for source in suite.sources)))
+    return digest(assignment, (*suite.reads, *(f"{layout.course().solutions}/{source}" for source in suite.sources)))

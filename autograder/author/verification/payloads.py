@@ -5,7 +5,6 @@ from __future__ import annotations
 from autograder import layout
 
 CANARY = "CANARY-5b1e"  # a test sets it in the grader's environment
-LOOT = "STOLEN /"  # what a payload prints before a path that it could read or write
 
 # Searches files, processes and memory for secrets, wherever Python runs, and prints them. It writes to results and
 # code, stops the first process, and looks for a way out.

@@ -92,7 +92,7 @@ class _Worker:
                 str(theirs.fileno()),
             ]
 
-        view = View(shown=(*{layout.ROOT, layout.COURSE.root}, self._shown))
+        view = View(shown=(*{layout.ROOT, layout.course().root}, self._shown))
         with theirs:
             cell = in_cell(command, tier, PROOF_CELL, view=view, pass_fds=(theirs.fileno(),))
             self._process, self._scratch = self._stack.enter_context(cell)

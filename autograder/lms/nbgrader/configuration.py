@@ -23,8 +23,8 @@ def configure(c: Any, root: Path) -> None:
     # nbgrader starts `alembic` from PATH, which lacks this environment if it was not activated.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
     c.CourseDirectory.root = str(root)
-    c.CourseDirectory.course_id = layout.COURSE.name
-    c.CourseDirectory.source_directory = layout.COURSE.chapters
+    c.CourseDirectory.course_id = layout.course().name
+    c.CourseDirectory.source_directory = layout.course().chapters
     # Build products of colcon and Python are neither released nor collected.
     c.CourseDirectory.ignore = [
         *(".ipynb_checkpoints", "__pycache__", "*.pyc", "*.egg-info", ".pytest_cache"),

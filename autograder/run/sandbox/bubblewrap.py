@@ -15,8 +15,6 @@ from autograder.run.sandbox.spec import Mount, Sandbox, View
 # Of /etc, only what the dynamic linker, compilers and fonts read: no accounts, no keys, no host's own settings.
 _ETC = ("alternatives", "fonts", "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "localtime", "magic")
 _SYSTEM = ("bin", "lib", "lib32", "lib64", "sbin")
-# Covered wherever a mount would show them: an installed course lies inside the Python that every sandbox sees. The
-# sources of notebooks hold the answers.
 # The kernel counts these for each user of the machine. A user namespace has a limit of its own, which its sandboxes
 # share, and the rest stays for others. It needs a right that is given up with `setpriv`.
 _BOUND_KERNEL_OBJECTS = f"""
@@ -25,7 +23,6 @@ echo {INOTIFY_WATCHES} > /proc/sys/user/max_inotify_watches || exit 1
 exec setpriv --inh-caps=-all --ambient-caps=-all --bounding-set=-all "$@"
 """
 _FONTS = "/tmp/matplotlib"
-_PRIVATE = (*layout.check_folders(), layout.SOLUTIONS, layout.CHAPTERS)
 
 
 def resources(limits: Limits) -> dict[str, tuple[int, int]]:
@@ -88,7 +85,7 @@ def cell(
 
 def _cell_mounts(view: View, scratch: Path, groups: tuple[Path, ...]) -> list[str]:
     code = [*python_mounts(), *(path for path in _grader() if path.exists())]
-    private = [folder for folder in _PRIVATE if folder.is_dir() and any(map(folder.is_relative_to, code))]
+    private = [folder for folder in _private_folders() if folder.is_dir() and any(map(folder.is_relative_to, code))]
     covered = [folder for folder in private if not any(map(folder.is_relative_to, view.shown))]
     arguments = [*_open_folders(("/etc",)), *_system(), "--dev", "/dev"]
     for place, size in (("/tmp", CELL_TMP), ("/dev/shm", CELL_TMP), (str(scratch), CELL_SCRATCH)):
@@ -115,7 +112,7 @@ def _open_folders(folders: Iterable[Path | str]) -> list[str]:
 
 def _grader() -> tuple[Path, ...]:
     """Return what of the grader every cell reads: its code, the course's description, and a ROS that was sourced."""
-    course = (layout.COURSE.root / layout.COURSE_FILE, layout.WORLDS)
+    course = (layout.course().root / layout.COURSE_FILE, layout.WORLDS)
     code = (layout.ROOT / "autograder", layout.ROOT / "sim", layout.SHARED_WORLDS)
     try:
         ros = find()
@@ -144,7 +141,7 @@ def sandbox(command: list[str], spec: Sandbox, filter_fd: int | None) -> list[st
     mounts = (*(Mount(folder) for folder in python_mounts()), *spec.mounts)
     for mount in mounts:
         arguments += ["--bind" if mount.writable else "--ro-bind", str(mount.path), str(mount.path)]
-    for folder in _PRIVATE:
+    for folder in _private_folders():
         if folder.is_dir() and any(folder.is_relative_to(mount.path) for mount in mounts):
             arguments += ["--tmpfs", str(folder), "--remount-ro", str(folder)]
     # The root and /dev are file systems in memory, too, without a size.
@@ -174,3 +171,11 @@ def _system() -> list[str]:
         if path.exists():
             arguments += ["--ro-bind", str(path), str(path)]
     return arguments
+
+
+def _private_folders() -> tuple[Path, ...]:
+    """Return what is covered wherever a mount would show it: the sources of notebooks hold the answers, too.
+
+    An installed course lies inside the Python that every sandbox sees.
+    """
+    return *layout.check_folders(), layout.SOLUTIONS, layout.CHAPTERS

@@ -16,6 +16,7 @@ from autograder.author.course.exceptions import CourseError
 from autograder.author.course.tables import titles
 from autograder.cli import course as command
 from autograder.exceptions import UsageError
+from autograder.layout import Course
 from autograder.notebook import checking
 from autograder.notebook.checking import CheckReport
 from autograder.result.model import CheckResult
@@ -29,8 +30,7 @@ CHECKS = (Check("named", "It has its name.", 2.0, "graph", Visibility.HIDDEN, ()
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(suites, "hidden", lambda assignment: SimpleNamespace(checks=CHECKS, groups={"graph": 2.0}))
     monkeypatch.setattr(suites, "visible", lambda assignment: SimpleNamespace(checks=()))
-    monkeypatch.setattr(layout, "CHAPTERS", tmp_path / "chapters")
-    monkeypatch.setattr(layout, "SOLUTIONS", tmp_path / "solutions")
+    monkeypatch.setattr(layout, "course", lambda: Course(tmp_path, "small", "A small course"))
     (tmp_path / "solutions").mkdir()
     (tmp_path / "solutions/node.py").write_text('def main():\n    """Run."""\n    return 0\n')
     origin = {"source": "node.py", "target": "ws/node.py", "hide": ["main"], "contract": {"runs": "Run."}}

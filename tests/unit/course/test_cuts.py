@@ -13,6 +13,7 @@ from autograder.author.course.cells import copied_file
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.solution_markers import mark_lines, strip_markers
+from autograder.layout import Course
 
 MANIFEST = """<package>
   <name>a</name>
@@ -65,9 +66,9 @@ def _cell(**course: object) -> NotebookNode:
 def test_a_cell_is_cut_as_its_metadata_says_and_its_release_holds_no_answer(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(layout, "SOLUTIONS", tmp_path)
-    (tmp_path / "a").mkdir()
-    (tmp_path / "a" / "b.xml").write_text(MANIFEST)
+    monkeypatch.setattr(layout, "course", lambda: Course(tmp_path, "small", "A small course"))
+    (tmp_path / "solutions" / "a").mkdir(parents=True)
+    (tmp_path / "solutions" / "a" / "b.xml").write_text(MANIFEST)
     cell = _cell(cut=[["<package>", "</package>"]])
     source = copied_file(cell)
     assert source is not None

@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from autograder import cli, layout
+from autograder.layout import Course
 
 from .notebooks import chapter, code, notebook, solution
 
@@ -19,9 +20,8 @@ pytestmark = pytest.mark.slow  # kernels are started
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A course of one chapter whose notebook runs when it is solved, and not when it is released."""
     answer = code("# BEGIN SOLUTION\nanswer = 42\n# END SOLUTION", "answer", nbgrader=solution("answer"))
-    made = chapter(tmp_path, notebook(answer, code("print(answer)", "use")))
-    monkeypatch.setattr(layout, "CHAPTERS", made.folder.parent)
-    monkeypatch.setattr(layout, "BUILD", tmp_path / "build")
+    chapter(tmp_path, notebook(answer, code("print(answer)", "use")))
+    monkeypatch.setattr(layout, "course", lambda: Course(tmp_path, "small", "A small course"))
     return tmp_path
 
 
@@ -40,7 +40,7 @@ def test_the_named_forms_run_and_a_failed_form_is_reported_with_its_cell(course:
         ("01_small", "solved", True),
         ("01_small", "released", False),
     ]
-    reports = {path.name for path in (course / "build" / "notebooks").iterdir()}
+    reports = {path.name for path in (course / ".build" / "notebooks").iterdir()}
     assert reports == {"01_small-solved.ipynb", "01_small-released.ipynb"}
 
 
@@ -55,9 +55,8 @@ end = time.monotonic() + 60
 while len(list(Path('{place}').iterdir())) < 2 and time.monotonic() < end:
     time.sleep(0.01)
 assert len(list(Path('{place}').iterdir())) == 2"""
-    made = chapter(tmp_path, notebook(code(meet, "meet")))
-    monkeypatch.setattr(layout, "CHAPTERS", made.folder.parent)
-    monkeypatch.setattr(layout, "BUILD", tmp_path / "build")
+    chapter(tmp_path, notebook(code(meet, "meet")))
+    monkeypatch.setattr(layout, "course", lambda: Course(tmp_path, "small", "A small course"))
     said = _run("--source", "--solved", "-j", "2")
     assert said.exit_code == 0, said.output
     assert sorted(line.partition(": ")[0] for line in said.output.splitlines()) == [

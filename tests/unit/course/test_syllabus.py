@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from autograder import layout
 from autograder.author.course.syllabus import Location, Syllabus, find_coverage
-from autograder.author.course.tables import PAGE, course_page, page
+from autograder.author.course.tables import course_page, page
 from autograder.author.course.workload import Effort
-from autograder.author.verification import checks_page
+from autograder.author.verification.checks_page import checks_page
 from autograder.suite import Check, Visibility
 
 from .notebooks import code, notebook, prose
@@ -72,12 +73,12 @@ def test_the_page_has_a_row_for_each_and_keeps_to_markdown() -> None:
 def test_the_course_covers_the_syllabus_and_its_pages_are_up_to_date() -> None:
     written, findings = course_page()
     assert [str(finding) for finding in findings] == []
-    for path, text in ((PAGE, written), (checks_page.PAGE, checks_page.checks_page())):
+    for path, text in ((layout.CHAPTERS / "README.md", written), (layout.ROOT / "docs" / "checks.md", checks_page())):
         assert path.read_text(encoding="utf-8") == text, f"{path.name} is out of date: run `autograder course tables`"
 
 
 def test_the_syllabus_names_all_items_of_the_textbook_chapter() -> None:
-    syllabus = Syllabus.read()
+    syllabus = Syllabus.read(layout.ROOT / layout.course().syllabus)
     assert len(syllabus.objectives) == 6
     assert set(syllabus.errata) == set(range(1, 49))
     assert {f"step-{n}" for n in range(1, 8)} | {"Q1", "Q2", "Q3"} <= set(syllabus.items)

@@ -11,6 +11,7 @@ from nbformat.v4 import new_code_cell, new_notebook, new_output
 
 from autograder import layout
 from autograder.author.course.sync import Chapter
+from autograder.layout import Course
 
 GLOSSARY = layout.CHAPTERS / "glossary.md"
 MADE = runpy.run_path(str(layout.ROOT / "docs" / "build_site.py"))
@@ -20,11 +21,11 @@ MADE = runpy.run_path(str(layout.ROOT / "docs" / "build_site.py"))
 def test_each_cell_gets_the_outputs_of_the_same_executed_cell(
     executed: str, shown: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(layout, "BUILD", tmp_path)
+    monkeypatch.setattr(layout, "course", lambda: Course(tmp_path, "small", "A small course"))
     chapter = Chapter(tmp_path / "10_mapping")
-    reports, site = tmp_path / "notebooks", tmp_path / "site"
+    reports, site = tmp_path / ".build" / "notebooks", tmp_path / "site"
     for folder in (chapter.folder, reports, site):
-        folder.mkdir()
+        folder.mkdir(parents=True)
     chapter.write(new_notebook(cells=[new_code_cell("1 + 1")]))
     output = new_output("execute_result", {"text/plain": "2"})
     ran = new_notebook(cells=[new_code_cell(executed, outputs=[output])])

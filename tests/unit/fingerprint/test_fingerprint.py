@@ -66,7 +66,7 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name, text in {**SHARED, **OWN, layout.COURSE_FILE: LINES}.items():
         _write(tmp_path / name, text)
     monkeypatch.setattr(layout, "ROOT", tmp_path)
-    monkeypatch.setattr(layout, "COURSE", Course.read(tmp_path))
+    monkeypatch.setattr(layout, "course", lambda: Course.read(tmp_path))
     return tmp_path
 
 
@@ -103,7 +103,7 @@ def test_the_version_of_another_course_does_not_depend_on_checks_of_this_course(
     other = course / "other"
     _write(other / layout.COURSE_FILE, "name: other\ntitle: Another\n")
     _write(other / "checks/ch02_nodes/hidden/graph.py", "")
-    monkeypatch.setattr(layout, "COURSE", Course.read(other))
+    monkeypatch.setattr(layout, "course", lambda: Course.read(other))
     read = {str(path.relative_to(course)) for path in files(CHAPTER)}
     assert "other/checks/ch02_nodes/hidden/graph.py" in read
     assert {"sim/world.py", "autograder/suite/suites.py", "assets/worlds/lab.yaml"} <= read

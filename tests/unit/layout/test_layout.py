@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -72,9 +75,30 @@ def test_an_installed_autograder_uses_the_course_that_contains_the_working_folde
     assert layout._chosen() == inside
 
 
+@pytest.mark.slow  # it imports all of them
+def test_no_module_of_the_autograder_reads_the_course_when_it_is_imported(tmp_path: Path) -> None:
+    # The checks and attacks of chapters are a part of the course. `payloads` is what attacks are made of.
+    names = [
+        ".".join(path.relative_to(layout.ROOT).with_suffix("").parts)
+        for path in sorted((layout.ROOT / "autograder").rglob("*.py"))
+        if not {"checks", "standins", "__main__", "__init__"} & {*path.parts, path.stem}
+        and not path.stem.endswith(("_host", "payloads"))
+        and not any(part.endswith("_host") for part in path.parts)
+    ]
+    importing = f"import importlib\nfor name in {names}: importlib.import_module(name)\nfrom autograder import layout\n"
+    done = subprocess.run(
+        [sys.executable, "-c", importing + "print(layout.course.cache_info().currsize)\nlayout.CHAPTERS"],
+        env={**os.environ, layout.COURSE_VARIABLE: str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.stdout, "is no course" in done.stderr) == ("0\n", True), done.stderr
+
+
 def test_each_path_that_the_course_file_names_exists() -> None:
-    assert [part for part in layout.COURSE.parts if not (layout.COURSE.root / part).exists()] == []
-    assert layout.COURSE.demo in layout.assignments()
+    assert [part for part in layout.course().parts if not (layout.course().root / part).exists()] == []
+    assert layout.course().demo in layout.assignments()
 
 
 def test_the_autograder_names_no_chapter_and_no_package_of_the_course() -> None:
