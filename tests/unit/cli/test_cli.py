@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -56,11 +57,19 @@ def graded(monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, Any]]:
 def test_every_verb_has_help() -> None:
     listed = _run("--help")
     assert listed.exit_code == 0
-    for verb in cli.group.commands:
-        assert verb in listed.output
+    for verb in cli.VERBS:
+        assert f"\n  {verb} " in listed.output
         shown = _run(verb, "--help")
         assert shown.exit_code == 0
         assert "Usage:" in shown.output
+
+
+def test_a_module_that_only_helps_a_verb_is_not_listed_as_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("__init__.py", "check.py", "rows.py", "update.py"):
+        (tmp_path / name).touch()
+    monkeypatch.setattr(cli, "__file__", str(tmp_path / "__init__.py"))
+    listed = _run("--help")
+    assert (listed.exit_code, re.findall(r"\n  ([a-z]+) ", listed.output)) == (0, ["check", "update"])
 
 
 def test_grading_prints_a_line_and_a_row_for_each_submission_and_exits_0(
