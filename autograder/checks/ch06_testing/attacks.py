@@ -114,7 +114,7 @@ def attacks() -> tuple[Attack, ...]:
             "source readers",
             "tests that compare the text of the version before them with the released one",
             CHAPTER.write(files={limits: READ_SOURCE.format(released=function)}),
-            LINES | {"limits_right"},
+            LINES,
             says="on a right speed_guard that is written differently",
         ),
         Attack(

@@ -42,10 +42,11 @@ def ordered(monkeypatch: pytest.MonkeyPatch) -> list[TestRun]:
     return wanted
 
 
-def test_only_the_runs_that_one_check_and_its_dependencies_need_are_made(
-    workspace: Workspace, ordered: list[TestRun]
+@pytest.mark.parametrize("checks", [("slow",), ("limits_pass", "limits_right", "slow")], ids=len)
+def test_only_the_runs_by_which_a_check_judges_are_made(
+    workspace: Workspace, ordered: list[TestRun], checks: tuple[str, ...]
 ) -> None:
-    examination = Examination(workspace, 1, frozenset(("limits_pass", "limits_right", "slow")))
+    examination = Examination(workspace, 1, frozenset(checks))
     assert set(examination.runs) == {(LIMITS, what) for what in ("second", "reworded", "backwards", "step", "smooth")}
     assert {order.files for order in ordered} == {(LIMITS,)}
     assert len(ordered) == 6
@@ -60,6 +61,11 @@ def test_all_checks_together_run_every_faulty_version(workspace: Workspace, orde
     }
     assert [order.files[0] for order in ordered[:3]] == [LIMITS, GUARD, LAUNCH]
     assert [order.files[0] for order in ordered if order.sniffed] == [GUARD]
+
+
+def test_one_check_that_looks_at_all_files_runs_all_of_them(workspace: Workspace, ordered: list[TestRun]) -> None:
+    for check in ("as_given", "colcon", "linters", "ends"):
+        assert set(Examination(workspace, 1, frozenset((check,))).trial) == {LIMITS, GUARD, LAUNCH}
 
 
 def test_a_run_does_not_depend_on_which_other_runs_are_made(workspace: Workspace, ordered: list[TestRun]) -> None:

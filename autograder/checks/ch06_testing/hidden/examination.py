@@ -43,8 +43,8 @@ FILES = {
     **dict.fromkeys(("launch_pass", "configuration", "runs"), LAUNCH),
     "no_sleep": GUARD,
 }
-BEGUN = frozenset(("as_given", "colcon", "linters"))  # these ask whether any file is begun
 COLCON, ENDS = frozenset(("colcon", "linters")), "ends"
+ALL_FILES = COLCON | {"as_given", ENDS}  # checks that ask for the tests of all three files
 RIGHTS = SECOND, REWORDED, BACKWARDS = "second", "reworded", "backwards"
 BRIEF = frozenset({"believes_distances_too_long"})  # faults that end within a second: a run that is held up misses them
 ORDERED = (LIMITS, GUARD)  # files whose tests have to pass in the opposite order, too
@@ -89,7 +89,7 @@ class Examination:
         wanted = {
             name: TestRun((name,), right(STYLES[0], self._draw(name)), sniffed=name == GUARD, shown=True)
             for name in MIN_TESTS
-            if (name in asked or self._checks & BEGUN) and name in self.source.tests
+            if (name in asked or self._checks & ALL_FILES) and name in self.source.tests
         }
         return dict(zip(wanted, self._run(list(wanted.values())), strict=True))
 
@@ -199,17 +199,17 @@ class Examination:
             salt: another one makes other versions.
         """
         wanted: dict[str, TestRun] = {}
-        if RIGHT[name] in self._checks:
+        asked = [f for f in faults() if FILES[f.check] == name and self._checks & {f.check, ENDS}]
+        if asked or RIGHT[name] in self._checks:  # who objects to right versions says nothing of a faulty one
             wanted[SECOND] = TestRun((name,), right(STYLES[1], self._draw(name, SECOND, *salt)), first_failure=True)
             # As much like the first version as faulty ones are: who objects to any other text is found out.
             wanted[REWORDED] = TestRun((name,), reworded(self._draw(name, REWORDED, *salt)), first_failure=True)
             if name in ORDERED:
                 version = right(STYLES[0], self._draw(name, BACKWARDS, *salt))
                 wanted[BACKWARDS] = TestRun((name,), version, backwards=True, first_failure=True)
-        for fault in faults():
-            if FILES[fault.check] == name and self._checks & {fault.check, ENDS}:
-                draw = self._draw(name, fault.id, *salt)
-                wanted[fault.id] = TestRun((name,), broken(fault, draw.choice(STYLES), draw), first_failure=True)
+        for fault in asked:
+            draw = self._draw(name, fault.id, *salt)
+            wanted[fault.id] = TestRun((name,), broken(fault, draw.choice(STYLES), draw), first_failure=True)
         return {what: replace(run, without=without) for what, run in wanted.items()}
 
     def _draw(self, *what: str) -> random.Random:
