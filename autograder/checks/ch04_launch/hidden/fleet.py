@@ -22,7 +22,8 @@ from autograder.checks.ch04_launch.support.status import HEAR_SECONDS
 from autograder.exceptions import StudentError
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
-from autograder.suite import expect, group, hint
+from autograder.probes.parameters import Value, same
+from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("fleet")
 MATCH_SECONDS = 5.0  # real time for a node's topics to be seen, once the node is
@@ -93,6 +94,12 @@ def test_fleet_speed(launches: Launches, inputs: Inputs) -> None:
     harness = _renamed(launches, inputs)
     for node in _both(harness, inputs.names, DRIVER):
         launch_probe.expect_parameters(harness, node, {"speed": inputs.speed})
+    own = launches.own_fleet()
+    for node in (f"/{FIRST}{DRIVER}", f"/{SECOND}{DRIVER}") if _starts(own, FIRST, SECOND) else ():
+        found = _speed(own, node)
+        if not same(found, inputs.speed) and same(_speed(launches.alone(), DRIVER), inputs.speed):
+            said = f"With your robot.launch.py and speed:={inputs.speed}, {node} has speed = {found!r}"
+            raise CheckFailed(f"{said}; alone, in no namespace, it has {inputs.speed!r}.", fraction=0.5)
 
 
 @check(points=3, holds="fleet-status", after=("two_robots",), doc=contract.LARGE)
@@ -161,6 +168,10 @@ def _starts(harness: LaunchHarness, *names: str) -> bool:
     with suppress(StudentError):
         return launch_probe.settle(harness, in_spaces(*names)) == in_spaces(*names)
     return False
+
+
+def _speed(harness: LaunchHarness, node: str) -> Value | None:
+    return (harness.parameters(node, ["speed"]) or {}).get("speed")
 
 
 def _both(harness: LaunchHarness, names: tuple[str, str], which: str) -> list[str]:

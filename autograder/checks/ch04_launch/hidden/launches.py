@@ -86,8 +86,12 @@ class Launches:
         return self._harness(FLEET, DEFAULTS, {}, robot="wheels")
 
     def own_fleet(self) -> LaunchHarness:
-        """Return two_robots.launch.py, above the student's robot.launch.py."""
-        return self._harness(FLEET, DEFAULTS, {})
+        """Return two_robots.launch.py with a speed, above the student's robot.launch.py."""
+        return self._harness(FLEET, {**DEFAULTS, "speed": self._inputs.speed}, {})
+
+    def alone(self) -> LaunchHarness:
+        """Return the student's robot.launch.py, with the speed and the files of `own_fleet`."""
+        return self._harness(ROBOT, {"speed": self._inputs.speed}, {}, beside=FLEET)
 
     def safe(self, **arguments: object) -> LaunchHarness:
         """Return safe_start.launch.py as it runs with these arguments."""
@@ -127,12 +131,16 @@ class Launches:
         programs: str | None = None,
         environment: Mapping[str, str] = ON_STDOUT,
         short_lived: str = "",
+        beside: str = "",
     ) -> LaunchHarness:
-        """Return a running launch; if its program `short_lived` hangs, a second launch of the same."""
-        key = f"{file} {robot} {programs} {sorted(arguments.items())}"
+        """Return a running launch; if its program `short_lived` hangs, a second launch of the same.
+
+        It has the files of the launch file `beside`, or its own if there is none.
+        """
+        key = f"{file} {robot} {programs} {sorted(arguments.items())} {beside}"
         if key not in self._harnesses:
             words = {name: str(value) for name, value in arguments.items()}
-            copy = self._copy(file, robot, programs)
+            copy = self._copy(beside or file, robot, programs)
             harness = LaunchHarness(copy, PACKAGE, file, words, listens=listens, environment=environment)
             self._harnesses[key] = self._stack.enter_context(harness)
             if short_lived and run_together(harness, short_lived, "driver"):
