@@ -5,6 +5,9 @@ from __future__ import annotations
 from autograder.author.course.markdown_table import table
 from autograder.building.interfaces.cache import LIMIT
 from autograder.building.keeper import CACHE
+from autograder.grade.answer import MAX_RESULT, MAX_SHOWN
+from autograder.grade.bounded_json import NOTEBOOK_VALUES, RESULT_VALUES, RUN_VALUES
+from autograder.grade.executed_notebook import MAX_BYTES
 from autograder.layout import ROOT
 from autograder.run.fork_server import seccomp
 from autograder.run.patience import HELD_SECONDS
@@ -23,6 +26,7 @@ Where an ordinary user grades, all cells are the same user of the machine. What 
 names, such as memory of pipes and watches of epoll, is shared by all of them. Root gives each cell a user of its own.
 """
 ARGUMENTS, SANDBOX, WALLS, INSTALLED = "test_bubblewrap", "test_sandbox", "test_walls", "test_installed"
+ANSWER = "test_answer"
 
 
 def current() -> str:
@@ -93,6 +97,14 @@ def rows() -> list[tuple[str, str, str, str]]:
         (f"the cache `{CACHE}`", _mib(LIMIT), "its eviction", "test_cache"),
         ("a message of a worker", _mib(limits.MESSAGE), "who started it", WALLS),
         ("files of a result", _tree(limits.RESULT_FILES), "who started the worker", WALLS),
+        (
+            "`result.json`; its values, a run's; a notebook's",
+            f"{_mib(MAX_RESULT)}; {RESULT_VALUES:,}, {RUN_VALUES:,}; {NOTEBOOK_VALUES:,}",
+            "who started the worker, before it parses them",
+            ANSWER,
+        ),
+        ("an executed notebook", f"{_mib(MAX_BYTES)}, or it has no outputs", "the worker", ANSWER),
+        ("pictures and runs on a page", _mib(MAX_SHOWN), "who started the worker", ANSWER),
     ]
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,14 +10,18 @@ from dataclasses import dataclass
 from PIL import Image
 
 from autograder.exceptions import GraderError, UsageError
+from autograder.grade.bounded_json import RESULT_VALUES, RUN_VALUES, read_json
 from autograder.grade.store import LOG, NOTEBOOK, RESULT
 from autograder.result.model import Result, Status, from_json
+from autograder.run.sandbox.limits import MIB
 from autograder.suite.suites import Suite
 
 PICTURE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.png")
 RUN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.run\.json")
 RECORDING = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.npz")
 MAX_PIXELS = 25_000_000
+MAX_RESULT = 8 * MIB  # bytes; those of the course have 0.1 MiB
+MAX_SHOWN = 64 * MIB  # bytes of all pictures and runs on a page: a result may name one twice
 _UNREAD = "0" * 64  # the digest in the result of a submission that could not be read
 
 
@@ -51,10 +54,12 @@ def checked(files: Mapping[str, bytes], asked: Asked) -> Result:
 
 
 def _result(data: bytes, asked: Asked) -> Result:
+    if len(data) > MAX_RESULT:
+        raise AnswerError(f"a worker's answer holds a result of {len(data):,} bytes")
     try:
-        result = from_json(json.loads(data), source="a worker's answer")
+        result = from_json(read_json(data, RESULT_VALUES), source="a worker's answer")
     except (ValueError, UsageError, RecursionError) as error:
-        raise AnswerError(f"a worker's answer holds no result: {error}") from None
+        raise AnswerError(f"a worker's answer holds no result: {str(error)[:1000]}") from None
     suite, graded = asked.suite, result.status is Status.GRADED
     versions, theirs = (suite.version, suite.files_digest), (result.suite_version, result.files_digest)
     found = (result.assignment, result.student, *theirs, result.seed, result.isolation, result.max_score)
@@ -77,6 +82,9 @@ def _require_artifacts(files: Mapping[str, bytes], result: Result) -> None:
     recordings = {name for name in files if RECORDING.fullmatch(name)}  # which a replay asks for
     if set(files) - recordings != pictures | runs:
         raise AnswerError(f"a worker's answer holds {sorted(files)} and its result names {sorted(pictures | runs)}")
+    shown = [name for artifact in result.artifacts for name in (artifact.name, artifact.run) if name]
+    if sum(len(files[name]) for name in shown) > MAX_SHOWN:
+        raise AnswerError(f"a worker's answer shows its {len(files)} files {len(shown)} times, which is too much")
     for name, data in files.items():
         if name in recordings:
             continue
@@ -97,14 +105,16 @@ def _require_picture(data: bytes) -> None:
 
 
 def _require_run(data: bytes) -> None:
-    if not isinstance(json.loads(data.decode()), dict):
+    if not isinstance(read_json(data, RUN_VALUES), dict):
         raise ValueError("it is no run")
 
 
 def _require_notebook(data: bytes) -> None:
-    import nbformat  # slow to import, and a source tree has no notebook
+    from autograder.grade.executed_notebook import (
+        decode,
+    )  # nbformat is slow to import, and a source tree has no notebook
 
     try:
-        nbformat.reads(data.decode(), as_version=4)
-    except Exception as error:  # nbformat's own errors have no common base
+        decode(data)
+    except (ValueError, RecursionError) as error:
         raise AnswerError(f"the notebook in a worker's answer cannot be read: {error}") from None

@@ -24,6 +24,7 @@ from autograder import layout
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.grade import submitted_notebook
+from autograder.grade.executed_notebook import encode
 from autograder.grade.submitted_notebook import STUB
 from autograder.run.lockstep.failures import tail
 from autograder.run.sandbox import Mount, Process, Sandbox
@@ -55,9 +56,7 @@ def run(submitted: bytes, original: Path, folder: Path, workspace: Workspace, ou
     """
     source = nbformat.read(original, as_version=4)
     notebook = submitted_notebook.restore(submitted_notebook.read(submitted, original.name), source)
-    executed = nbformat.writes(execute(notebook, folder, workspace))
-    # Half a surrogate pair, in a cell or its output, is not UTF-8.
-    out.write_bytes(executed.encode("utf-8", errors="replace"))
+    out.write_bytes(encode(execute(notebook, folder, workspace)))
 
 
 def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> NotebookNode:

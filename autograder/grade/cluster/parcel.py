@@ -71,13 +71,26 @@ class Answer:
         if not isinstance(data, bytes):
             raise AnswerError(f"a worker sent {type(data).__name__} instead of bytes")
         try:
-            files, failure = _unpacked(data, MAX_ANSWER)
-        except (ValueError, TypeError) as error:
+            return cls(*_answer(data))
+        except (ValueError, TypeError, msgpack.UnpackException) as error:
             raise AnswerError(f"a worker's answer cannot be read: {error}") from None
-        named = isinstance(files, dict) and all(isinstance(k, str) and isinstance(v, bytes) for k, v in files.items())
-        if not named or not isinstance(failure, str) or len(files) > MAX_ANSWER_FILES:
-            raise AnswerError("a worker's answer is not made of named files")
-        return cls(files, failure)
+
+
+def _answer(data: bytes) -> tuple[dict[str, bytes], str]:
+    """Read an answer piece by piece: in one piece, 64 MiB could be as many empty lists."""
+    if len(data) > MAX_ANSWER:
+        raise ValueError(f"it has {len(data)} bytes, and {MAX_ANSWER} is the most")
+    pieces = msgpack.Unpacker(
+        max_array_len=0, max_map_len=0, max_buffer_size=MAX_ANSWER, unicode_errors="surrogateescape"
+    )
+    pieces.feed(data)
+    if pieces.read_array_header() != 2 or (count := pieces.read_map_header()) > MAX_ANSWER_FILES:
+        raise ValueError("it is not made of named files")
+    *files, failure = [pieces.unpack() for _ in range(2 * count + 1)]
+    names, contents = files[::2], files[1::2]
+    if not all(isinstance(text, str) for text in (*names, failure)) or not all(isinstance(c, bytes) for c in contents):
+        raise ValueError("it is not made of named files")
+    return dict(zip(names, contents, strict=True)), failure
 
 
 def _unpacked(data: bytes, most: int) -> Any:

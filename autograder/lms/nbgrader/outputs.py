@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import base64
 import binascii
+import re
 from collections.abc import Iterable
 from typing import Any
 
@@ -22,6 +23,9 @@ from autograder.report.feedback.text import number
 from autograder.result.causes import FAILED_AS_WELL
 
 PICTURES = ("image/png", "image/jpeg")
+# Changes of colour in a text. nbconvert takes time with the square of their number, and of the numbers in each.
+MAX_COLOURS = 1000
+_COMMAND = re.compile(r"\[(?:(?P<colour>[0-9;]{0,30}m)|[0-?]{0,30}[ -/]{0,3}[@-~])")
 
 
 def grade_outputs(points: float, page: PageView, group: GroupView, *, first: bool) -> list[NotebookNode]:
@@ -87,6 +91,8 @@ def _data(bundle: dict[str, Any]) -> dict[str, str]:
 
 def _picture(value: object) -> str | None:
     """Return Base64 data in canonical form, or None if `value` is not such data."""
+    if isinstance(value, list):
+        value = "".join(part for part in value if isinstance(part, str))
     if not isinstance(value, str):
         return None
     try:
@@ -99,4 +105,17 @@ def _text(value: object) -> str:
     """Return cleaned text with its terminal colours, which pages render, or an empty string for another type."""
     if isinstance(value, list):
         value = "".join(part for part in value if isinstance(part, str))
-    return "\x1b".join(clean(part) for part in value.split("\x1b")) if isinstance(value, str) else ""
+    if not isinstance(value, str):
+        return ""
+    first, *parts = value.split("\x1b")
+    keeps_colours = len(parts) <= MAX_COLOURS
+    return clean(first) + "".join(_after_escape(part, keeps_colours) for part in parts)
+
+
+def _after_escape(part: str, keeps_colours: bool) -> str:
+    """Return what follows an escape, cleaned; of the terminal's commands only a colour stays, if it is to."""
+    command = _COMMAND.match(part)
+    if command is None:
+        return clean(part)
+    text = clean(part[command.end() :])
+    return f"\x1b{command[0]}{text}" if keeps_colours and command["colour"] is not None else text

@@ -9,9 +9,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-import nbformat
 from nbformat import NotebookNode
-from nbformat.v4 import new_notebook
 from nbgrader.api import Gradebook
 from nbgrader.preprocessors import NbGraderPreprocessor
 from nbgrader.utils import is_grade, is_solution
@@ -21,6 +19,7 @@ from autograder.author.course.cells import group
 from autograder.exceptions import GraderError
 from autograder.grade import DEFAULT_SEED
 from autograder.grade.batch import Entry, grade_all
+from autograder.grade.executed_notebook import decode
 from autograder.grade.store import LOG, NOTEBOOK
 from autograder.grade.submitted_notebook import grade_id
 from autograder.lms.nbgrader.outputs import grade_outputs, sanitized_outputs
@@ -83,8 +82,10 @@ class SandboxedGrade(NbGraderPreprocessor):
 
     def _copy_outputs(self, nb: NotebookNode, executed: Path) -> None:
         """Copy the outputs of the sandboxed run into the cells that have the same source there."""
-        notebook = nbformat.read(executed, as_version=4) if executed.is_file() else new_notebook()
-        cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
+        try:
+            cells = decode(executed.read_bytes()) if executed.is_file() else []
+        except (ValueError, RecursionError) as error:
+            raise GraderError(f"{executed} cannot be read: {error}. Remove its folder, and grade again") from None
         count = Counter(_name(cell) for cell in cells)
         ran = {_name(cell): cell for cell in cells if count[_name(cell)] == 1}
         for cell in nb.cells:

@@ -57,6 +57,16 @@ def test_any_outputs_of_a_kernel_become_valid_and_harmless(outputs: list[dict[st
         str(output).encode("utf-8")
 
 
+def test_of_a_terminals_commands_colours_are_kept_and_not_by_the_thousand() -> None:
+    def text(printed: str) -> str:
+        (output,) = sanitized_outputs([{"output_type": "stream", "name": "stdout", "text": printed}])
+        return str(output.text)
+
+    assert text("\x1b[1;31mred\x1b[0m \x1b[2K\x1b[Aup \x1b") == "\x1b[1;31mred\x1b[0m up "
+    assert text("\x1b[31mred" * 1001) == "red" * 1001
+    assert text(f"\x1b[{'1;' * 1000}mbold").startswith("[1;1;")
+
+
 def test_text_colours_and_pictures_are_kept() -> None:
     png = base64.b64encode(b"\x89PNG picture").decode()
     stream, picture, error = sanitized_outputs(

@@ -1,0 +1,56 @@
+"""The notebook that a worker leaves beside a result: written within bounds, and read as a stranger's."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from nbformat import NotebookNode
+
+from autograder.grade.bounded_json import NOTEBOOK_VALUES, read_json
+
+MAX_BYTES = 48 * 1024 * 1024
+
+
+def encode(notebook: NotebookNode) -> bytes:
+    """Return an executed notebook as a file, without its outputs if these would make it too large.
+
+    A text is one string: its lines in a list, as nbformat writes them, could be millions of values.
+    """
+    data = _encoded(notebook)
+    if len(data) <= MAX_BYTES:
+        return data
+    cells = [{**cell, "outputs": []} if cell.cell_type == "code" else cell for cell in notebook.cells]
+    return _encoded({**notebook, "cells": cells})
+
+
+def decode(data: bytes) -> list[NotebookNode]:
+    """Return the code cells of an executed notebook, each with a text and with outputs that are objects.
+
+    More is not looked at: to validate the notebook's format can take a minute.
+
+    Raises:
+        ValueError: it is no notebook, or breaks a bound.
+        RecursionError: it is nested too deep.
+    """
+    notebook = read_json(data, NOTEBOOK_VALUES, is_strict=False)
+    cells = notebook.get("cells") if isinstance(notebook, dict) else None
+    if not isinstance(cells, list) or not all(isinstance(cell, dict) for cell in cells):
+        raise ValueError("it is no notebook")
+    return [_code_cell(cell) for cell in cells if cell.get("cell_type") == "code"]
+
+
+def _encoded(notebook: Any) -> bytes:
+    # Half a surrogate pair, in a cell or its output, is not UTF-8.
+    return json.dumps(notebook, ensure_ascii=False, sort_keys=True).encode("utf-8", errors="replace")
+
+
+def _code_cell(cell: dict[str, Any]) -> NotebookNode:
+    source, outputs, metadata = cell.get("source"), cell.get("outputs"), cell.get("metadata", {})
+    if isinstance(source, list) and all(isinstance(line, str) for line in source):  # of an earlier version
+        source = "".join(source)
+    if not isinstance(source, str) or not isinstance(outputs, list) or not isinstance(metadata, dict):
+        raise ValueError("it has a cell without a text or outputs")
+    if not all(isinstance(output, dict) for output in outputs):
+        raise ValueError("it has outputs that are no objects")
+    return NotebookNode({**cell, "source": source, "metadata": NotebookNode(metadata)})

@@ -1,0 +1,128 @@
+"""What the process that started a worker makes of the files that it left costs little, whatever they are."""
+
+from __future__ import annotations
+
+import json
+import tracemalloc
+from collections.abc import Callable
+from dataclasses import replace
+
+import nbformat
+import pytest
+from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell, new_notebook, new_output
+
+from autograder.grade import executed_notebook
+from autograder.grade.answer import AnswerError, Asked, checked
+from autograder.grade.bounded_json import NOTEBOOK_VALUES, read_json
+from autograder.grade.executed_notebook import MAX_BYTES, decode, encode
+from autograder.grade.run_notebook import MAX_VALUES
+from autograder.result.model import Artifact, CheckResult, Result
+from autograder.run.sandbox.limits import MIB
+from autograder.suite import Outcome, suites
+
+ASKED = Asked(suites.hidden("02_nodes"), "ada", 7, "bubblewrap")
+
+
+@pytest.fixture
+def result(make_result: Callable[..., Result]) -> Result:
+    suite = ASKED.suite
+    checks = tuple(CheckResult.of(check, Outcome.PASSED) for check in suite.checks)
+    told = {"suite_version": suite.version, "files_digest": suite.files_digest, "max_score": suite.max_score}
+    return make_result(ASKED.student, checks=checks, seed=ASKED.seed, isolation=ASKED.isolation, **told)
+
+
+def files(result: Result, **others: bytes) -> dict[str, bytes]:
+    return {"result.json": json.dumps(result.to_json()).encode(), **others}
+
+
+@pytest.mark.parametrize(
+    "flood",
+    [b"[" + b"[]," * 2**20 + b"0]", b"[" + b'"",' * 2**20 + b"0]", b'"' * 3 * 2**20, b'["\\\\",' * 2**19, b"{" * 2**22],
+    ids=["lists", "strings", "quotation marks", "backslashes", "objects"],
+)
+def test_json_of_too_many_values_is_refused_before_it_takes_memory(flood: bytes) -> None:
+    tracemalloc.start()
+    try:
+        with pytest.raises(ValueError, match="more than 1,000 values"):
+            read_json(flood, 1000)
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert most < 6 * len(flood)  # to parse the first takes 20 times as much
+
+
+def test_what_stands_in_strings_counts_as_one_value() -> None:
+    texts = ["[,{" * 5000, '"[,' * 5000, "\\" * 5001 + '"', "\\", ""]
+    assert read_json(json.dumps(texts).encode(), 10) == texts
+
+
+@pytest.mark.parametrize("number", ["1" * 101, "NaN", "-Infinity", "1e999"])
+def test_a_result_with_a_number_that_no_page_can_show_is_refused(result: Result, number: str) -> None:
+    assert checked(files(result), ASKED) == result
+    text = json.dumps(replace(result, seconds=123.25).to_json()).replace("123.25", number)
+    with pytest.raises(AnswerError, match=r"it holds (a|the) number"):
+        checked({"result.json": text.encode()}, ASKED)
+
+
+@pytest.mark.parametrize("name", ["result.json", "notebook.ipynb", "a.run.json"])
+def test_each_file_that_is_parsed_is_counted_first(result: Result, name: str) -> None:
+    own = files(replace(result, artifacts=(Artifact("a.png", "track", "0" * 64, "x", run="a.run.json"),)))
+    values = b'{"cells": [' + b"[]," * NOTEBOOK_VALUES + b"0]}"
+    with pytest.raises(AnswerError, match=r"more than [0-9,]+ values|cannot identify image"):
+        checked({**own, "a.png": b"", "a.run.json": b"{}", name: values}, ASKED)
+
+
+def test_a_large_result_is_refused(result: Result) -> None:
+    with pytest.raises(AnswerError, match="a result of 8,"):
+        checked({"result.json": b" " * (8 * MIB + 1)}, ASKED)
+
+
+def test_a_file_that_a_result_names_a_thousand_times_is_not_shown_so_often(result: Result) -> None:
+    again = replace(result, artifacts=(Artifact("a.png", "track", "0" * 64, "x"),) * 1000)
+    with pytest.raises(AnswerError, match="shows its 1 files 1000 times"):
+        checked(files(again, **{"a.png": bytes(MIB)}), ASKED)
+
+
+def test_a_notebook_of_all_outputs_and_lines_that_a_run_may_have_is_accepted(result: Result) -> None:
+    """A text of millions of lines had millions of values, and more bytes than a worker may leave."""
+    many = [{"output_type": "display_data", "data": {"application/json": [[]] * (MAX_VALUES - 20)}, "metadata": {}}]
+    lines = [new_output("stream", text="\n" * 4 * MIB)]
+    cells = [new_code_cell("\n" * 2 * MIB, outputs=lines), {**new_code_cell(), "outputs": many}]
+    data = encode(NotebookNode({**new_notebook(), "cells": list(map(NotebookNode, cells))}))
+    assert len(data) < MAX_BYTES
+    checked(files(result, **{"notebook.ipynb": data}), ASKED)
+    assert decode(data)[0].outputs == lines
+
+
+def test_a_notebook_that_would_be_too_large_is_kept_without_its_outputs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(executed_notebook, "MAX_BYTES", 1000)
+    outputs = [new_output("stream", text="x" * 1000)]
+    (cell,) = decode(encode(new_notebook(cells=[new_code_cell("1", outputs=outputs)])))
+    assert (cell.source, cell.outputs) == ("1", [])
+
+
+def test_jupyter_reads_a_notebook_as_it_is_written_and_the_grader_one_of_jupyters() -> None:
+    notebook = new_notebook(cells=[new_code_cell("1\n2", outputs=[new_output("stream", text="a\nb")])])
+    read = nbformat.reads(encode(notebook).decode(), as_version=4)
+    nbformat.validate(read)
+    assert read == notebook
+    assert decode(nbformat.writes(notebook).encode())[0].source == "1\n2"
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"[]",
+        b'{"cells": 1}',
+        b'{"cells": ["x"]}',
+        b'{"cells": [{"cell_type": "code", "source": 1, "outputs": []}]}',
+        b'{"cells": [{"cell_type": "code", "source": "", "outputs": [1]}]}',
+        b'{"cells": [{"cell_type": "code", "source": "", "outputs": [], "metadata": []}]}',
+        b"[" * 100_000,
+        b"\xff",
+    ],
+)
+def test_what_is_no_notebook_is_refused(result: Result, data: bytes) -> None:
+    with pytest.raises(AnswerError, match="the notebook in a worker's answer cannot be read"):
+        checked(files(result, **{"notebook.ipynb": data}), ASKED)
