@@ -6,7 +6,7 @@ import json
 import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 
 from autograder.exceptions import AutograderError, UsageError
@@ -102,6 +102,12 @@ class GradingRequest:
 
 
 GradeEach = Callable[[Sequence[GradingRequest], OnResult], None]
+"""Grades what is asked for, and hands over each result as it comes."""
+
+
+def grade_here(requests: Sequence[GradingRequest], on_result: OnResult, *, jobs: int) -> None:
+    """Grade on this machine, `jobs` submissions at once."""
+    map_parallel(GradingRequest.grade, requests, jobs=jobs, on_done=on_result)
 
 
 def discover(paths: tuple[Path, ...], assignment: str) -> Discovered:
@@ -198,11 +204,13 @@ def grade_all(
             results[other.student] = other
             on_result(other)
 
-    chosen = [group[0] for group in first.values()]
-    if grade_each is not None:
-        grade_each(chosen, store)
-    else:
-        map_parallel(lambda request: request.stored() or request.grade(), chosen, jobs=jobs, on_done=store)
+    left = []
+    for request, *_ in first.values():
+        if (kept := request.stored()) is not None:
+            store(kept)
+        else:
+            left.append(request)
+    (grade_each or partial(grade_here, jobs=jobs))(left, store)
     return tuple(results[entry.student] for entry in entries)
 
 

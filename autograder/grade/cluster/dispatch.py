@@ -25,7 +25,8 @@ from autograder.grade.cluster.exceptions import AnswerError, ClusterError
 from autograder.grade.cluster.machine import difference, resource
 from autograder.grade.cluster.parcel import Parcel
 from autograder.grade.pipeline import refused
-from autograder.submission.intake import detect_layout, read_files
+from autograder.submission.intake import read_files
+from autograder.submission.intake.files import digest
 from autograder.suite import suites
 
 TICK = 0.5  # s between two looks at the workers
@@ -168,22 +169,17 @@ class _Dispatch:
                 self._report(f"The worker {address} is refused: {why}.")
 
     def _packed(self, requests: Sequence[GradingRequest]) -> Iterator[_Pending]:
-        """Yield what has to be sent; report the results of the rest."""
+        """Yield what has to be sent; report the results of what intake refuses."""
         for request in requests:
-            stored = request.stored()
-            if stored is not None:
-                self._on_result(stored)
-                continue
             try:
                 files = read_files(request.path, request.assignment)
-                sha256 = detect_layout(files, request.assignment).sha256
             except StudentError as error:
                 suite = suites.hidden(request.assignment)
                 result = refused(suite, request.student, request.seed, request.isolation, error.diagnosis)
                 self._on_result(write(result, request))
                 continue
             parcel = Parcel(request.assignment, request.seed, request.isolation, tuple(files))
-            yield _Pending(request, sha256, parcel.pack())
+            yield _Pending(request, digest(files), parcel.pack())
 
     def _send(self, pending: _Pending) -> None:
         future = self._client.submit(
