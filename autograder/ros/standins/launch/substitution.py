@@ -25,16 +25,6 @@ class Substitution:
         return ""
 
 
-class DirectorySubstitution(Substitution):
-    """The path of a folder. With ``/`` and a component it is a path in this folder, as in Jazzy since launch 3.4.5."""
-
-    def __truediv__(self, component: SomeSubstitutionsType) -> Substitution:
-        """Return the path of what `component` names in this folder; a component may have several parts."""
-        from .substitutions.evaluate import PathJoinSubstitution
-
-        return PathJoinSubstitution([self, component])
-
-
 SomeSubstitutionsType = str | Substitution | Iterable[str | Substitution]
 SomeSubstitutionsType_types_tuple = (str, Substitution, Iterable)
 

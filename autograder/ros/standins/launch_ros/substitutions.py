@@ -10,8 +10,8 @@ from typing import Any
 
 from ament_index_python.packages import get_package_prefix, get_package_share_directory
 from launch import LaunchContext, SomeSubstitutionsType, Substitution
-from launch.substitution import DirectorySubstitution
 from launch.substitutions import SubstitutionFailure
+from launch.substitutions.paths import DirectorySubstitution
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from standin_notice import guard
 

@@ -6,7 +6,7 @@ from standin_notice import guard
 
 from ..exceptions import SubstitutionFailure
 from ..substitution import TextSubstitution
-from .evaluate import Command, FileContent, FindExecutable, PathJoinSubstitution, PathSubstitution, PythonExpression
+from .evaluate import Command, FileContent, FindExecutable, PythonExpression
 from .logic import (
     AllSubstitution,
     AndSubstitution,
@@ -26,6 +26,7 @@ from .lookup import (
     ThisLaunchFile,
     ThisLaunchFileDir,
 )
+from .paths import PathJoinSubstitution, PathSubstitution
 
 __all__ = [
     "AllSubstitution",

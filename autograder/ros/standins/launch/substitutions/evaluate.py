@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import importlib
-import os
 import shlex
 import shutil
 import subprocess
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from ..exceptions import SubstitutionFailure
 from ..launch_context import LaunchContext
 from ..substitution import (
-    DirectorySubstitution,
     SomeSubstitutionsType,
     Substitution,
     describe_substitutions,
@@ -103,31 +100,6 @@ class FindExecutable(Substitution):
         if found is None:
             raise SubstitutionFailure(f"executable '{name}' not found on the PATH")
         return found
-
-
-class PathJoinSubstitution(DirectorySubstitution):
-    """A path from its components, each of which is a text, a substitution, or several of them in a row."""
-
-    def __init__(self, substitutions: SomeSubstitutionsType | Iterable[SomeSubstitutionsType]) -> None:
-        if isinstance(substitutions, (str, Substitution)):
-            substitutions = [substitutions]
-        self.substitutions = [normalize_to_list_of_substitutions(component) for component in substitutions]
-
-    def describe(self) -> str:
-        """Return a description with the components."""
-        return f"PathJoin({', '.join(map(describe_substitutions, self.substitutions))})"
-
-    def perform(self, context: LaunchContext) -> str:
-        """Return the joined path."""
-        parts = [perform_substitutions(context, component) for component in self.substitutions]
-        return os.path.join(*parts)  # noqa: PTH118  # a Path would drop slashes and dots that belong
-
-
-class PathSubstitution(PathJoinSubstitution):
-    """A path of one component, to be continued with ``/``."""
-
-    def __init__(self, path: SomeSubstitutionsType) -> None:
-        super().__init__([path])
 
 
 class FileContent(Substitution):

@@ -12,13 +12,13 @@ from ..exceptions import SubstitutionFailure
 from ..launch_context import LaunchContext
 from ..logging import launch_config
 from ..substitution import (
-    DirectorySubstitution,
     SomeSubstitutionsType,
     Substitution,
     describe_substitutions,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
+from .paths import DirectorySubstitution
 
 
 def _default(value: Any) -> list[Substitution] | None:
