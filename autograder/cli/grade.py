@@ -21,6 +21,7 @@ from autograder.cli.options import (
 from autograder.cli.terminal import echo, on_line
 from autograder.cli.text_tables import failure_summary, score_text, table
 from autograder.exceptions import StudentError, UsageError
+from autograder.grade.apart import read_preview
 from autograder.grade.batch import Entry, GradeEach, discover, grade_all
 from autograder.grade.store import LOG
 from autograder.lms.collect import COLLECTION_REPORT, collect, unpacked
@@ -29,7 +30,6 @@ from autograder.report import feedback
 from autograder.report.export.earlier import EarlierMarks
 from autograder.result.model import Result, Status, write_json
 from autograder.run.sandbox import Tier
-from autograder.submission.intake import read_submission
 from autograder.suite import suites
 
 INTERRUPTED = 130  # the exit status of a shell after Ctrl-C
@@ -100,7 +100,7 @@ def grade(
     suites.hidden(assignment)
     if dry_run:
         with _find_submissions(paths, assignment, roster, out, write=False) as (entries, all_fit):
-            sys.exit(0 if _preview(entries, assignment) and all_fit else 1)
+            sys.exit(0 if _preview(entries, assignment, Tier(isolation)) and all_fit else 1)
     with _find_submissions(paths, assignment, roster, out) as (entries, all_fit), Progress(len(entries)) as progress:
         earlier = EarlierMarks(out, [entry.student for entry in entries])
         try:
@@ -181,18 +181,18 @@ def _print_others(others: Sequence[tuple[str, str]]) -> None:
         echo(f"Not graded: {on_line(name)}: {on_line(why)}.", err=True)
 
 
-def _preview(entries: Sequence[Entry], assignment: str) -> bool:
+def _preview(entries: Sequence[Entry], assignment: str, tier: Tier) -> bool:
     """Print what counts of each submission; return whether each is clear."""
     rows, all_clear = [], True
     for entry in entries:
         try:
-            submission = read_submission(entry.path, assignment)
+            found = read_preview(entry.path, assignment, tier)
         except StudentError as error:
             rows.append((entry.student, "unclear", on_line(str(error))))
             all_clear = False
             continue
-        runs = "the notebook has to run" if submission.packages is None else f"{len(submission.packages)} files count"
-        rows.append((entry.student, runs, on_line(" ".join((*submission.notices, _not_used(submission.unused))))))
+        runs = "the notebook has to run" if found.files is None else f"{found.files} files count"
+        rows.append((entry.student, runs, on_line(" ".join((*found.notices, _not_used(found.unused))))))
     echo(table(rows, ("submission", "what counts", "notes")))
     return all_clear
 

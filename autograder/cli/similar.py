@@ -12,8 +12,10 @@ from autograder.author.course.release import write_bundle
 from autograder.cli.options import json_option
 from autograder.cli.terminal import echo, on_line
 from autograder.exceptions import StudentError, UsageError
+from autograder.grade.apart import code, read_code
 from autograder.grade.batch import discover
 from autograder.result.model import write_json
+from autograder.run.sandbox import Tier
 from autograder.submission.intake import read_submission
 
 
@@ -36,14 +38,14 @@ def similar(paths: tuple[Path, ...], assignment: str, out: Path, least: float, j
     A pair is a hint to read both texts, and no verdict. No mark changes.
     """
     try:
-        from autograder.lms.similar import MAX_PAIRS, code, pairs, write_pairs
+        from autograder.lms.similar import MAX_PAIRS, pairs, write_pairs
     except ModuleNotFoundError as error:
         if error.name != "copydetect":
             raise
         raise UsageError("this needs copydetect: run `.venv/bin/pip install copydetect`") from None
 
-    def skip(student: str, why: str) -> None:
-        echo(f"Not compared: {on_line(student)}: {why}", err=True)
+    def in_part(student: str, what: str) -> None:
+        echo(f"Compared in part: {on_line(student)}: {what}", err=True)
 
     codes = {}
     with tempfile.TemporaryDirectory() as name:
@@ -51,10 +53,10 @@ def similar(paths: tuple[Path, ...], assignment: str, out: Path, least: float, j
         given = code(read_submission(Path(name) / "given" / layout.course().chapters / assignment, assignment))
     for entry in discover(paths, assignment).entries:
         try:
-            codes[entry.student] = code(read_submission(entry.path, assignment))
+            codes[entry.student] = read_code(entry.path, assignment, Tier.BUBBLEWRAP)
         except StudentError as error:
-            skip(entry.student, on_line(error))
-    found = pairs(codes, given, least / 100, skip)
+            echo(f"Not compared: {on_line(entry.student)}: {on_line(error)}", err=True)
+    found = pairs(codes, given, least / 100, in_part)
     for pair in found:
         shares = " and ".join(f"{100 * share:.0f} %" for share in pair.shares)
         echo(f"{on_line(pair.names[0])} and {on_line(pair.names[1])}: {shares} of their own text alike")

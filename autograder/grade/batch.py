@@ -10,7 +10,7 @@ from functools import cached_property, partial
 from pathlib import Path
 
 from autograder.exceptions import AutograderError, UsageError
-from autograder.grade.digests import Digests, read_digests
+from autograder.grade.apart import Digests, read_digests
 from autograder.grade.parallel import map_parallel
 from autograder.grade.pipeline import grade_submission
 from autograder.grade.store import LOG, NOTEBOOK, RESULT, new_result, remove_unfinished

@@ -12,11 +12,13 @@ import pytest
 
 from autograder import layout
 from autograder.building import keeper
-from autograder.grade import grade_submission, own_cell
+from autograder.exceptions import StudentError
+from autograder.grade import apart, grade_submission, own_cell
 from autograder.result.model import Result, Status
 from autograder.run.sandbox import Tier
 from autograder.run.sandbox.limits import SOURCES
 from autograder.run.sandbox.trees import read_tree
+from autograder.submission import intake
 
 ASSIGNMENT = "02_nodes"
 SECRET = "a secret of bob's"
@@ -208,3 +210,22 @@ def test_root_grades_what_root_alone_can_read(classroom: Path) -> None:
     result = grade(classroom, "alice")
     assert (result.status, result.isolation) == (Status.GRADED, Tier.BUBBLEWRAP.value)
     assert "is not a package's name" in result.diagnosis.sentence
+
+
+@pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can be somebody else")
+def test_root_reads_no_submission_for_a_preview_or_a_comparison(
+    classroom: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (classroom / "alice" / "src" / "pkg" / "node.py").write_text("x = '\u2028'")
+    (classroom / "carol.zip").write_bytes(b"no zip")
+    (classroom / "alice").chmod(0o700)
+
+    def read(*_: object) -> None:
+        pytest.fail("root reads a submission")
+
+    monkeypatch.setattr(intake, "read_submission", read)
+    seen = apart.read_preview(classroom / "alice", ASSIGNMENT, Tier.BUBBLEWRAP)
+    assert (seen.files, seen.unused) == (2, ())
+    assert apart.read_code(classroom / "alice", ASSIGNMENT, Tier.BUBBLEWRAP) == "# pkg/node.py\nx = '\n'"
+    with pytest.raises(StudentError, match=r"carol.zip is not a folder"):
+        apart.read_preview(classroom / "carol.zip", ASSIGNMENT, Tier.BUBBLEWRAP)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
@@ -9,8 +10,9 @@ import nbformat
 import pytest
 
 from autograder.cli import main
+from autograder.grade.apart import code
 from autograder.lms import similar
-from autograder.lms.similar import code, pairs, write_pairs
+from autograder.lms.similar import pairs, write_pairs
 from autograder.submission.intake import SubmittedFile, detect_layout
 
 GIVEN = "\n".join(f"def given_{n}(a, b):\n    return [a * {n} + b, (a - b) / {n + 1}]" for n in range(9))
@@ -85,17 +87,46 @@ def test_similar_compares_a_class_and_names_unreadable_submissions(
     assert "Not compared: dave: dave.zip is not a folder" in told.err
 
 
-def test_a_text_that_is_too_long_or_takes_too_long_is_not_compared(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(similar, "MAX_SECONDS", 0.5)
-    slow = "\n " * 50_000  # Pygments takes a time that grows with the square of it
-    codes = {"alice": OWN, "bob": RENAMED, "long": OWN * 2_000, "slow": slow}
-    skipped: dict[str, str] = {}
-    (found,) = pairs(codes, "", 0.5, skipped.__setitem__)
-    assert found.names == ("alice", "bob")
-    assert skipped == {
-        "long": f"its code has {len(OWN * 2_000):,} characters, more than 200,000",
-        "slow": "its code took more than 0.5 s to be read: look at it yourself",
-    }
+HARD = (
+    "\n ",
+    "\n\n\t",
+    " \f\n",
+    "\x1e\n",
+    "from \\\n",
+    "'''\n",
+    "r'''\n ",
+    'f"{',
+    "def \\\n",
+    "0_",
+    "(",
+    "a\n",
+    "lambda ",
+)
+
+
+def test_of_a_long_text_so_many_characters_are_compared_and_that_is_said() -> None:
+    told: dict[str, str] = {}
+    long = "".join(f"{OWN}# {number}" for number in range(2_000))
+    (found,) = pairs({"alice": long, "bob": "a\n" * 700_000 + OTHER, "carol": OWN}, "", 0.5, told.__setitem__)
+    assert found.names == ("alice", "carol")
+    assert set(told) == {"alice", "bob"}
+    assert told["alice"] == "the first 100,000 characters of its code, look at the rest yourself"
+    assert len(found.texts[0].striptags()) <= similar.MAX_CHARACTERS
+
+
+@pytest.mark.parametrize("part", HARD)
+def test_a_lexer_and_a_pair_take_steps_in_proportion_to_a_text(part: str) -> None:
+    """What is counted is what they ask for: the places of a text that the lexer tries, and those that are compared."""
+
+    def steps(length: int) -> tuple[int, int]:
+        text = similar._dense(part * (length // len(part)))
+        looked = sum(len(match) + 1 for match in re.findall(r"(?m)^(?=(\s*))", text))  # the lexer's first rules
+        found = similar._fingerprint(text)
+        return looked, sum(map(len, found.hash_idx.values()))
+
+    short, long = steps(1000), steps(4000)
+    assert all(more <= 5 * few + 100 for few, more in zip(short, long, strict=True))
+    assert max(long) <= 10_000
 
 
 def test_the_most_alike_of_many_pairs_are_listed(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,136 @@
+"""Reads of a submission what is known before it is graded. Where root asks, another user reads it, in a cell.
+
+python -m autograder.grade.apart READER PATH ASSIGNMENT
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from autograder import layout
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import AutograderError, StudentError
+from autograder.grade.bounded_json import RESULT_VALUES, read_json
+from autograder.plain_text import clean
+from autograder.result.model import structure
+from autograder.run.sandbox import Tier
+from autograder.run.sandbox.cell import run_in_cell
+from autograder.run.sandbox.limits import READING_CELL
+from autograder.run.sandbox.spec import View
+from autograder.submission import intake
+from autograder.submission.intake import Submission
+from autograder.submission.intake.notebooks import read_cells
+
+MAX_CODE = 200_000  # characters of Python that leave the cell
+
+
+@dataclass(frozen=True)
+class Digests:
+    """The digests of a submission, in hexadecimal digits, and what a result says of its files."""
+
+    sha256: str  # of all its files
+    graded_sha256: str  # of what a grading reads of them
+    notices: tuple[str, ...] | None  # about what counts; None if its notebook decides that
+    unused: tuple[str, ...]  # files that play no part
+
+
+@dataclass(frozen=True)
+class Preview:
+    """What counts of a submission."""
+
+    files: int | None  # of packages, None if its notebook has to run
+    notices: tuple[str, ...]  # about what counts
+    unused: tuple[str, ...]  # files that play no part
+
+
+def read_digests(path: Path, assignment: str, tier: Tier) -> Digests | None:
+    """Return the digests of a submission, None if it cannot be read."""
+    try:
+        found: Digests = structure(Digests, _read("digests", path, assignment, tier))
+    except (OSError, AutograderError):
+        return None
+    return found
+
+
+def read_preview(path: Path, assignment: str, tier: Tier) -> Preview:
+    """Return what counts of a submission. Raises StudentError if it cannot be read, or is unclear."""
+    found: Preview = structure(Preview, _read("preview", path, assignment, tier))
+    return found
+
+
+def read_code(path: Path, assignment: str, tier: Tier) -> str:
+    """Return the Python of a submission, `MAX_CODE` characters at most. Raises StudentError if it cannot be read."""
+    return str(_read("code", path, assignment, tier))
+
+
+def code(submission: Submission) -> str:
+    """Return the Python of a submission: its modules and the code cells of its notebook."""
+    texts = [f"# {file.path}\n{_text(file.data)}" for file in submission.source if file.path.suffix == ".py"]
+    if submission.notebook is not None:
+        with suppress(ValueError):  # the modules are read all the same
+            texts += [cell["source"] for cell in read_cells(submission.notebook) if cell["cell_type"] == "code"]
+    return clean("\n".join(texts))
+
+
+def _text(data: bytes) -> str:
+    return data.decode("utf-8", errors="replace")
+
+
+def _digests(submission: Submission) -> dict[str, Any]:
+    notices = None if submission.packages is None else submission.notices
+    return asdict(Digests(submission.sha256, submission.graded_sha256, notices, submission.unused))
+
+
+def _preview(submission: Submission) -> dict[str, Any]:
+    files = None if submission.packages is None else len(submission.packages)
+    return asdict(Preview(files, submission.notices, submission.unused))
+
+
+READERS: dict[str, Callable[[Submission], Any]] = {
+    "digests": _digests,
+    "preview": _preview,
+    "code": lambda submission: code(submission)[:MAX_CODE],
+}
+
+
+def _read(reader: str, path: Path, assignment: str, tier: Tier) -> Any:
+    if os.geteuid() == 0 and tier is Tier.BUBBLEWRAP and path.exists():
+        return _in_cell(reader, path.resolve(), assignment)
+    return READERS[reader](intake.read_submission(path, assignment))
+
+
+def _in_cell(reader: str, path: Path, assignment: str) -> Any:
+    command = [sys.executable, "-m", "autograder.grade.apart", reader, str(path), assignment]
+    chapter = layout.CHAPTERS / assignment  # a course directory of nbgrader may have others
+    view = View(shown=(chapter,) if chapter.is_dir() else (), submitted=(path,))
+    report = run_in_cell(lambda scratch: command, Tier.BUBBLEWRAP, READING_CELL, view=view)
+    try:
+        answer = read_json(report.output.rpartition("\n")[2].encode(), RESULT_VALUES)
+        if "refused" in answer:
+            raise StudentError(structure(Diagnosis, answer["refused"]))
+        return answer["read"]
+    except (LookupError, ValueError, RecursionError, TypeError, AttributeError):
+        sentence = f"What was handed in cannot be read: its reader ended ({report.ending.value})."
+        raise StudentError(Diagnosis(Kind.UNREADABLE, sentence)) from None
+
+
+def main() -> None:
+    """Print what a reader makes of the submission that the command line names."""
+    reader, path, assignment = sys.argv[1:]
+    answer: dict[str, Any]
+    try:
+        answer = {"read": _read(reader, Path(path), assignment, Tier.PROCESS)}
+    except StudentError as error:
+        answer = {"refused": asdict(error.diagnosis)}
+    sys.stdout.buffer.write(json.dumps(answer, ensure_ascii=False).encode("utf-8", "backslashreplace"))
+
+
+if __name__ == "__main__":
+    main()
