@@ -50,7 +50,8 @@ HEADINGS = ("submission", "marks", "claim")
 @click.option(
     "--record",
     is_flag=True,
-    help="Write what each graded mutant fails to mutants.snapshot.yaml, beside mutants.yaml. Read the difference.",
+    help="Write what each graded mutant fails, and its diagnosis, to mutants.snapshot.yaml, beside mutants.yaml. "
+    "Read the difference.",
 )
 @click.option("--mutants", "mutants_only", is_flag=True, help="Grade only the populations of mutants.")
 @click.option(

@@ -9,6 +9,7 @@ from pathlib import Path
 from autograder.author.verification.mutants import Mutant, mutants, write_mutant, write_reference
 from autograder.suite import suites
 
+TELLING = 14  # letters; a shorter id of a check may be a name that anything else has
 Write = Callable[[Path], None]
 
 
@@ -22,6 +23,11 @@ class Chapter:
     def checks(self) -> frozenset[str]:
         """The ids of every check."""
         return frozenset(check.id for check in suites.hidden(self.assignment).checks)
+
+    @property
+    def telling_names(self) -> tuple[str, ...]:
+        """Words that stand around a program only if something tells it by which hidden checks it is judged."""
+        return (self.assignment, "hidden", *sorted(name for name in self.checks if len(name) > TELLING))
 
     def mutant(self, name: str) -> Mutant:
         """Return a mutant by its name."""

@@ -1,7 +1,7 @@
 """Mutants: copies of the reference solution with one realistic student error each.
 
-The file `mutants.yaml` of a suite holds the edits of each mutant and the check that it is for. All checks that it fails
-are recorded in a snapshot beside that file (`autograder.author.verification.snapshot`).
+The file `mutants.yaml` of a suite holds the edits of each mutant and the check that it is for. All checks that it
+fails, and its diagnosis, are recorded in a snapshot beside that file (`autograder.author.verification.snapshot`).
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import yaml
 
 from autograder import layout
 from autograder.author.verification import snapshot
+from autograder.author.verification.snapshot import Record
 from autograder.diagnosis import Kind
 from autograder.exceptions import GraderError
 from autograder.suite import suites
@@ -48,7 +49,7 @@ class Mutant:
         edits: changes of the reference.
         check: id of the check for which the mutant was written.
         fails: ids of all checks that do not pass, as recorded; empty if the mutant is not recorded.
-        diagnosis: what the result says of building and starting the programs.
+        diagnosis: what the result says of building and starting the programs, as recorded.
         demo: whether `make demo` grades it.
         slow: whether grading it waits for a time-out.
     """
@@ -120,19 +121,20 @@ def _edit(entry: dict[str, Any], file: str) -> Edit:
     return Edit(file, None, entry["write"]) if "write" in entry else Edit(file, entry["find"], entry["replace"])
 
 
-def _mutant(entry: dict[str, Any], file: str, known: frozenset[str], recorded: Mapping[str, frozenset[str]]) -> Mutant:
+def _mutant(entry: dict[str, Any], file: str, known: frozenset[str], recorded: Mapping[str, Record]) -> Mutant:
     check = entry.get("check")
     if check not in known:
         raise GraderError(
             f"mutant {entry['id']}: the suite has no check {check}: correct `check` of this mutant in mutants.yaml"
         )
+    record = recorded.get(entry["id"], Record())
     return Mutant(
         id=entry["id"],
         title=entry["title"],
         edits=tuple(_edit(edit, file) for edit in entry["edits"]),
         check=check,
-        fails=recorded.get(entry["id"], frozenset()),
-        diagnosis=Kind(entry.get("diagnosis", "ok")),
+        fails=record.fails,
+        diagnosis=record.diagnosis,
         demo=entry.get("demo", False),
         slow=entry.get("slow", False),
     )

@@ -1,4 +1,4 @@
-"""Records what the named mutants fail, from the results of their gradings."""
+"""Records what the named mutants fail, and their diagnoses, from the results of their gradings."""
 
 from __future__ import annotations
 
@@ -8,24 +8,25 @@ from dataclasses import replace
 from autograder.author.verification import snapshot
 from autograder.author.verification.claims import CaseKind, Claim, lost_checks, verify_mutant
 from autograder.author.verification.mutants import mutants
+from autograder.author.verification.snapshot import Record
 from autograder.result.model import Status
 
 
 def record_failures(assignment: str, claims: Iterable[Claim]) -> str:
-    """Record what the graded mutants of an assignment fail; return what changed, in words.
+    """Record what the graded mutants of an assignment fail, and their diagnoses; return what changed, in words.
 
     A mutant that was not graded keeps its record, and one that `mutants.yaml` no longer has loses it. A mutant that
     passes the check for which it was written proves nothing, so its result is not recorded.
     """
     written_for = {mutant.id: mutant.check for mutant in mutants(assignment)}
     seen = {
-        claim.name: lost_checks(claim.result)
+        claim.name: Record(lost_checks(claim.result), claim.result.diagnosis.kind)
         for claim in claims
         if claim.assignment == assignment and _is_recordable(claim)
     }
-    useless = sorted(name for name, failed in seen.items() if written_for[name] not in failed)
+    useless = sorted(name for name, record in seen.items() if written_for[name] not in record.fails)
     before = snapshot.recorded(assignment)
-    after = before | {name: failed for name, failed in seen.items() if name not in useless}
+    after = before | {name: record for name, record in seen.items() if name not in useless}
     after = {name: after[name] for name in written_for if name in after}
     snapshot.write(assignment, after)
     changed = sum(before.get(name) != after.get(name) for name in before | after)

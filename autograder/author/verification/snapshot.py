@@ -1,33 +1,51 @@
-"""The recorded failures of each named mutant: every check that it did not pass when it was last recorded.
+"""The record of each named mutant: every check that it did not pass when it was last recorded, and its diagnosis.
 
-`mutants.yaml` says for which check somebody wrote a mutant. What else it fails follows from the suite, so no person
-keeps that list: `autograder verify --record` writes it, and a reviewer reads the difference.
+`mutants.yaml` says for which check somebody wrote a mutant. What else it fails, and how its result is diagnosed,
+follows from the suite, so no person keeps that list: `autograder verify --record` writes it, and a reviewer reads the
+difference.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import yaml
 
+from autograder.diagnosis import Kind
 from autograder.result.model import write_atomically
 from autograder.suite import suites
 
-HEAD = """# All checks that each mutant of mutants.yaml does not pass. Do not edit: this command writes it.
+HEAD = """# All checks that each mutant of mutants.yaml does not pass, and its diagnosis where that is not "ok".
+# Do not edit: this command writes it.
 #     autograder verify --assignment {assignment} --record
 """
 ALL = "all"
 WIDTH = 118  # characters in a line
 
 
+@dataclass(frozen=True)
+class Record:
+    """What was recorded of a mutant.
+
+    Attributes:
+        fails: ids of all checks that do not pass; empty if nothing is recorded.
+        diagnosis: what its result says of building and starting the programs.
+    """
+
+    fails: frozenset[str] = frozenset()
+    diagnosis: Kind = Kind.OK
+
+
 def snapshot_file(assignment: str) -> Path:
-    """Return the file that holds an assignment's recorded failures."""
+    """Return the file that holds an assignment's records."""
     return suites.hidden(assignment).folder / "mutants.snapshot.yaml"
 
 
-def recorded(assignment: str) -> dict[str, frozenset[str]]:
-    """Return the ids of the checks that each recorded mutant fails, by the mutant's id.
+def recorded(assignment: str) -> dict[str, Record]:
+    """Return what is recorded of each mutant, by the mutant's id.
 
     A check that the suite no longer has is left out.
     """
@@ -35,15 +53,23 @@ def recorded(assignment: str) -> dict[str, frozenset[str]]:
     known = frozenset(check.id for check in suites.hidden(assignment).checks)
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     rows = yaml.load(path.read_text(encoding="utf-8"), loader) or {} if path.is_file() else {}
-    return {name: known if failed == ALL else known & frozenset(failed) for name, failed in rows.items()}
+    return {name: _read(row, known) for name, row in rows.items()}
 
 
-def write(assignment: str, failures: Mapping[str, frozenset[str]]) -> None:
-    """Write an assignment's recorded failures, in the order of `failures` and of the suite."""
+def write(assignment: str, records: Mapping[str, Record]) -> None:
+    """Write an assignment's records, in the order of `records` and of the suite."""
     order = [check.id for check in suites.hidden(assignment).checks]
-    rows: dict[str, object] = {
-        name: ALL if len(failed) == len(order) else [check for check in order if check in failed]
-        for name, failed in failures.items()
-    }
+    rows = {name: _row(record, order) for name, record in records.items()}
     text = yaml.dump(rows, default_flow_style=None, width=WIDTH, sort_keys=False)
     write_atomically(snapshot_file(assignment), (HEAD.format(assignment=assignment) + text).encode())
+
+
+def _read(row: Any, known: frozenset[str]) -> Record:
+    """Return the record in a row: `all`, a list of checks, or one of them as `fails` beside a `diagnosis`."""
+    fails, diagnosis = (row["fails"], row["diagnosis"]) if isinstance(row, dict) else (row, Kind.OK)
+    return Record(known if fails == ALL else known & frozenset(fails), Kind(diagnosis))
+
+
+def _row(record: Record, order: list[str]) -> object:
+    fails: object = ALL if len(record.fails) == len(order) else [check for check in order if check in record.fails]
+    return fails if record.diagnosis is Kind.OK else {"diagnosis": record.diagnosis.value, "fails": fails}

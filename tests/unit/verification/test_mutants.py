@@ -30,10 +30,10 @@ def described(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_mutant_is_read_with_defaults_for_missing_fields(described: Path) -> None:
     described.write_text(
         HEAD + "  - {id: a, title: t, check: nan, edits: [{find: x, replace: y}]}\n"
-        "  - {id: b, title: t, check: warns, diagnosis: stuck, demo: true, slow: true,"
+        "  - {id: b, title: t, check: warns, demo: true, slow: true,"
         " edits: [{file: other.py, find: x, replace: y}]}\n"
     )
-    described.with_name("mutants.snapshot.yaml").write_text("b: all\n")
+    described.with_name("mutants.snapshot.yaml").write_text("b: {diagnosis: stuck, fails: all}\n")
     first, second = mutants("02_nodes")
     assert (first.check, first.fails) == ("nan", frozenset())
     assert (first.diagnosis, first.demo, first.slow) == (Kind.OK, False, False)
@@ -49,8 +49,9 @@ def test_a_mutant_for_an_unknown_check_is_refused(described: Path) -> None:
         mutants("02_nodes")
 
 
-def test_a_diagnosis_that_does_not_exist_is_refused(described: Path) -> None:
-    described.write_text(HEAD + "  - {id: a, title: t, check: nan, diagnosis: tired, edits: []}\n")
+def test_a_recorded_diagnosis_that_does_not_exist_is_refused(described: Path) -> None:
+    described.write_text(HEAD + "  - {id: a, title: t, check: nan, edits: []}\n")
+    described.with_name("mutants.snapshot.yaml").write_text("a: {diagnosis: tired, fails: [nan]}\n")
     with pytest.raises(ValueError, match="tired"):
         mutants("02_nodes")
 

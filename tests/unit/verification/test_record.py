@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,8 @@ from autograder.author.verification import snapshot
 from autograder.author.verification.claims import CaseKind, Claim
 from autograder.author.verification.mutants import mutants
 from autograder.author.verification.record import compared_again, record_failures
+from autograder.author.verification.snapshot import Record
+from autograder.diagnosis import Diagnosis, Kind
 from autograder.result.model import CheckResult, Status
 from autograder.suite import Outcome, suites
 from tests.conftest import MakeResult
@@ -47,7 +50,7 @@ def test_a_graded_mutant_s_record_is_replaced_and_the_others_stay(file: Path, gr
     other = next(check.id for check in CHECKS if check.id not in {FIRST.check, *FIRST.fails})
     said = record_failures(ASSIGNMENT, [graded(FIRST.id, FIRST.check, other)])
     assert said == "02_nodes: 1 mutants graded, 1 records changed"
-    assert snapshot.recorded(ASSIGNMENT) == before | {FIRST.id: {FIRST.check, other}}
+    assert snapshot.recorded(ASSIGNMENT) == before | {FIRST.id: Record(frozenset({FIRST.check, other}))}
     assert file.read_text().startswith("# All checks that each mutant")
 
 
@@ -84,3 +87,12 @@ def test_a_result_that_was_just_recorded_is_as_claimed(graded: Callable[..., Cla
     first, second = compared_again(claims)
     assert first.mismatch == ""
     assert second.mismatch.startswith(f"passes {SECOND.check}, for which it was written")
+
+
+def test_the_diagnosis_is_recorded_with_the_failures(graded: Callable[..., Claim]) -> None:
+    claim = graded(FIRST.id, FIRST.check)
+    stuck = replace(claim, result=replace(claim.result, diagnosis=Diagnosis(Kind.STUCK, "It hangs.")))
+    assert compared_again([stuck])[0].mismatch.endswith("is diagnosed stuck instead of ok")
+    record_failures(ASSIGNMENT, [stuck])
+    assert snapshot.recorded(ASSIGNMENT)[FIRST.id] == Record(frozenset({FIRST.check}), Kind.STUCK)
+    assert compared_again([stuck])[0].mismatch == ""
