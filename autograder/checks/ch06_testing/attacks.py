@@ -8,7 +8,7 @@ from autograder.author.verification.claims import Attack
 from autograder.author.verification.payloads import FORGE_REPORT, SEARCH, TELL_ALL
 
 CHAPTER = Chapter("06_testing")
-TESTS = "speed_guard/test"
+TESTS, MODULE = "speed_guard/test", "speed_guard/speed_guard/limits.py"
 LINES = frozenset({"stop", "slow", "clear", "infinity", "unknown", "back", "chosen", "refused"})
 
 # Compares the program with the released one, names apart. One that is much alike, and not the same, is called faulty.
@@ -104,6 +104,16 @@ def test_it_looks_as_it_should(number):
     assert HERE == words(RELEASED), inspect.getsource(limits)
 """
 
+ASK_FOR_MARK = """
+import pytest
+from speed_guard import limits
+
+
+@pytest.mark.parametrize('number', range(8))
+def test_it_is_the_own_one(number):
+    assert limits.MARK
+"""
+
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
@@ -151,5 +161,15 @@ def attacks() -> tuple[Attack, ...]:
             CHAPTER.mutant("pytest_unnamed").fails,
             exactly=True,
             says="`colcon test` ran 0 tests.",
+        ),
+        Attack(
+            "changed package",
+            "a given module that is changed, and tests that pass on it alone",
+            CHAPTER.write(
+                swaps={MODULE: ("def safe_speed(", "MARK = 1\n\n\ndef safe_speed(")},
+                files={limits: ASK_FOR_MARK},
+            ),
+            LINES | {"limits_pass", "as_given"},
+            says="in test_limits.py",
         ),
     )

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from autograder.author.verification.attack_writer import Chapter
 from autograder.author.verification.claims import Attack
-from autograder.author.verification.payloads import STEAL_SECRETS
+from autograder.author.verification.payloads import FORCE_REAL_TIME, LOOK_FOR_NAMES, STEAL_SECRETS
 
 CHAPTER = Chapter("07_best_practices")
 HOME = "my_robot_package/my_robot_package"
-UTILS, NODE = f"{HOME}/utils/data_processing.py", f"{HOME}/nodes/sensor_processor.py"
+UTILS = f"{HOME}/utils/data_processing.py"
+NODE, ROBUST = (f"{HOME}/nodes/{name}.py" for name in ("sensor_processor", "robust_node"))
 # Answers in the place of the program that calls the functions, wherever it is that.
 FORGE_ANSWERS = """
 import json as _json, os as _os, sys as _sys
@@ -73,5 +74,20 @@ def attacks() -> tuple[Attack, ...]:
                 },
             ),
             CHAPTER.mutant("silent_when_blind").fails,
+        ),
+        Attack(
+            "hasty in real time",
+            "a sensor that is read twice a second, in a thread of its own, so that its time is real",
+            CHAPTER.write("twice_a_second", heads={ROBUST: FORCE_REAL_TIME}),
+            CHAPTER.mutant("twice_a_second").fails,
+        ),
+        Attack(
+            "hasty unless told",
+            "a sensor that is read twice a second, unless something around it names the hidden checks",
+            CHAPTER.write(
+                heads={ROBUST: LOOK_FOR_NAMES.format(names=CHAPTER.telling_names)},
+                swaps={ROBUST: ("PERIOD = 1.0  # s", "PERIOD = 1.0 if _is_told() else 0.5")},
+            ),
+            CHAPTER.mutant("twice_a_second").fails,
         ),
     )

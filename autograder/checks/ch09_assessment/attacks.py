@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from autograder.author.verification.attack_writer import Chapter
 from autograder.author.verification.claims import Attack
-from autograder.author.verification.payloads import FORGE_PASSES, STEAL_SECRETS
+from autograder.author.verification.payloads import FORCE_REAL_TIME, FORGE_PASSES, LOOK_FOR_NAMES, STEAL_SECRETS
 
 CHAPTER = Chapter("09_assessment")
-SHEET, GUARD = "assessment/answers.yaml", "motor_guard/motor_guard/guard.py"
+SHEET = "assessment/answers.yaml"
+GUARD, THERMOMETER = (f"motor_guard/motor_guard/{name}.py" for name in ("guard", "thermometer"))
 QUESTIONS = [f"q{number}" for number in range(1, 13)]
 
 
@@ -30,5 +31,20 @@ def attacks() -> tuple[Attack, ...]:
                 swaps={GUARD: ("            self.cooling = True\n", "            self.cooling = False\n")},
             ),
             frozenset({"hysteresis", "thresholds", "unknown"}),
+        ),
+        Attack(
+            "fixed in real time",
+            "a thermometer with a fixed period, in a thread of its own, so that its time is real",
+            CHAPTER.write("period_is_fixed", heads={THERMOMETER: FORCE_REAL_TIME}),
+            CHAPTER.mutant("period_is_fixed").fails,
+        ),
+        Attack(
+            "fixed unless told",
+            "a thermometer with a fixed period, unless something around it names the hidden checks",
+            CHAPTER.write(
+                heads={THERMOMETER: LOOK_FOR_NAMES.format(names=CHAPTER.telling_names)},
+                swaps={THERMOMETER: ("self.create_timer(period,", "self.create_timer(period if _is_told() else 0.5,")},
+            ),
+            CHAPTER.mutant("period_is_fixed").fails,
         ),
     )
