@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Callable, Container, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -115,10 +116,10 @@ def copy_unread(source: Path, target: Path, limits: TreeLimits, ignored: Ignored
 
     The copy is refused for the same reasons as the original. Links stay links, devices and pipes become pipes. Of what
     is larger than `limits`, the size is kept and not the content: the reader sees that it is too large. `ignored` says
-    which names of a folder are left out.
+    which names of a folder are left out. A folder is reached from the one above it, so a path may have any length.
     """
-    left = _Left(limits)
-    _copy(source, target, left, ignored, limits.depth)
+    with _opened(source.parent) as old, _opened(target.parent) as new:
+        _copy(_Pair(old, source.name, new, target.name), _Left(limits), ignored, limits.depth)
 
 
 @dataclass
@@ -129,26 +130,41 @@ class _Left:
         self.names, self.size = self.limits.names, self.limits.size
 
 
-def _copy(source: Path, target: Path, left: _Left, ignored: Ignored, depth: int) -> None:
-    info = source.lstat()
+@dataclass(frozen=True)
+class _Pair:
+    """A name in an open folder, and the name of its copy in another."""
+
+    old: int
+    name: str
+    new: int
+    copy: str
+
+
+def _copy(pair: _Pair, left: _Left, ignored: Ignored, depth: int) -> None:
+    info = os.stat(pair.name, dir_fd=pair.old, follow_symlinks=False)
     left.names -= 1
     if stat.S_ISLNK(info.st_mode):
-        target.symlink_to(source.readlink())
+        os.symlink(os.readlink(pair.name, dir_fd=pair.old), pair.copy, dir_fd=pair.new)
     elif stat.S_ISREG(info.st_mode):
-        _copy_file(source, target, info, left)
+        _copy_file(pair, info, left)
     elif stat.S_ISDIR(info.st_mode):
-        target.mkdir(mode=0o755)
-        names = sorted(os.listdir(source)) if depth else []
-        skipped = ignored(names)
-        for name in names:
-            if name not in skipped and left.names > 0:
-                _copy(source / name, target / name, left, ignored, depth - 1)
+        os.mkdir(pair.copy, 0o755, dir_fd=pair.new)
+        with _opened(pair.name, pair.old) as old, _opened(pair.copy, pair.new) as new:
+            names = sorted(os.listdir(old)) if depth else []
+            skipped = ignored(names)
+            for name in names:
+                if name not in skipped and left.names > 0:
+                    _copy(_Pair(old, name, new, name), left, ignored, depth - 1)
     else:
-        os.mkfifo(target)
+        os.mkfifo(pair.copy, dir_fd=pair.new)
 
 
-def _copy_file(source: Path, target: Path, info: os.stat_result, left: _Left) -> None:
-    with os.fdopen(os.open(source, _UNFOLLOWED), "rb") as old, target.open("xb") as new:
+def _copy_file(pair: _Pair, info: os.stat_result, left: _Left) -> None:
+    fresh = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
+    with (
+        os.fdopen(os.open(pair.name, _UNFOLLOWED, dir_fd=pair.old), "rb") as old,
+        os.fdopen(os.open(pair.copy, fresh, 0o644, dir_fd=pair.new), "wb") as new,
+    ):
         os.fchmod(new.fileno(), 0o644 | info.st_mode & 0o111)
         if info.st_size > left.size:
             new.truncate(info.st_size)
@@ -159,3 +175,14 @@ def _copy_file(source: Path, target: Path, info: os.stat_result, left: _Left) ->
         while rest and (chunk := old.read(min(rest, _CHUNK))):
             new.write(chunk)
             rest -= len(chunk)
+
+
+@contextmanager
+def _opened(folder: Path | str, within: int | None = None) -> Iterator[int]:
+    """Open a folder; one within another is not followed if a link has taken its place."""
+    flags = os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC | (0 if within is None else os.O_NOFOLLOW)
+    descriptor = os.open(folder, flags, dir_fd=within)
+    try:
+        yield descriptor
+    finally:
+        os.close(descriptor)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import io
+import os
 import stat
 from pathlib import Path, PurePosixPath
 from typing import IO
@@ -75,8 +77,10 @@ def _read_folder(root: Path, contents: Contents, *, unpack: bool = False) -> Non
             contents.scan()
             if is_ignored(child.name) or child.name in skipped:
                 continue
-            path, info = PurePosixPath(child.relative_to(root)), child.lstat()
-            if stat.S_ISREG(info.st_mode):
+            path, info = PurePosixPath(child.relative_to(root)), _info(child)
+            if info is None:
+                contents.omit(path, "", f"the path {str(path)[:60]!r}... is longer than this system can open")
+            elif stat.S_ISREG(info.st_mode):
                 found.append((path, child, info))
             elif not stat.S_ISDIR(info.st_mode):
                 contents.omit(path, "is a symbolic link" if stat.S_ISLNK(info.st_mode) else "is not a regular file")
@@ -90,6 +94,16 @@ def _read_folder(root: Path, contents: Contents, *, unpack: bool = False) -> Non
                 _unpack(file, path, contents)
         else:
             contents.add(path, info.st_size, child.read_bytes, bool(info.st_mode & _EXECUTABLE))
+
+
+def _info(path: Path) -> os.stat_result | None:
+    """Return what the system says of a path, None if it is too long for it to say anything."""
+    try:
+        return path.lstat()
+    except OSError as error:
+        if error.errno != errno.ENAMETOOLONG:
+            raise
+        return None
 
 
 def _open_archives(contents: Contents, nesting: int) -> None:

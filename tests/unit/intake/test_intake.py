@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError, UsageError
+from autograder.run.sandbox.cell import copy_submission
 from autograder.submission import intake
 from autograder.submission.intake import (
     SubmittedFile,
@@ -213,6 +214,30 @@ def test_too_many_too_deep_and_too_long_are_refused(tmp_path: Path) -> None:
 def test_folders_nested_without_a_file_are_refused_too(tmp_path: Path) -> None:
     (tmp_path / "bob" / Path(*["d"] * 40)).mkdir(parents=True)
     assert "nested more than 16 deep" in _refused(tmp_path / "bob")[1]
+
+
+def _nest(folder: Path, names: list[str]) -> None:
+    """Make folders in each other, whose path is too long for any call that takes a path."""
+    opened = [os.open(folder, os.O_RDONLY)]
+    for name in names:
+        os.mkdir(name, dir_fd=opened[-1])
+        opened.append(os.open(name, os.O_RDONLY, dir_fd=opened[-1]))
+    for descriptor in opened:
+        os.close(descriptor)
+
+
+@pytest.mark.parametrize("is_copied", [False, True], ids=["as it is", "as root copies it for another user"])
+def test_a_path_that_no_system_opens_is_left_out_and_named(tmp_path: Path, is_copied: bool) -> None:
+    def handed_in(root: Path) -> Path:
+        if is_copied:
+            copy_submission(root, root.parent / f"{root.name} copied")
+        return root.parent / f"{root.name} copied" if is_copied else root
+
+    beside = _write(tmp_path / "bob", TREE)
+    _nest(beside, ["n" * 255] * 15 + ["m" * 255] * 2)
+    assert any(
+        "longer than this system can open" in name for name in read_submission(handed_in(beside), CHAPTER).unused
+    )
 
 
 def test_a_file_that_is_too_large_is_never_read(tmp_path: Path) -> None:
