@@ -8,13 +8,14 @@ from __future__ import annotations
 import shutil
 import tempfile
 import zipfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from autograder.exceptions import UsageError
 from autograder.grade.batch import Entry, submission_in
+from autograder.lms.clones import FOLDER, account_in, assignment_of, beginnings
 from autograder.lms.roster import Roster
 from autograder.lms.submission_names import METADATA, DownloadedItem, read_metadata, read_name, resubmitted
 from autograder.submission.intake.ignored import is_ignored
@@ -69,12 +70,12 @@ def collect(folder: Path, roster: Roster, assignment: str, scratch: Path) -> Col
     In nbgrader's layout, the folder of a student holds one with the name of the assignment. The files of an attempt
     that has several are copied to a folder in `scratch`.
     """
-    items, unmatched = _items(folder, roster)
+    items, unmatched = _items(folder, roster, assignment)
     handed_in: dict[str, list[DownloadedItem]] = {}
     for item in items:
         student = roster.find(item.keys)
         if student is None:
-            unmatched.append((item.path.name, f"no student of {roster.path.name} fits"))
+            unmatched.append((item.path.name, item.doubt or f"no student of {roster.path.name} fits"))
         elif not item.is_submission:
             unmatched.append((item.path.name, "it is no file that was handed in"))
         else:
@@ -91,14 +92,43 @@ def collect(folder: Path, roster: Roster, assignment: str, scratch: Path) -> Col
     )
 
 
-def _items(folder: Path, roster: Roster) -> tuple[list[DownloadedItem], list[tuple[str, str]]]:
+def _items(folder: Path, roster: Roster, assignment: str) -> tuple[list[DownloadedItem], list[tuple[str, str]]]:
     if (folder / METADATA).is_file():
         return read_metadata(folder)
     items = [read_name(child) for child in sorted(folder.iterdir()) if not is_ignored(child.name)]
+    items = _with_accounts(items, folder, roster, assignment)
     # A zip often holds one folder that holds all.
-    if len(items) == 1 and items[0].path.is_dir() and roster.find(items[0].keys) is None:
-        return _items(items[0].path, roster)
+    if len(items) == 1 and items[0].path.is_dir() and not _is_one(items[0], folder, roster):
+        return _items(items[0].path, roster, assignment)
     return items, []
+
+
+def _is_one(item: DownloadedItem, folder: Path, roster: Roster) -> bool:
+    """Return whether the only item of a download is a submission, and not the folder of all."""
+    return bool(item.doubt) or roster.find(item.keys) is not None or folder.resolve().name.endswith(FOLDER)
+
+
+def _with_accounts(items: list[DownloadedItem], folder: Path, roster: Roster, assignment: str) -> list[DownloadedItem]:
+    """Return the items of a folder; those that fit nobody by their whole name are clones, and know their account."""
+    clones = [item for item in items if item.path.is_dir() and roster.find(item.keys) is None]
+    accounts = {value for student in roster.students for kind, value in student.keys if kind == "github"}
+    names = [item.path.name for item in clones]
+    found = assignment_of(names, folder.resolve().name, assignment, accounts)
+    return [_with_account(item, found, accounts) if item in clones else item for item in items]
+
+
+def _with_account(item: DownloadedItem, assignment: str | None, accounts: Set[str]) -> DownloadedItem:
+    name = item.path.name
+    if assignment is not None:
+        return replace(item, keys=(("github", account_in(name, assignment)),))
+    possible = [account for one in beginnings(name) if (account := account_in(name, one)) in accounts]
+    if not possible:
+        return item
+    doubt = (
+        f"unclear: {' or '.join(possible)}, or an account that only ends like this; name the folder of the clones "
+        f"ASSIGNMENT{FOLDER}, as `gh classroom clone` does"
+    )
+    return replace(item, doubt=doubt)
 
 
 def _newest(items: Sequence[DownloadedItem]) -> list[DownloadedItem]:

@@ -2,7 +2,7 @@
 
     Moodle            Jane Doe_1234567_assignsubmission_file_/...     or ..._file_answer.zip, without folders
     Canvas            doejane_LATE_1234567_7654321_answer-1.zip       LATE and -1 (a later attempt) only where it is so
-    GitHub Classroom  02-nodes-jane-doe/                              a clone for each student, named after the account
+    GitHub Classroom  02-nodes-jane-doe/                              a clone for each student, see `clones`
     nbgrader          jane/ASSIGNMENT/                                the folder of a student, with timestamp.txt
     anything else     jane.zip, jane/                                 what the roster calls the student
 
@@ -44,6 +44,7 @@ class DownloadedItem:
     Attributes:
         path: where it lies.
         name: what its student called it; empty if that is the name of the path.
+        doubt: why nobody can say whose it is, if that is so.
         keys: what the download says about its student, for `Roster.find`.
         order: of two items of one student, the one with the larger order is the newer one.
         late: whether the system says that it came late.
@@ -56,6 +57,7 @@ class DownloadedItem:
     late: bool = False
     is_submission: bool = True
     name: str = ""
+    doubt: str = ""
 
     @property
     def own_name(self) -> str:
@@ -73,13 +75,7 @@ def read_name(path: Path) -> DownloadedItem:
         return DownloadedItem(path, (("id", found["id"]),), (late,), late, name=found["file"])
     stem = student_of(path)
     kinds = ("login", "number", "sis id", "email", "identifier", "id", "github", "name")
-    return DownloadedItem(path, tuple((kind, stem) for kind in kinds) + _accounts(stem))
-
-
-def _accounts(name: str) -> IdentityKeys:
-    """Return the accounts that a clone's name may end in: each part after a hyphen, the longest first."""
-    parts = name.split("-")
-    return tuple(("github", "-".join(parts[start:])) for start in range(1, len(parts)))
+    return DownloadedItem(path, tuple((kind, stem) for kind in kinds))
 
 
 def resubmitted(items: Sequence[DownloadedItem]) -> list[DownloadedItem]:

@@ -181,6 +181,62 @@ def test_a_github_classroom_clone_is_assigned_by_the_account_in_its_name(tmp_pat
     assert [name for name, _ in collected.unmatched] == ["02-nodes-eve"]
 
 
+GITHUB = "identifier,github_username,github_id,name\nbob,bob,1,\neve,eve,2,\nzoë,ada-zoe,3,\n"
+
+
+@pytest.mark.parametrize(
+    ("folder", "names", "entries", "strangers"),
+    [
+        pytest.param(
+            "hw-submissions",
+            ["hw-ada-bob"],
+            {},
+            {"hw-ada-bob": "no student of roster.csv fits"},
+            id="the folder says it",
+        ),
+        pytest.param(
+            "clones",
+            ["hw-ada-bob", "hw-eve"],
+            {"eve": "hw-eve"},
+            {"hw-ada-bob": "no student of roster.csv fits"},
+            id="most clones begin so",
+        ),
+        pytest.param(
+            "clones",
+            ["hw-1-bob", "hw-1-eve", "hw-1-ada-zoe", "my-notes"],
+            {"bob": "hw-1-bob", "eve": "hw-1-eve", "zoë": "hw-1-ada-zoe"},
+            {"my-notes": "no student of roster.csv fits"},
+            id="two accounts follow",
+        ),
+        pytest.param(
+            "clones",
+            ["02-nodes-ada-zoe"],
+            {"zoë": "02-nodes-ada-zoe"},
+            {},
+            id="the course's own name of the assignment",
+        ),
+        pytest.param("clones", ["hw-ada-bob"], {}, {"hw-ada-bob": "unclear: bob, or an account"}, id="one clone"),
+        pytest.param(
+            "clones", ["hw-ada-zoe"], {}, {"hw-ada-zoe": "unclear: ada-zoe, or an"}, id="one of several names"
+        ),
+        pytest.param(
+            "clones",
+            ["hw-ada-bob", "hw-ada-zoe"],
+            {},
+            {"hw-ada-bob": "unclear: bob", "hw-ada-zoe": "unclear: ada-zoe"},
+            id="as many fit after either",
+        ),
+    ],
+)
+def test_a_clone_is_nobodys_whose_account_only_ends_like_it(
+    tmp_path: Path, folder: str, names: list[str], entries: dict[str, str], strangers: dict[str, str]
+) -> None:
+    collected, given = found(download(tmp_path / folder, *(f"{name}/ws/src/p/x" for name in names)), GITHUB)
+    assert given == entries
+    assert dict(collected.unmatched).keys() == strangers.keys()
+    assert all(why in dict(collected.unmatched)[name] for name, why in strangers.items())
+
+
 def test_the_layout_of_nbgrader_and_plain_names_are_assigned_to_students(tmp_path: Path) -> None:
     folder = download(tmp_path / "submitted", f"jane/{CHAPTER}/{CHAPTER}.ipynb", "Jo Bloggs.zip")
     _, entries = found(folder, "id,first_name,last_name,email\njane,,,\nJo Bloggs,,,\n")
