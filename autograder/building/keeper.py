@@ -11,8 +11,9 @@ from __future__ import annotations
 import hashlib
 import json
 import sys
+import time
 from collections.abc import Callable, Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import asdict, astuple, replace
 from functools import partial
 from multiprocessing import Pipe
@@ -111,7 +112,7 @@ def key(sources: Mapping[Entry, bytes]) -> str:
 
 def _answer(line: Connection, sources: Mapping[Entry, bytes], tier: Tier) -> None:
     try:
-        entry = Cache.default(CACHE).get(key(sources), partial(_make, sources, tier))
+        entry = Cache.default(CACHE).get(key(sources), partial(_make_once, time.time(), sources, tier))
     except StudentError as error:
         send_message(line, refused(error))
     except GraderError as error:
@@ -119,6 +120,24 @@ def _answer(line: Connection, sources: Mapping[Entry, bytes], tier: Tier) -> Non
     else:
         send_message(line, {})
         send_tree(line, read_tree(entry, INSTALLED))
+
+
+def _make_once(asked: float, sources: Mapping[Entry, bytes], tier: Tier, entry: Path) -> None:
+    """Fill a new entry, unless a limit has ended a build of it since somebody asked, at a time of the system's clock.
+
+    Who brings the same sources meanwhile has waited for that build; to wait for another one would use up their time.
+    """
+    note = entry.parent / f"{key(sources)}.stopped"
+    with suppress(FileNotFoundError):
+        told = json.loads(note.read_text())
+        if told["ended"] >= asked:
+            raise _refusal(told)
+        note.unlink()
+    try:
+        _make(sources, tier, entry)
+    except StoppedBuildError as error:
+        note.write_text(json.dumps({**refused(error), "ended": time.time()}))
+        raise
 
 
 def _make(sources: Mapping[Entry, bytes], tier: Tier, entry: Path) -> None:

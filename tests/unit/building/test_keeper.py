@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
 from multiprocessing import Pipe
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -11,6 +15,7 @@ from autograder.building import keeper
 from autograder.building.colcon import StoppedBuildError
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
+from autograder.run.sandbox import Tier
 
 
 @pytest.mark.parametrize("error", [StudentError, StoppedBuildError])
@@ -23,3 +28,38 @@ def test_a_build_that_a_limit_ended_is_not_tried_again_by_who_asked_for_it(
         with pytest.raises(StudentError, match="It was stopped") as raised:
             keeper.ask(ours, {}, tmp_path / "made")
     assert type(raised.value) is error
+
+
+def test_who_waits_for_a_build_that_a_limit_ends_does_not_wait_for_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Three bring the same sources at once, and a fourth later. To build them takes until all three have asked."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    asked, built = threading.Semaphore(0), list[str]()
+
+    def now() -> float:
+        asked.release()
+        return time.time()
+
+    def build(sources: object, tier: object, entry: Path) -> None:
+        for _ in range(3 if not built else 0):
+            assert asked.acquire(timeout=30)
+        built.append(entry.name)
+        raise StoppedBuildError(Diagnosis(Kind.BUILD_FAILED, "It was stopped."))
+
+    monkeypatch.setattr(keeper, "time", SimpleNamespace(time=now))
+    monkeypatch.setattr(keeper, "_make", build)
+
+    def ask(_: int) -> str:
+        ours, theirs = Pipe()
+        with ours, theirs:
+            keeper._answer(ours, {}, Tier.BUBBLEWRAP)
+            with pytest.raises(StoppedBuildError, match="It was stopped") as raised:
+                raise keeper._refusal(keeper.receive_message(theirs))
+        return str(raised.value)
+
+    with ThreadPoolExecutor(3) as threads:
+        assert len(set(threads.map(ask, range(3)))) == 1
+    assert len(built) == 1
+    ask(4)
+    assert len(built) == 2
