@@ -8,8 +8,10 @@ from autograder.building.keeper import CACHE
 from autograder.grade.answer import MAX_RESULT, MAX_SHOWN
 from autograder.grade.bounded_json import NOTEBOOK_VALUES, RESULT_VALUES, RUN_VALUES
 from autograder.grade.executed_notebook import MAX_BYTES
+from autograder.harness.launch import MAX_STATUS
 from autograder.layout import ROOT
 from autograder.run.fork_server import seccomp
+from autograder.run.lockstep.protocol import MAX_LINE
 from autograder.run.patience import HELD_SECONDS
 from autograder.run.sandbox import limits
 from autograder.run.sandbox.limits import MIB, TreeLimits
@@ -95,6 +97,13 @@ def rows() -> list[tuple[str, str, str, str]]:
         ("kinds of files in it", "files, folders, links inside", "a look at it before it is copied", INSTALLED),
         ("sources of messages that are kept", _tree(limits.SOURCES), "who keeps them", INSTALLED),
         (f"the cache `{CACHE}`", _mib(LIMIT), "its eviction", "test_cache"),
+        (
+            "a message of a program in lockstep",
+            f"{MAX_LINE // 1024} KiB, and one reading more",
+            "the worker",
+            "test_stepper",
+        ),
+        ("what a launch says of its end", f"{MAX_STATUS} bytes", "the worker", "test_launch_status"),
         ("a message of a worker", _mib(limits.MESSAGE), "who started it", WALLS),
         ("files of a result", _tree(limits.RESULT_FILES), "who started the worker", WALLS),
         (

@@ -35,6 +35,7 @@ HOST = Path(__file__).with_name("launch_host.py")
 ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
 _POLL_SECONDS = 0.05  # between two looks at a condition while nothing arrives
 _PROGRAM = re.compile(r"/lib/(?P<package>[^/]+)/(?P<name>[^/]+)$")
+MAX_STATUS = 64  # bytes of a launch's exit status, which its programs can write to as well
 _STATUS = re.compile(rb"-?[0-9]{1,9}\n")
 _NUMBERS = itertools.count()
 
@@ -154,8 +155,8 @@ class LaunchHarness(contextlib.ExitStack):
     def status(self) -> int | None:
         """The exit status of `ros2 launch`, negative for a signal; None while it runs."""
         with contextlib.suppress(BlockingIOError):
-            self._status_text += os.read(self._pipe, 64 - len(self._status_text))
-        if not (self._status_text.endswith(b"\n") or len(self._status_text) == 64):
+            self._status_text += os.read(self._pipe, MAX_STATUS - len(self._status_text))
+        if not (self._status_text.endswith(b"\n") or len(self._status_text) == MAX_STATUS):
             return None
         with reading("The exit status of the launch", advice="Do not write to descriptors that you did not open."):
             if not _STATUS.fullmatch(self._status_text):

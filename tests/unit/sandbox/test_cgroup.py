@@ -83,6 +83,23 @@ def test_a_group_of_version_2_is_one_folder_with_both_bounds(tmp_path: Path, mon
     assert group.ran_out()
 
 
+def test_a_cell_of_version_2_enters_a_group_beside_those_of_its_sandboxes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The kernel lets no group have both processes and groups. This folder has no kernel behind it, only its files."""
+    monkeypatch.setattr(cgroup, "_home", lambda controller: tmp_path)
+    monkeypatch.setattr(cgroup, "_NUMBERS", iter([7]))
+    folder = tmp_path / f"autograder-{cgroup._PROCESS}-7"
+    _hierarchy(folder, "worker")
+    for name in ("pids.max", "memory.max", "cgroup.procs", "cgroup.subtree_control", "worker/cgroup.procs"):
+        (folder / name).touch()
+    group = cgroup.make_nested(Limits(), os.geteuid())
+    assert (folder / "cgroup.subtree_control").read_text() == "+pids +memory"
+    done = subprocess.run(group.enter(["sh", "-c", "echo $$"]), capture_output=True, text=True, check=True)
+    assert (folder / "worker" / "cgroup.procs").read_text() == done.stdout  # one process, which entered and then ran
+    assert (folder / "cgroup.procs").read_text() == ""
+
+
 @pytest.mark.skipif("memory" not in cgroup.bounds(), reason="no control group of memory can be made")
 def test_memory_that_no_process_has_mapped_is_bounded(tmp_path: Path) -> None:
     code = "import os, time; f = os.memfd_create('m'); [os.write(f, bytes(1 << 20)) for _ in range(200)]; print('all')"
