@@ -1,10 +1,14 @@
 # `make` alone lists the targets.
 
+# What is the distribution's own: its name, and the versions of Python that it has wheels for.
+DISTRIBUTION := $(shell sed -n 's/^  "name": "\(.*\)",/\1/p' autograder/ros/distribution.json)
+PYTHONS := $(shell sed -n '/^  "pythons"/{s/.*\[//;s/[]",]//g;p;}' autograder/ros/distribution.json)
+
 # The first interpreter that really runs (pyenv leaves shims that do not), that makes environments (Debian's need not),
-# and that ROS 2 Jazzy has wheels for. The system's own comes early: it is built with optimizations, a sixth faster.
+# and that ROS has wheels for. The system's own comes early: it is built with optimizations, a sixth faster.
 SYSTEM_PYTHON ?= /usr/bin/python3
-PYTHON ?= $(shell for python in python3.12 $(SYSTEM_PYTHON) python3 python3.13 python3.11 python3.10; do \
-	$$python -c 'import ensurepip, sys; sys.exit(not (3, 10) <= sys.version_info[:2] <= (3, 13))' 2>/dev/null \
+PYTHON ?= $(shell for python in $(firstword $(PYTHONS:%=python%)) $(SYSTEM_PYTHON) python3 $(PYTHONS:%=python%); do \
+	$$python -c 'import ensurepip, sys; sys.exit("{}.{}".format(*sys.version_info) not in "$(PYTHONS)".split())' 2>/dev/null \
 	&& echo $$python && exit; done; echo python3)
 BIN := .venv/bin
 BOOTSTRAP = $(PYTHON) -I autograder/bootstrap.py
@@ -134,27 +138,27 @@ real-launch:    ## install the real launch, launch_ros and ros2cli from GitHub (
 		tests/e2e/ros2_records tests/e2e/test_created_packages.py \
 		-m "not nightly" $(PYTEST_ARGS)
 
-PREFIX ?= .build/opt/ros/jazzy
-sourced-layout: ## after real-launch: copy this ROS to PREFIX=, laid out as /opt/ros/jazzy is, for `source setup.bash`
+PREFIX ?= .build/opt/ros/$(DISTRIBUTION)
+sourced-layout: ## after real-launch: copy this ROS to PREFIX=, laid out as in /opt/ros, for `source setup.bash`
 	@$(BIN)/python -m tests.e2e.sourced_prefix $(PREFIX)
 
 EXAMPLES = $(or $(ROS2_EXAMPLES_SOURCE),.build/public/examples)
 DEMOS = $(or $(ROS2_DEMOS_SOURCE),.build/public/demos)
 public-packages: ## build, test and run ROS's own examples and demos (ROS2_EXAMPLES_SOURCE=, ROS2_DEMOS_SOURCE=)
 	@$(BOOTSTRAP) --dev
-	@test -d $(EXAMPLES) || git clone --depth 1 -b jazzy https://github.com/ros2/examples.git $(EXAMPLES)
-	@test -d $(DEMOS) || git clone --depth 1 -b jazzy https://github.com/ros2/demos.git $(DEMOS)
+	@test -d $(EXAMPLES) || git clone --depth 1 -b $(DISTRIBUTION) https://github.com/ros2/examples.git $(EXAMPLES)
+	@test -d $(DEMOS) || git clone --depth 1 -b $(DISTRIBUTION) https://github.com/ros2/demos.git $(DEMOS)
 	ROS2_EXAMPLES_SOURCE=$(EXAMPLES) ROS2_DEMOS_SOURCE=$(DEMOS) $(BIN)/python -m pytest tests/e2e/test_public_packages.py \
 		-m nightly $(PYTEST_ARGS)
 
 DOCUMENTATION = $(or $(ROS2_DOCUMENTATION_SOURCE),.build/public/documentation)
 tutorials:      ## do what the Python tutorials of ROS say, and see what they say one sees (ROS2_DOCUMENTATION_SOURCE=)
 	@$(BOOTSTRAP) --dev
-	@test -d $(DOCUMENTATION) || git clone --depth 1 -b jazzy https://github.com/ros2/ros2_documentation.git $(DOCUMENTATION)
+	@test -d $(DOCUMENTATION) || git clone --depth 1 -b $(DISTRIBUTION) https://github.com/ros2/ros2_documentation.git $(DOCUMENTATION)
 	ROS2_DOCUMENTATION_SOURCE=$(DOCUMENTATION) $(BIN)/python -m pytest tests/e2e/test_tutorials.py -m nightly $(PYTEST_ARGS)
 
-# Universal: one lock serves Python 3.10 to 3.13. --no-emit-index-url keeps this machine's package source out of it.
-COMPILE = .build/lock/bin/uv pip compile --quiet --universal --python-version 3.10 --generate-hashes \
+# Universal: one lock serves all versions of Python. --no-emit-index-url keeps this machine's package source out of it.
+COMPILE = .build/lock/bin/uv pip compile --quiet --universal --python-version $(firstword $(sort $(PYTHONS))) --generate-hashes \
 	--no-emit-index-url --no-annotate --no-header $(LOCK_ARGS)
 lock:           ## pin the dependencies of pyproject.toml again (LOCK_ARGS=--upgrade for newer versions)
 	@$(PYTHON) -m venv .build/lock

@@ -24,6 +24,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 STAMP = "course-set-up.json"
+ROS = json.loads(Path(__file__).with_name("ros").joinpath("distribution.json").read_text(encoding="utf-8"))
 
 # What apt provides, and the commands that show that it, or its like, is there.
 TOOLS = {
@@ -62,10 +63,11 @@ class Interpreter:
 
 def check_machine(version: tuple[int, int], system: str, machine: str) -> None:
     """Refuse, with a `SetUpError`, a Python or a machine that the pinned packages do not support."""
-    if not (3, 10) <= version <= (3, 13):
+    if (python := "{}.{}".format(*version)) not in ROS["pythons"]:
+        title, own, (first, *_, last) = ROS["title"], ROS["pythons"][0], sorted(ROS["pythons"])
         raise SetUpError(
-            f"Python {version[0]}.{version[1]} is not supported: ROS 2 Jazzy's wheels are for Python 3.10 to 3.13. "
-            "Install one of them (3.12 is Jazzy's own) and run `make PYTHON=python3.12`"
+            f"Python {python} is not supported: ROS 2 {title}'s wheels are for Python {first} to {last}. "
+            f"Install one of them ({own} is {title}'s own) and run `make PYTHON=python{own}`"
         )
     if (system, machine) != ("Linux", "x86_64"):
         raise SetUpError(
@@ -75,7 +77,7 @@ def check_machine(version: tuple[int, int], system: str, machine: str) -> None:
 
 
 def sourced_ros(environ: Mapping[str, str], venv: Path, interpreter: Interpreter) -> str | None:
-    """Return the site-packages folder of the ROS 2 Jazzy that is sourced, or None when the wheels are to be used.
+    """Return the site-packages folder of the ROS 2 that is sourced, or None when the wheels are to be used.
 
     What this project's own environment puts into the variables does not count as sourced.
 
@@ -90,18 +92,19 @@ def sourced_ros(environ: Mapping[str, str], venv: Path, interpreter: Interpreter
     distro = environ.get("ROS_DISTRO", "")
     modules = [path for path in outside_venv("PYTHONPATH") if (path / "rclpy").is_dir()]
     other = distro and (outside_venv("AMENT_PREFIX_PATH") or outside_venv("ROS_PACKAGE_PATH"))
-    if (modules or other) and distro != "jazzy":
+    if (modules or other) and distro != ROS["name"]:
         raise SetUpError(
-            f"the ROS that is sourced is {distro or 'of no known distribution'} and the course needs Jazzy: open a "
-            "shell that does not source it (the wheels are then used), or source /opt/ros/jazzy/setup.bash"
+            f"the ROS that is sourced is {distro or 'of no known distribution'} and the course needs {ROS['title']}: "
+            f"open a shell that does not source it (the wheels are then used), or source {ROS['setup']}"
         )
     if not modules:
         return None
     if not (modules[0] / "rclpy" / f"_rclpy_pybind11{interpreter.suffix}").is_file():
-        built = re.search(r"python3\.\d+", str(modules[0]))
+        found = re.search(r"python3\.\d+", str(modules[0]))
+        built = found[0] if found else f"python{ROS['pythons'][0]}"
         raise SetUpError(
-            f"the sourced ROS 2 Jazzy in {modules[0]} is not for Python {'.'.join(map(str, interpreter.version))}: "
-            f"run `make PYTHON={built[0] if built else 'python3.12'}`, or open a shell that does not source it "
+            f"the sourced ROS 2 in {modules[0]} is not for Python {'.'.join(map(str, interpreter.version))}: "
+            f"run `make PYTHON={built}`, or open a shell that does not source it "
             "(the wheels are then used)"
         )
     return str(modules[0])
@@ -155,10 +158,7 @@ class SetUp:
     def expected_stamp(self, *, dev: bool) -> dict[str, str]:
         """Return the stamp of a finished set-up."""
         lock, patches = self.root / "requirements.lock", self.root / "autograder" / "ros" / "patch_wheels.py"
-        project = (
-            self.root / "pyproject.toml",
-            self.root / "autograder" / "building" / "interfaces" / "tutorials.yaml",
-        )
+        project = (self.root / "pyproject.toml", self.root / "autograder/building/interfaces/tutorials.yaml")
         # A virtual environment knows its own path: a moved clone needs a new one.
         about = (str(self.root), self.interpreter.executable, self.interpreter.build, str(self.sourced))
         base = {"base": digest(Path(__file__), lock, patches, *about), "project": digest(*project)}
@@ -184,7 +184,7 @@ class SetUp:
         (self.venv / STAMP).unlink(missing_ok=True)
         if "base" in missing:
             have = {}
-            ros = f"the sourced ROS 2 in {self.sourced}" if self.sourced else "ROS 2 Jazzy from wheels"
+            ros = f"the sourced ROS 2 in {self.sourced}" if self.sourced else f"ROS 2 {ROS['title']} from wheels"
             print_progress(f"making .venv with Python {self.interpreter.build.split()[0]} and {ros}")
             self._new_environment()
         if "base" in missing or "dev" in missing:
@@ -193,12 +193,8 @@ class SetUp:
         self._step("the project could not be installed", self.python, "-m", "pip", "install", "-qq", *project)
         self._step("the ROS wheels could not be patched", self.python, "-m", "autograder.ros.patch_wheels")
         if not self.sourced:  # an installed ROS 2 has them
-            self._step(
-                "the tutorials' interfaces were not built",
-                self.python,
-                "-m",
-                "autograder.building.interfaces.tutorials",
-            )
+            tutorials = "autograder.building.interfaces.tutorials"
+            self._step("the tutorials' interfaces were not built", self.python, "-m", tutorials)
         fresh = self.venv / f"{STAMP}.fresh"
         fresh.write_text(json.dumps({**have, **self.expected_stamp(dev=dev)}, indent=1))
         fresh.replace(self.venv / STAMP)
@@ -225,7 +221,7 @@ class SetUp:
         (chosen := self.venv / name).write_text(without_ros(lock) if self.sourced else lock)
         print_progress(f"installing the pinned packages of {name}, a minute or two")
         failed = f"pip could not install {name}: its lines above say why; pip.conf is where proxies and mirrors are set"
-        # The lock is whole and holds for 3.10 to 3.13, whatever a package claims (rtamt: to end at 3.12).
+        # The lock is whole and holds for each supported Python, whatever a package claims (rtamt: to end at 3.12).
         pinned = ("--no-deps", "--ignore-requires-python", "--no-compile", "--require-hashes", "-r", str(chosen))
         self._step(failed, self.python, "-m", "pip", "install", "-qq", *pinned)
         print_progress("compiling them")

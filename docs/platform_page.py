@@ -1,4 +1,4 @@
-"""Writes platform.md: the versions of Ubuntu 24.04, and where others are installed: `python docs/platform_page.py`."""
+"""Writes platform.md, the versions of ROS's platform and what is installed here: `python docs/platform_page.py`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from packaging.requirements import Requirement
 
 from autograder.author.course.markdown_table import table
 from autograder.layout import ROOT
-from autograder.ros.platform_versions import PACKAGES, PlatformPackage
+from autograder.ros.distribution import DISTRIBUTION as ROS
+from autograder.ros.distribution import PlatformPackage
 from autograder.ros.ros2.exceptions import NotCoveredError
 from autograder.ros.ros2.main import COMMANDS
 
@@ -21,20 +22,19 @@ LOCK = ROOT / "requirements.lock"
 DIFFERENCES = ROOT / "tests" / "e2e" / "launch_standin" / "differences.yaml"
 SUBMODULES = ROOT / "autograder" / "ros" / "standins" / "standin_submodules.py"
 TUTORIALS = ROOT / "tests" / "e2e" / "tutorials" / "pages.yaml"
-PYTHONS = ("3.10", "3.11", "3.12", "3.13")
+PYTHONS = sorted(ROS.pythons)
 REQUIREMENT = re.compile(r"^([^\s#-][^\\\n]*)", re.MULTILINE)
 
-HEAD = """# The platform, and what is installed here
+HEAD = f"""# The platform, and what is installed here
 
-ROS 2 Jazzy belongs to Ubuntu 24.04 with Python 3.12. What students' programs, builds and tests meet has the versions of
-that platform, so that what a student learns here holds there. `make setup` installs them from `requirements.lock`.
-`autograder doctor` says where a machine has others. The versions of Ubuntu are those of
-https://packages.ubuntu.com/noble; that of catkin_pkg is the one in ROS's own package repository.
+ROS 2 {ROS.title} belongs to {ROS.platform} with Python {ROS.pythons[0]}. What students' programs, builds and tests meet
+has the versions of that platform, so that what a student learns here holds there. `make setup` installs them from
+`requirements.lock`. `autograder doctor` says where a machine has others. The versions of Ubuntu are those of
+{ROS.platform_page}; that of catkin_pkg is the one in ROS's own package repository.
 
 `python docs/platform_page.py` writes this page from the lock. A test fails if the page is out of date.
 """
-JAZZY = "https://docs.ros.org/en/jazzy"
-COLUMNS = ("package", "apt's name", "Ubuntu 24.04", "here", "where a student meets it", "why another version")
+COLUMNS = ("package", "apt's name", ROS.platform, "here", "where a student meets it", "why another version")
 TAIL = """## Interface packages without wheels
 
 The tutorials of ROS use `example_interfaces`, `action_tutorials_interfaces` and `tf2_msgs`. Set-up builds them for
@@ -51,12 +51,12 @@ one in its place. The package is built, and has no linters.
 ros2/demos, as they are. It runs their tests by `colcon test`, and lets their servers and clients, publishers and
 subscribers meet.
 """
-TUTORIAL_HEAD = """## The tutorials of ROS
+TUTORIAL_HEAD = f"""## The tutorials of ROS
 
-`make tutorials` does what the Python tutorials of Jazzy's documentation say, in "Beginner: Client libraries" and
-"Intermediate: Launch". It takes commands, code and changes of files from the pages, and expects to see what they say
-one sees. `make tutorials PYTEST_ARGS="-k NAME"` does one of them. turtlesim and `demo_nodes_cpp` are written in C++ and
-have no wheels. The tests use packages in Python that have the same names, topics, services and parameters.
+`make tutorials` does what the Python tutorials of {ROS.title}'s documentation say, in "Beginner: Client libraries"
+and "Intermediate: Launch". It takes commands, code and changes of files from the pages, and expects to see what they
+say one sees. `make tutorials PYTEST_ARGS="-k NAME"` does one of them. turtlesim and `demo_nodes_cpp` are written in C++
+and have no wheels. The tests use packages in Python that have the same names, topics, services and parameters.
 """
 TUTORIAL_COLUMNS = ("tutorial", "runs as printed", "NAME of its test", "what is left out, or why it does not run")
 STAND_INS = """## What the stand-ins do not cover
@@ -65,7 +65,7 @@ STAND_INS = """## What the stand-ins do not cover
 Tests hold them to records of the real packages: launch files in Python, XML and YAML, launch tests, and the commands of
 `ros2`. Where a stand-in does something else, `tests/e2e/launch_cases/differences.yaml` and
 `tests/e2e/ros2_records/differences.yaml` have it, each with its reason. What is not covered raises an error that says
-so. All of it works after `make real-launch`, or with a sourced Jazzy.
+so. All of it works after `make real-launch`, or with a sourced ROS 2.
 """
 OTHERWISE = """
 `tests/e2e/launch_standin` tests the stand-ins more closely. With the real packages installed, it tests those. They do
@@ -138,7 +138,7 @@ def platform_page(lock: str, tutorials: str) -> str:
         tutorials: the text of `pages.yaml`, from which the tutorials are tested.
     """
     by_python = {python: locked(lock, python) for python in PYTHONS}
-    versions = table(COLUMNS, (_row(package, by_python) for package in PACKAGES))
+    versions = table(COLUMNS, (_row(package, by_python) for package in ROS.packages))
     pages = table(TUTORIAL_COLUMNS, map(_tutorial, yaml.safe_load(tutorials)))
     stand_ins = [STAND_INS, *table(UNCOVERED, _uncovered()), OTHERWISE, *table(OTHERWISE_COLUMNS, _otherwise())]
     return "\n".join([HEAD, *versions, TAIL, TUTORIAL_HEAD, *pages, *stand_ins])
@@ -168,7 +168,7 @@ def _requirements(lock: str, python: str) -> Iterator[Requirement]:
 
 
 def _tutorial(page: dict[str, Any]) -> tuple[str, str, str, str]:
-    link = f"[{page['title']}]({JAZZY}/Tutorials/{page['page']}.html)"
+    link = f"[{page['title']}]({ROS.docs}/Tutorials/{page['page']}.html)"
     if "missing" in page:
         return link, "no", "", page["missing"]
     return link, "yes", f"`{page['name']}`", page.get("but", "")

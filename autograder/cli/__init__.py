@@ -70,7 +70,7 @@ def _choose(context: click.Context, option: click.Parameter, course: Path | None
     help="Work on the course in this folder, which holds a course.yaml. AUTOGRADER_COURSE names one for all commands.",
 )
 def group() -> None:
-    """Checks and grades packages for ROS 2 Jazzy that students write in Python."""
+    """Checks and grades packages for ROS 2 that students write in Python."""
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -9,7 +9,7 @@ from autograder import layout
 from autograder.author.bundle import MANIFEST
 from autograder.doctor.finding import Finding, Status
 from autograder.doctor.system import System
-from autograder.ros import platform_versions
+from autograder.ros.distribution import DISTRIBUTION
 
 ROOMY_BYTES = 2 * 1024**3
 
@@ -43,15 +43,15 @@ _CONTAINER_OPTIONS = (
 
 
 def python(system: System) -> Finding:
-    """Look at the interpreter and the platform: ROS 2 Jazzy's wheels support only some."""
+    """Look at the interpreter and the platform: ROS's wheels support only some."""
     version = ".".join(map(str, system.python))
     name, machine = system.platform
     if system.platform != ("Linux", "x86_64"):
         found = f"{name} {machine}: the course runs on Linux x86-64; use a container or a JupyterHub"
         return Finding("Python", Status.MISSING, found, "devcontainer up --workspace-folder .")
-    if not (3, 10) <= system.python[:2] <= (3, 13):
-        found = f"Python {version}: ROS 2 Jazzy supports Python 3.10 to 3.13"
-        return Finding("Python", Status.MISSING, found, "make setup PYTHON=python3.12")
+    if "{}.{}".format(*system.python) not in DISTRIBUTION.pythons:
+        found = f"Python {version}: ROS 2 {DISTRIBUTION.title} supports Python {DISTRIBUTION.supported}"
+        return Finding("Python", Status.MISSING, found, f"make setup PYTHON=python{DISTRIBUTION.pythons[0]}")
     return Finding("Python", Status.OK, f"Python {version} on {name} {machine}")
 
 
@@ -85,15 +85,18 @@ def build_tools(system: System) -> Finding:
 
 
 def versions(system: System) -> Finding:
-    """Look at whether what students' programs, builds and tests meet has the versions of Jazzy's platform."""
-    others = platform_versions.differences({p.name: system.package(p.name) for p in platform_versions.PACKAGES})
+    """Look at whether what students' programs, builds and tests meet has the versions of ROS's platform."""
+    platform, packages = DISTRIBUTION.platform, DISTRIBUTION.packages
+    others = DISTRIBUTION.differences({p.name: system.package(p.name) for p in packages})
     if not others:
-        all_of_them = ", ".join(f"{p.name} {p.version}" for p in platform_versions.PACKAGES)
-        return Finding("versions", Status.OK, f"those of Ubuntu 24.04: {all_of_them}")
+        all_of_them = ", ".join(f"{p.name} {p.version}" for p in packages)
+        return Finding("versions", Status.OK, f"those of {platform}: {all_of_them}")
     found = "; ".join(f"{p.name} {version or 'is not found'} for {p.version}" for p, version in others.items())
     if all(package.differs and version for package, version in others.items()):
-        return Finding("versions", Status.OK, f"those of Ubuntu 24.04, but {found}: the nearest for this Python")
-    return Finding("versions", Status.WEAK, f"Ubuntu 24.04, the platform of Jazzy, has others: {found}", "make setup")
+        return Finding("versions", Status.OK, f"those of {platform}, but {found}: the nearest for this Python")
+    return Finding(
+        "versions", Status.WEAK, f"{platform}, the platform of {DISTRIBUTION.title}, has others: {found}", "make setup"
+    )
 
 
 def notebooks(system: System) -> Finding:

@@ -9,8 +9,8 @@ from pathlib import Path
 from autograder.doctor.finding import Finding, Status
 from autograder.doctor.system import System
 from autograder.ros import RosEnvironment, RosNotFoundError, WrongDistroError
+from autograder.ros.distribution import DISTRIBUTION
 
-JAZZY_RCLPY = "7.1"
 CLEAN_SHELL = 'env -i HOME="$HOME" PATH="$PATH" TERM="$TERM" bash --norc'
 
 _PROBE = """
@@ -53,14 +53,14 @@ def examine(system: System) -> list[Finding]:
 
 
 def installation(system: System, ros: RosEnvironment) -> Finding:
-    """Look at which ROS 2 this is: Jazzy, and only one of wheels and sourced."""
+    """Look at which ROS 2 this is: the course's, and only one of wheels and sourced."""
     manifests = [system.read(_manifest(prefix)) for prefix in ros.prefixes]
     version = re.search(r"<version>\s*([^<\s]+)", next((text for text in manifests if text), ""))
     if version is None:
         return Finding("ROS 2", Status.MISSING, f"{ros.describe()}, but its rclpy has no package.xml", "make setup")
     version_text = f"{ros.describe()}, rclpy {version[1]}"
-    if not version[1].startswith(f"{JAZZY_RCLPY}."):
-        other = f"rclpy {version[1]} in {ros.prefixes[0]} is not Jazzy's, which is {JAZZY_RCLPY}"
+    if not version[1].startswith(f"{DISTRIBUTION.rclpy}."):
+        other = f"rclpy {version[1]} in {ros.prefixes[0]} is not {DISTRIBUTION.title}'s, which is {DISTRIBUTION.rclpy}"
         return Finding("ROS 2", Status.MISSING, other, "make setup")
     if ros.kind == "sourced" and system.read(_manifest(system.prefix)) is not None:
         both = f"{version_text}; the wheels are installed as well, and the two mix their libraries"
@@ -101,7 +101,7 @@ def start(system: System, ros: RosEnvironment) -> Finding:
     result = system.run([sys.executable, "-c", _PROBE], environment)
     if result.status == 0:
         return Finding("rclpy", Status.OK, "a node starts, publishes and stops")
-    fix = "make setup" if ros.kind == "wheels" else "source /opt/ros/jazzy/setup.bash"
+    fix = "make setup" if ros.kind == "wheels" else f"source {DISTRIBUTION.setup}"
     return Finding("rclpy", Status.MISSING, f"a node does not start: {result.last_line}", fix)
 
 

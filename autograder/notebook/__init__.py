@@ -50,7 +50,7 @@ def ros() -> None:
     network, do not hear each other.
 
     Raises:
-        RosError: there is no ROS 2 Jazzy; the message says how to fix it.
+        RosError: there is no usable ROS 2; the message says how to fix it.
     """
     if not grading():
         writefile.register(get_ipython())

@@ -11,12 +11,12 @@ from pathlib import Path
 from catkin_pkg.package import InvalidPackage, parse_package_string  # type: ignore[import-untyped]
 
 from autograder.probes.files import read_plain
+from autograder.ros.distribution import DISTRIBUTION
 from autograder.submission.exercise_stubs import STILL_TO_BE_WRITTEN
 from autograder.submission.packages import MANIFEST, MAX_MANIFEST
 from autograder.suite import CheckFailed
 
 PLACEHOLDER = "TODO"
-JAZZY = {"ROS_VERSION": "2", "ROS_DISTRO": "jazzy", "ROS_PYTHON_VERSION": "3"}  # what a condition may ask
 
 # The kinds of dependency. A <depend> is a build, a build_export and an exec dependency.
 KINDS = ("build", "build_export", "buildtool", "exec", "test", "doc")
@@ -33,7 +33,7 @@ class Manifest:
     licences: tuple[str, ...]  # each <license>, as written
     maintainers: tuple[tuple[str, str], ...]  # each (name, e-mail)
     build_type: str  # what <export> says; empty if it says nothing, and then ROS takes the package for an old CMake one
-    depends: Mapping[str, frozenset[str]]  # the names by kind, one of `KINDS`; those whose condition holds in Jazzy
+    depends: Mapping[str, frozenset[str]]  # the names by kind, one of `KINDS`; those whose condition holds in this ROS
     groups: frozenset[str]  # of which dependency groups it is a member
 
     def needs(self, *kinds: str) -> frozenset[str]:
@@ -92,7 +92,7 @@ def parse(text: str, where: str = MANIFEST) -> Manifest:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DeprecationWarning)  # of pyparsing, in catkin_pkg
-            found.evaluate_conditions(JAZZY)
+            found.evaluate_conditions(DISTRIBUTION.variables)
     except (ValueError, RecursionError) as error:
         raise CheckFailed(f"A condition in {where} cannot be read: {error}") from None
     exports = [each for each in found.exports if each.evaluated_condition]

@@ -1,6 +1,6 @@
 """The one place that knows how ROS 2 is found, switched on and described.
 
-`find()` says which ROS 2 Jazzy this interpreter can use: a sourced installation wins, then the wheels of this
+`find()` says which ROS 2 this interpreter can use: a sourced installation wins, then the wheels of this
 virtual environment. `activate()` switches it on for this process; `RosEnvironment.variables()` are the
 environment variables that a child process needs.
 """

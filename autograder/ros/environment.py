@@ -1,4 +1,4 @@
-"""Finding ROS 2 Jazzy and switching it on, for this process and for its children."""
+"""Finding ROS 2 and switching it on, for this process and for its children."""
 
 from __future__ import annotations
 
@@ -11,10 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from autograder.ros.distribution import DISTRIBUTION
 from autograder.ros.exceptions import RosNotFoundError, WrongDistroError
 from autograder.ros.log_folder import log_folder
-
-DISTRO = "jazzy"
 
 # The wheels' start-up hook sets these two for one Python prefix; they must not leak into another one.
 WHEEL_BOOTSTRAP_VARIABLES = ("_ROS_WHEELS_BOOTSTRAP_COMPLETE", "LD_LIBRARY_PATH")
@@ -56,7 +55,7 @@ class RosEnvironment:
     def describe(self) -> str:
         """Say in one line which ROS 2 this is and where it lives."""
         where = "wheels in" if self.kind == "wheels" else "sourced from"
-        return f"ROS 2 {DISTRO.capitalize()}, {where} {self.prefixes[0]}"
+        return f"ROS 2 {DISTRIBUTION.title}, {where} {self.prefixes[0]}"
 
     def variables(
         self,
@@ -81,9 +80,7 @@ class RosEnvironment:
         variables = {
             "AMENT_PREFIX_PATH": path,
             "CMAKE_PREFIX_PATH": path,
-            "ROS_DISTRO": DISTRO,
-            "ROS_VERSION": "2",
-            "ROS_PYTHON_VERSION": "3",
+            **DISTRIBUTION.variables,
             # Shared memory between two /dev/shm discovers peers and then silently delivers nothing.
             "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
             "RCUTILS_LOGGING_BUFFERED_STREAM": "0",
@@ -95,34 +92,36 @@ class RosEnvironment:
 
 
 def find(environ: Mapping[str, str] | None = None) -> RosEnvironment:
-    """Find the ROS 2 Jazzy that this interpreter would import.
+    """Find the ROS 2 that this interpreter would import.
 
     Args:
         environ: environment variables to look in, `os.environ` by default.
 
     Raises:
         RosNotFoundError: `rclpy` cannot be imported.
-        WrongDistroError: a ROS 2 other than Jazzy is sourced.
+        WrongDistroError: a ROS 2 of another distribution is sourced.
     """
     environ = os.environ if environ is None else environ
     spec = importlib.util.find_spec("rclpy")
     if spec is None or spec.origin is None:
-        raise RosNotFoundError("rclpy cannot be imported: run `make setup`, or source a ROS 2 Jazzy installation")
+        raise RosNotFoundError(
+            f"rclpy cannot be imported: run `make setup`, or source a ROS 2 {DISTRIBUTION.title} installation"
+        )
     rclpy = Path(spec.origin).parent
     venv = Path(sys.prefix)
     if rclpy.is_relative_to(venv):
         return RosEnvironment("wheels", (venv,), rclpy)
     distro = environ.get("ROS_DISTRO", "")
-    if distro != DISTRO:
+    if distro != DISTRIBUTION.name:
         raise WrongDistroError(
-            f"the sourced ROS 2 is {distro or 'of no known distribution'}, the course needs Jazzy: "
-            "open a shell without it, or source /opt/ros/jazzy/setup.bash"
+            f"the sourced ROS 2 is {distro or 'of no known distribution'}, the course needs {DISTRIBUTION.title}: "
+            f"open a shell without it, or source {DISTRIBUTION.setup}"
         )
     prefixes = tuple(Path(part) for part in environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part)
     # What is in front of the installation are workspaces: sourced by the user, or built and loaded by this process.
     installed = [index for index, prefix in enumerate(prefixes) if rclpy.is_relative_to(prefix)]
     if not installed:
-        raise RosNotFoundError(f"rclpy is at {rclpy}, but not in AMENT_PREFIX_PATH: source /opt/ros/jazzy/setup.bash")
+        raise RosNotFoundError(f"rclpy is at {rclpy}, but not in AMENT_PREFIX_PATH: source {DISTRIBUTION.setup}")
     return RosEnvironment("sourced", prefixes[installed[0] :], rclpy)
 
 
@@ -133,7 +132,7 @@ def activate(*, overlays: tuple[Path, ...] = (), domain: int | None = None) -> R
     found by their names, also where this Python's environment was not activated, as in a notebook's kernel.
 
     Raises:
-        RosError: there is no usable ROS 2 Jazzy.
+        RosError: there is no usable ROS 2 of the course's distribution.
     """
     environment = find()
     sourced = [Path(part) for part in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part]

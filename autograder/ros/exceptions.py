@@ -2,7 +2,7 @@
 
 RosError
 ├── RosNotFoundError   neither a sourced ROS 2 nor the wheels are there
-└── WrongDistroError   a ROS 2 is sourced, but it is not Jazzy
+└── WrongDistroError   a ROS 2 is sourced, but it is of another distribution
 """
 
 
@@ -11,8 +11,8 @@ class RosError(Exception):
 
 
 class RosNotFoundError(RosError):
-    """Neither a sourced ROS 2 Jazzy nor its wheels can be imported."""
+    """Neither a sourced ROS 2 nor its wheels can be imported."""
 
 
 class WrongDistroError(RosError):
-    """The sourced ROS 2 is another distribution than Jazzy."""
+    """The sourced ROS 2 is of another distribution than the course's."""

@@ -1,7 +1,7 @@
 """Installing the real `launch`, `launch_ros` and `ros2cli` on top of the ROS 2 wheels (`make real-launch`).
 
 These, and `ament_copyright`, have no wheels, but are pure Python: pip builds them from the source repositories, at the
-tags of one Jazzy release. Each source is an environment variable, so that a local clone serves where GitHub cannot be
+tags of one release. Each source is an environment variable, so that a local clone serves where GitHub cannot be
 reached:
 
     ROS2_LAUNCH_SOURCE=/clones/launch python -m autograder.ros.real_launch
@@ -24,6 +24,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
+from autograder.ros.distribution import DISTRIBUTION
 from autograder.ros.environment import RosEnvironment, find
 from autograder.ros.exceptions import RosError
 
@@ -42,7 +43,7 @@ class Source:
     Attributes:
         variable: the environment variable that names another place to clone from.
         url: where to clone from by default.
-        tag: the tag of the Jazzy release that was chosen.
+        tag: the tag of the release that was chosen.
         packages: folders in the repository, in the order of their installation.
         built: the folders hold interfaces, for colcon; otherwise Python, for pip.
     """
@@ -63,33 +64,34 @@ class Source:
         return (head, tag) if sign and not {"/", ":"} & set(tag) else (chosen, "")
 
 
+_TAGS = DISTRIBUTION.tags
 SOURCES = (
     Source(
         "ROS2_INTERFACES_SOURCE",
         "https://github.com/ros2/rcl_interfaces.git",
-        "2.0.2",
+        _TAGS["rcl_interfaces"],
         ("composition_interfaces",),
         built=True,
     ),
-    Source("ROS2_RUNTIME_SOURCE", "https://github.com/ros2/rosidl_runtime_py.git", "0.13.1", (".",)),
+    Source("ROS2_RUNTIME_SOURCE", "https://github.com/ros2/rosidl_runtime_py.git", _TAGS["rosidl_runtime_py"], (".",)),
     Source(
         "ROS2_LAUNCH_SOURCE",
         "https://github.com/ros2/launch.git",
-        "3.4.3",
+        _TAGS["launch"],
         ("launch", "launch_xml", "launch_yaml", "launch_testing", "launch_pytest"),
     ),
     Source(
         "ROS2_LAUNCH_ROS_SOURCE",
         "https://github.com/ros2/launch_ros.git",
-        "0.26.6",
+        _TAGS["launch_ros"],
         ("launch_ros", "ros2launch", "launch_testing_ros"),
     ),
     # `ros2 pkg create` asks it for the texts of licences.
-    Source("ROS2_LINT_SOURCE", "https://github.com/ament/ament_lint.git", "0.17.1", ("ament_copyright",)),
+    Source("ROS2_LINT_SOURCE", "https://github.com/ament/ament_lint.git", _TAGS["ament_lint"], ("ament_copyright",)),
     Source(
         "ROS2_CLI_SOURCE",
         "https://github.com/ros2/ros2cli.git",
-        "0.32.2",
+        _TAGS["ros2cli"],
         (
             "ros2cli",
             "ros2action",

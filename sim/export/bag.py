@@ -32,7 +32,7 @@ def write_bag(recording: Recording, path: Path) -> Path:
     folder = path.with_suffix("") if path.suffix == ".mcap" else path
     if folder.exists():
         raise ExportError(f"{folder}: there is something already: remove it, or give another name")
-    store = get_typestore(Stores.ROS2_JAZZY)
+    store = get_typestore(Stores.LATEST)  # what a bag holds is the same in each distribution since ROS 2 Foxy
     forever = QosTime(2147483647, 4294967295)
 
     def qos(reliability: Any, depth: int) -> Any:

@@ -45,7 +45,7 @@ def build(package: str, files: Mapping[str, str], *, cache: Cache | None = None)
     Raises:
         DefinitionError: a definition is wrong; names file and line.
         GenerationError: the generators or the compiler failed.
-        RosError: there is no ROS 2 Jazzy.
+        RosError: there is no usable ROS 2.
     """
     ros = activate()
     definitions = read(package, files)

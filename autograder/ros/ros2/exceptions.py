@@ -6,7 +6,9 @@ Ros2Error
 
 from __future__ import annotations
 
-HOW_TO_GET_THE_REAL_ONE = "install it with `make real-launch`, or source a ROS 2 Jazzy installation"
+from autograder.ros.distribution import DISTRIBUTION
+
+HOW_TO_GET_THE_REAL_ONE = f"install it with `make real-launch`, or source a ROS 2 {DISTRIBUTION.title} installation"
 
 
 class Ros2Error(Exception):

@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from typing import NoReturn
 
 HOW_TO_GET_THE_REAL_ONE = (
-    "run `make real-launch` (needs GitHub), or use a shell in which an installation of ROS 2 Jazzy is sourced"
+    "run `make real-launch` (needs GitHub), or use a shell in which an installation of ROS 2 is sourced"
 )
 
 

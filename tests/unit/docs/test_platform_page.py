@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from autograder.layout import ROOT
-from autograder.ros.platform_versions import PACKAGES
+from autograder.ros.distribution import DISTRIBUTION
 from autograder.ros.ros2.main import STAND_INS
 
 MADE = runpy.run_path(str(ROOT / "docs" / "platform_page.py"))
@@ -37,7 +37,7 @@ def test_the_lock_installs_the_platforms_versions_or_the_page_gives_the_reason(p
     versions = locked(LOCK.read_text(encoding="utf-8"), python)
     unexplained = {
         package.name: versions[package.name]
-        for package in PACKAGES
+        for package in DISTRIBUTION.packages
         if versions[package.name] != package.version and not (package.differs and python == "3.13")
     }
     assert unexplained == {}

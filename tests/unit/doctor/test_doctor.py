@@ -16,7 +16,7 @@ import pytest
 from autograder.doctor import CommandResult, Finding, Status, System, examine, healthy, render
 from autograder.layout import ROOT
 from autograder.ros import RosEnvironment, RosNotFoundError, WrongDistroError
-from autograder.ros.platform_versions import PACKAGES
+from autograder.ros.distribution import DISTRIBUTION
 from autograder.run.sandbox.tiers import namespaces_failure
 
 VENV = Path("/course/.venv")
@@ -27,7 +27,7 @@ FILES = {
     Path("/opt/ros/jazzy/share/rclpy/package.xml"): "<package><version>7.1.4</version></package>",
     Path("/usr/include/python3.12/Python.h"): "",
 }
-VERSIONS: dict[str, str] = {package.name: package.version for package in PACKAGES}
+VERSIONS: dict[str, str] = {package.name: package.version for package in DISTRIBUTION.packages}
 DENIED = "bwrap: setting up uid map: Permission denied"
 
 

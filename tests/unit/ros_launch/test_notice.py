@@ -10,7 +10,7 @@ from standin_notice import NotInStandInError, not_covered
 from standin_submodules import NOT_COVERED
 
 PACKAGES = ("launch", "launch_ros", "launch_testing", "launch_pytest")
-ADVICE = "run `make real-launch` (needs GitHub), or use a shell in which an installation of ROS 2 Jazzy is sourced"
+ADVICE = "run `make real-launch` (needs GitHub), or use a shell in which an installation of ROS 2 is sourced"
 
 
 @pytest.mark.parametrize("name", PACKAGES)

@@ -93,7 +93,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="ament_copyright",
         description="Check code files for copyright and license information. "
-        "(A stand-in for the real ament_copyright; to have that one, source a ROS 2 Jazzy installation.)",
+        "(A stand-in for the real ament_copyright; to have that one, source an installation of ROS 2.)",
     )
     parser.add_argument("paths", nargs="*", default=["."], help="files or folders to check (default: .)")
     parser.add_argument("--exclude", metavar="filename", nargs="*", default=[], help="file names to leave out")

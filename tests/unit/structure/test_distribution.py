@@ -1,0 +1,94 @@
+"""The facts of the ROS distribution are in one file; all else reads them there, or agrees with it."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+
+from autograder.ros.distribution import DISTRIBUTION, PlatformPackage
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+ROOT = Path(__file__).parents[3]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+# Chapters and their checks are texts for students, which a course for another distribution rewrites.
+CODE = [path for folder in ("autograder", "sim", "docs", "assets") for path in sorted((ROOT / folder).rglob("*.py"))]
+CODE = [path for path in CODE if ROOT / "autograder" / "checks" not in path.parents]
+RECIPES = [ROOT / "Makefile", ROOT / "assets" / "students" / "Makefile", ROOT / ".ci" / "run"]
+IMAGES = [".binder/Dockerfile", "docs/cluster/Dockerfile"]
+IMAGES += [str(path.relative_to(ROOT)) for path in sorted((ROOT / ".github").rglob("*.yml"))]
+CODENAME = DISTRIBUTION.platform_page.rpartition("/")[2]
+SAID = re.compile(rf"{DISTRIBUTION.name}|{re.escape(DISTRIBUTION.platform)}|\b{CODENAME}\b|python3\.\d", re.IGNORECASE)
+VERSIONS = {
+    DISTRIBUTION.rclpy,
+    *DISTRIBUTION.pythons,
+    *DISTRIBUTION.tags.values(),
+    *(each.version for each in DISTRIBUTION.packages),
+}
+
+
+def words(code: str) -> Iterator[str]:
+    """Yield the names and the texts of a module. Its docstrings and comments are for people."""
+    tree = ast.parse(code)
+    documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    docstrings = {
+        id(node.body[0].value)
+        for node in ast.walk(tree)
+        if isinstance(node, documented) and node.body and isinstance(node.body[0], ast.Expr)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docstrings:
+            yield node.value
+        for field in ("id", "attr", "name", "arg", "module"):
+            if isinstance(name := getattr(node, field, None), str):
+                yield name
+
+
+def test_no_code_holds_a_fact_of_the_distribution() -> None:
+    assert len(CODE) > 300
+    found = {
+        str(path.relative_to(ROOT)): said
+        for path in CODE
+        if (said := [word for word in words(path.read_text()) if SAID.search(word) or word in VERSIONS])
+    }
+    assert found == {}, "read it from autograder.ros.distribution"
+
+
+def test_no_recipe_holds_a_fact_of_the_distribution() -> None:
+    for path in RECIPES:
+        lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+        assert [line for line in lines if SAID.search(line)] == [], path
+
+
+def test_the_project_asks_for_the_wheels_and_the_pythons_of_the_distribution() -> None:
+    names = [Requirement(line).name for line in PROJECT["dependencies"]]
+    assert {name[: len("ros-") + len(DISTRIBUTION.name)] for name in names if name.startswith("ros-")} == {
+        f"ros-{DISTRIBUTION.name}"
+    }
+    minors = sorted(int(python.partition(".")[2]) for python in DISTRIBUTION.pythons)
+    assert PROJECT["requires-python"] == f">=3.{minors[0]},<3.{minors[-1] + 1}"
+
+
+@pytest.mark.parametrize("package", DISTRIBUTION.packages, ids=lambda package: package.name)
+def test_the_project_asks_for_the_version_of_the_platform(package: PlatformPackage) -> None:
+    asked = [Requirement(line) for line in PROJECT["dependencies"]]
+    pinned = [str(each.specifier) for each in asked if each.name == package.name]
+    assert not pinned or f"=={package.version}" in pinned  # some come with another package, and the lock pins them
+
+
+@pytest.mark.parametrize(
+    "path", [".binder/Dockerfile", "docs/cluster/Dockerfile", *map(str, (ROOT / ".github").rglob("*.yml"))]
+)
+def test_images_and_workflows_are_those_of_the_platform(path: str) -> None:
+    text = (ROOT / path).read_text()
+    assert set(re.findall(r"(?:python: ?\"?|python-version: ?\"|python)(3\.\d+)", text)) <= {*DISTRIBUTION.pythons}
+    assert {f"Ubuntu {found}" for found in re.findall(r"ubuntu[:-](\d+\.\d+)", text)} <= {DISTRIBUTION.platform}
