@@ -27,7 +27,8 @@ PYTEST_ARGS ?=
 LAB_ARGS ?=
 VERIFY_ARGS ?=
 
-PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-reorder
+# A worker that crashes ends the tests: xdist hands its tests on in a way that can wait forever.
+PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-reorder --max-worker-restart 0
 LINTERS := lint-types lint-standins lint-style lint-imports
 SIDE_BY_SIDE = $(MAKE) --no-print-directory -j $(words $(LINTERS)) --output-sync
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import sys
 from pathlib import Path
@@ -69,11 +70,18 @@ def test_an_installed_interface_package_is_not_built_again(prefix: Path) -> None
     assert tutorials.install(prefix) == []
 
 
-def test_a_missing_package_is_built(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_package_is_built_and_a_loaded_library_is_never_written_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     one = {"action_tutorials_interfaces": tutorials.packages()["action_tutorials_interfaces"]}
     monkeypatch.setattr(tutorials, "packages", lambda: one)
     assert tutorials.install(tmp_path) == ["action_tutorials_interfaces"]
     assert tutorials.install(tmp_path) == []
+    loaded = next((tmp_path / "lib").glob("*.so"))
+    (tmp_path / "share/action_tutorials_interfaces/action/Fibonacci.action").write_text("another definition\n")
+    with loaded.open("rb") as library:
+        assert tutorials.install(tmp_path) == ["action_tutorials_interfaces"]
+        assert os.fstat(library.fileno()).st_nlink == 0  # the installed library is a new file
     python = "python{}.{}".format(*sys.version_info)
     assert (tmp_path / "lib" / python / "site-packages/action_tutorials_interfaces/action/__init__.py").is_file()
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import yaml
 
 from autograder.building.interfaces.cache import Cache
-from autograder.building.interfaces.definitions import InterfaceError
+from autograder.building.interfaces.definitions import InterfaceError, read
 from autograder.building.interfaces.prefix import build
 from autograder.ros import RosError, find
 
@@ -40,15 +40,20 @@ def install(prefix: Path) -> list[str]:
         for name, files in lacking.items():
             built = build(name, files, cache=Cache(Path(scratch)))
             for folder in INSTALLED:
-                shutil.copytree(built / folder, prefix / folder, dirs_exist_ok=True)
+                shutil.copytree(built / folder, prefix / folder, dirs_exist_ok=True, copy_function=_replace)
     return list(lacking)
 
 
 def _installed(prefix: Path, package: str, files: dict[str, str]) -> bool:
-    share = prefix / "share" / package
-    return all(
-        (share / path).is_file() and (share / path).read_text().split() == text.split() for path, text in files.items()
-    )
+    texts = {prefix / "share" / package / each.path: each.text for each in read(package, files)}
+    return all(path.is_file() and path.read_text(encoding="utf-8") == text for path, text in texts.items())
+
+
+def _replace(source: str, target: str) -> None:
+    """Copy a file to a new one in the target's place: a library that a process has loaded must not change."""
+    new = Path(f"{target}.new")
+    shutil.copy2(source, new)
+    new.replace(target)
 
 
 def main() -> int:
