@@ -17,7 +17,7 @@ from autograder.exceptions import UsageError
 from autograder.grade.batch import Entry, submission_in
 from autograder.lms.clones import FOLDER, account_in, assignment_of, beginnings
 from autograder.lms.roster import Roster
-from autograder.lms.submission_names import METADATA, DownloadedItem, read_metadata, read_name, resubmitted
+from autograder.lms.submission_names import METADATA, DownloadedItem, read_metadata, read_names, resubmitted
 from autograder.submission.intake.ignored import is_ignored
 from autograder.submission.intake.names import is_archive, is_notebook
 
@@ -72,21 +72,26 @@ def collect(folder: Path, roster: Roster, assignment: str, scratch: Path) -> Col
     """
     items, unmatched = _items(folder, roster, assignment)
     handed_in: dict[str, list[DownloadedItem]] = {}
+    texts: list[tuple[str, DownloadedItem]] = []
     for item in items:
         student = roster.find(item.keys)
         if student is None:
-            unmatched.append((item.path.name, item.doubt or f"no student of {roster.path.name} fits"))
+            unmatched.append((item.listed_name, item.doubt or f"no student of {roster.path.name} fits"))
         elif not item.is_submission:
-            unmatched.append((item.path.name, "it is no file that was handed in"))
+            texts.append((student.id, item))
         else:
             handed_in.setdefault(student.id, []).append(item)
+    for name, text in texts:
+        orders = {item.order for item in handed_in.get(name, ())}
+        if not (text.is_receipt and text.order in orders):
+            unmatched.append((text.listed_name, "it is no file that was handed in"))
     newest = {name: _newest(attempts) for name, attempts in handed_in.items()}
     students = [student.id for student in roster.students]
     late = {student.id for student in roster.students if student.late}
     return CollectedSubmissions(
         tuple(Entry(name, _together(newest[name], assignment, scratch)) for name in students if name in newest),
         tuple(name for name in students if name in newest and (name in late or any(i.late for i in newest[name]))),
-        tuple(item.path.name for name, there in handed_in.items() for item in there if item not in newest[name]),
+        tuple(item.listed_name for name, there in handed_in.items() for item in there if item not in newest[name]),
         tuple(unmatched),
         tuple(name for name in students if name not in newest),
     )
@@ -95,8 +100,7 @@ def collect(folder: Path, roster: Roster, assignment: str, scratch: Path) -> Col
 def _items(folder: Path, roster: Roster, assignment: str) -> tuple[list[DownloadedItem], list[tuple[str, str]]]:
     if (folder / METADATA).is_file():
         return read_metadata(folder)
-    items = [read_name(child) for child in sorted(folder.iterdir()) if not is_ignored(child.name)]
-    items = _with_accounts(items, folder, roster, assignment)
+    items = _with_accounts(read_names(folder), folder, roster, assignment)
     # A zip often holds one folder that holds all.
     if len(items) == 1 and items[0].path.is_dir() and not _is_one(items[0], folder, roster):
         return _items(items[0].path, roster, assignment)

@@ -1,7 +1,8 @@
 """The table of students, as a system exports it: Moodle's grading worksheet, Canvas's gradebook, rosters in CSV.
 
 The columns are those of Moodle's assign module (offline grading worksheet), Canvas's gradebook export, GitHub
-Classroom's `classroom_roster.csv`, Gradescope's roster and nbgrader's `db student import`.
+Classroom's `classroom_roster.csv`, Gradescope's roster and nbgrader's `db student import`; those of Blackboard's grade
+centre, Brightspace's grades (numbers and logins begin with `#`) and Sakai's `grades.csv` (its headings come third).
 """
 
 from __future__ import annotations
@@ -25,16 +26,22 @@ COLUMNS = {
     "id number": "number",
     "student id": "number",
     "sid": "number",
+    "orgdefinedid": "number",
+    "org defined id": "number",
+    "display id": "number",
     "email address": "email",
     "email": "email",
     "full name": "name",
     "student": "name",
     "name": "name",
+    "first name": "first",
+    "last name": "last",
     "status": "status",
 }
 # The first of these that a student has names the folder of the result.
 NAMES_A_STUDENT = ("login", "number", "email", "identifier", "id", "name")
 LATE = re.compile(r"\d \w+ late\b")  # in Moodle's status: "Submitted for grading - 1 day 2 hours late"
+TITLES = 3  # lines in which the headings may stand; the first ones may be a title
 PARTICIPANT = "participant "  # what Moodle writes before the number that it also puts into file names
 NOT_STUDENTS = ("points possible", "student, test")  # rows of Canvas
 
@@ -83,12 +90,14 @@ def read_roster(path: Path) -> Roster:
     """
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
-            headings, *rows = [tuple(row) for row in csv.reader(file) if any(cell.strip() for cell in row)]
+            lines = [tuple(row) for row in csv.reader(file) if any(cell.strip() for cell in row)]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise UsageError(f"{path}: cannot be read as CSV in UTF-8: {error}") from None
-    except ValueError:
-        raise UsageError(f"{path}: the table is empty") from None
-    kinds = [COLUMNS.get(normalized(heading), "") for heading in headings]
+    if not lines:
+        raise UsageError(f"{path}: the table is empty")
+    first = next((place for place, line in enumerate(lines[:TITLES]) if set(_kinds(line)) & set(NAMES_A_STUDENT)), 0)
+    headings, *rows = lines[first:]
+    kinds = _kinds(headings)
     if not set(kinds) & set(NAMES_A_STUDENT):
         known = ", ".join(sorted(COLUMNS))
         raise UsageError(f"{path}: no column names the students; the headings that are known are {known}")
@@ -100,8 +109,16 @@ def read_roster(path: Path) -> Roster:
     return Roster(path, tuple(students), headings, tuple(rows))
 
 
+def _kinds(headings: tuple[str, ...]) -> list[str]:
+    return [COLUMNS.get(normalized(heading), "") for heading in headings]
+
+
 def _student(kinds: list[str], row: tuple[str, ...], place: int) -> Student | None:
     cells = {kind: cell.strip() for kind, cell in zip(kinds, row, strict=False) if kind and cell.strip()}
+    for kind in cells.keys() & {"number", "login"}:
+        cells[kind] = cells[kind].removeprefix("#")
+    if "name" not in cells and {"first", "last"} <= cells.keys():
+        cells["name"] = f"{cells['first']} {cells['last']}"
     if not cells or normalized(row[0]) in NOT_STUDENTS:
         return None
     keys = {(kind, normalized(value)) for kind, value in cells.items()}

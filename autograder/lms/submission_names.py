@@ -2,12 +2,17 @@
 
     Moodle            Jane Doe_1234567_assignsubmission_file_/...     or ..._file_answer.zip, without folders
     Canvas            doejane_LATE_1234567_7654321_answer-1.zip       LATE and -1 (a later attempt) only where it is so
+    Blackboard        02 Nodes_jdoe3_attempt_2026-04-30-21-02-38_answer.zip        and a receipt that ends in 38.txt
+    Brightspace       397063-2557369 - Jane Doe - Sep 24, 2026 926 PM/             or ... 926 PM - answer.zip
+    Sakai             Doe, Jane(jdoe3)/Submission attachment(s)/answer.zip         or, without folders, _ for each /
     GitHub Classroom  02-nodes-jane-doe/                              a clone for each student, see `clones`
     nbgrader          jane/ASSIGNMENT/                                the folder of a student, with timestamp.txt
     anything else     jane.zip, jane/                                 what the roster calls the student
 
 The sources: Moodle, mod/assign/locallib.php (`download_submissions`); Canvas, "How do I download all student
-submissions"; GitHub Classroom, `gh classroom clone student-repos`; nbgrader, the folder "submitted". In a download of
+submissions"; Sakai, AssignmentServiceImpl.java (`zipSubmissions`); GitHub Classroom, `gh classroom clone
+student-repos`; nbgrader, the folder "submitted". Names of Blackboard and Brightspace come from programs that read them:
+bb-file-cleanup, BBGradebookOrganiser and gradex-cli; kodiak, GradeFast and a `rename_and_move.sh`. In a download of
 Gradescope, `submission_metadata.yml` names the students of each folder, and the time of submission. Ruby writes it: its
 keys are symbols, such as `:submitters:`, which YAML reads as text with a colon.
 """
@@ -16,7 +21,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +33,26 @@ from autograder.submission.intake.ignored import is_ignored
 
 METADATA = "submission_metadata.yml"  # of Gradescope
 
+# Files that a system adds to a download, for the instructor.
+ADDED = {
+    "brightspace": frozenset(("index.html",)),
+    "sakai": frozenset(("grades.csv", "grades.xls", "grades.xlsx")),
+}
+
 MOODLE = re.compile(r"(?P<name>.+?)_(?P<id>\d+)_assignsubmission_(?P<kind>[a-z]+)(?:_(?P<file>.*))?", re.DOTALL)
 CANVAS = re.compile(r"(?P<name>[^_/]+)(?P<late>_LATE)?_(?P<id>\d+)_(?P<file_id>\d+)_(?P<file>.+)", re.DOTALL)
+BLACKBOARD = re.compile(
+    r"(?P<head>.+?)_attempt_(?P<time>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)", re.DOTALL
+)  # a receipt has no file
+BRIGHTSPACE = re.compile(
+    r"\d+-\d+ - (?P<who>.+?) - (?P<month>[A-Z][a-z]{2}) (?P<day>\d\d?), (?P<year>\d{4}) "
+    r"(?P<hour>\d\d?)(?P<minute>\d\d)(?: (?P<half>[AP]M))?(?: - (?P<file>.+))?",
+    re.DOTALL,
+)
+MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
+ATTACHMENTS, FEEDBACK = "Submission attachment(s)", "Feedback Attachment(s)"  # of Sakai
+LINE = 1000  # characters of a line that is read
+TIME, TEXT = "timestamp.txt", "_submissionText.html"
 
 # What Canvas makes of the name of a file that was handed in once more.
 VERSION = re.compile(r"(?P<stem>.+)-(?P<version>\d{1,3})(?P<ending>(?:\.[^.]+)?)", re.DOTALL)
@@ -49,33 +72,126 @@ class DownloadedItem:
         order: of two items of one student, the one with the larger order is the newer one.
         late: whether the system says that it came late.
         is_submission: whether it is a submitted file; a text that was typed into Moodle is not.
+        is_receipt: whether the system writes one for each attempt; where a file came with it, it says nothing.
+        system: the system, if the name says it.
     """
 
     path: Path
     keys: IdentityKeys
-    order: tuple[str | int, ...] = ()
+    order: tuple[str, ...] = ()
     late: bool = False
     is_submission: bool = True
     name: str = ""
     doubt: str = ""
+    is_receipt: bool = False
+    system: str = ""
 
     @property
     def own_name(self) -> str:
         """What its student called it."""
         return self.name or self.path.name
 
+    @property
+    def listed_name(self) -> str:
+        """What the system called it."""
+        return (self.name if self.system == "sakai" and self.path.is_dir() else "") or self.path.name
 
-def read_name(path: Path) -> DownloadedItem:
-    """Return what the name of a file or folder says."""
+
+def read_names(folder: Path) -> list[DownloadedItem]:
+    """Return what the names in a folder say: an item for each member of a group, and none for what the system added."""
+    children = [child for child in sorted(folder.iterdir()) if not is_ignored(child.name)]
+    items = [item for child in children for item in _read_name(child)]
+    added = frozenset[str]().union(*(ADDED.get(item.system, ()) for item in items))
+    return [item for item in items if item.path.name not in added]
+
+
+def _read_name(path: Path) -> list[DownloadedItem]:
+    """Return what the name of a file or folder says; nothing if it is a student's folder without a submission."""
     if found := MOODLE.fullmatch(path.name):
         keys: IdentityKeys = (("identifier", found["id"]), ("name", found["name"]))
-        return DownloadedItem(path, keys, is_submission=found["kind"] == "file", name=found["file"] or "")
+        return [DownloadedItem(path, keys, is_submission=found["kind"] == "file", name=found["file"] or "")]
+    if found := BLACKBOARD.fullmatch(path.name):
+        return [_read_blackboard(path, found)]
+    if (found := BRIGHTSPACE.fullmatch(path.name)) and found["month"] in MONTHS:
+        return [
+            DownloadedItem(path, _people(found["who"]), (_time(found),), name=found["file"] or "", system="brightspace")
+        ]
     if found := CANVAS.fullmatch(path.name):
         late = bool(found["late"])
-        return DownloadedItem(path, (("id", found["id"]),), (late,), late, name=found["file"])
+        order = ("late",) if late else ("",)
+        return [DownloadedItem(path, (("id", found["id"]),), order, late, name=found["file"], system="canvas")]
+    if members := _members(path):
+        return [replace(item, keys=keys) for item in _read_sakai(path) for keys in members]
     stem = student_of(path)
     kinds = ("login", "number", "sis id", "email", "identifier", "id", "github", "name")
-    return DownloadedItem(path, tuple((kind, stem) for kind in kinds))
+    return [DownloadedItem(path, tuple((kind, stem) for kind in kinds))]
+
+
+def _read_blackboard(path: Path, found: re.Match[str]) -> DownloadedItem:
+    """Return what a name of Blackboard says, and whose it is by the receipt: names of courses and students hold `_`."""
+    login, file = _login(path.with_name(f"{found['head']}_attempt_{found['time']}.txt")), found["file"] or ""
+    known = bool(login) and found["head"].endswith(f"_{login}")
+    return DownloadedItem(
+        path,
+        tuple((kind, login) for kind in ("login", "number", "email", "id")) if known else (),
+        (found["time"],),
+        is_submission=bool(file),
+        name=file,
+        doubt="" if known else "unclear: Blackboard's receipt beside it is missing, or names somebody else",
+        is_receipt=not file,
+        system="blackboard",
+    )
+
+
+def _login(receipt: Path) -> str:
+    """Return whom the first line of a receipt of Blackboard names, `Name: Jane Doe (jdoe3)`; empty if nobody."""
+    try:
+        with receipt.open(encoding="utf-8", errors="replace") as file:
+            name, _, login = file.readline(LINE).strip().rpartition("(")
+    except OSError:
+        return ""
+    return login.removesuffix(")") if name.startswith("Name:") else ""
+
+
+def _time(found: re.Match[str]) -> str:
+    """Return the time in a name of Brightspace, in a form whose order is that of time."""
+    hour, month = int(found["hour"]), MONTHS.index(found["month"]) + 1
+    if found["half"]:
+        hour = hour % 12 + 12 * (found["half"] == "PM")
+    return f"{found['year']}-{month:02}-{int(found['day']):02} {hour:02}:{found['minute']}"
+
+
+def _people(who: str) -> IdentityKeys:
+    """Return the keys in a name of Brightspace: a student's name, behind that of a group if there is one."""
+    return ("name", who), ("number", who), ("login", who), ("name", who.rpartition(" - ")[2])
+
+
+def _members(path: Path) -> list[IdentityKeys]:
+    """Return the keys of each member whom a name of Sakai holds: `Doe, Jane(jdoe3); Roe, Bob(broe)`."""
+    whole = path.name if path.is_dir() else path.name.partition(f"_{ATTACHMENTS}_")[0].removesuffix(f"_{TEXT}")
+    found: list[IdentityKeys] = []
+    for member in whole.split("; "):
+        name, bracket, account = member.rpartition("(")
+        if not (bracket and account.endswith(")") and "," in name):
+            return []
+        kinds = ("id", "login", "number", "email")
+        found.append((*((kind, account[:-1]) for kind in kinds), ("name", name)))
+    return found if whole != path.name or path.is_dir() else []
+
+
+def _read_sakai(path: Path) -> list[DownloadedItem]:
+    """Return the submission in a student's folder, or what a file without folders is; the keys are not yet there."""
+    if not path.is_dir():
+        file = path.name.partition(f"_{ATTACHMENTS}_")[2]
+        return [DownloadedItem(path, (), is_submission=bool(file), name=file, is_receipt=not file, system="sakai")]
+    # The folder has another name where Sakai speaks another language.
+    folders = [child for child in sorted(path.iterdir()) if child.is_dir() and child.name != FEEDBACK]
+    filled = [child for child in folders if any(child.iterdir())]
+    if len(filled) == 1:
+        return [DownloadedItem(filled[0], (), name=path.name, system="sakai")]
+    if not filled and not (path / TIME).is_file():
+        return []
+    return [DownloadedItem(path, (), is_submission=False, system="sakai")]
 
 
 def resubmitted(items: Sequence[DownloadedItem]) -> list[DownloadedItem]:
@@ -85,7 +201,7 @@ def resubmitted(items: Sequence[DownloadedItem]) -> list[DownloadedItem]:
     """
     versions: dict[str, dict[int, DownloadedItem]] = {}
     for item in items:
-        if not CANVAS.fullmatch(item.path.name):
+        if item.system != "canvas":
             continue
         found = VERSION.fullmatch(item.own_name)
         if found is None:

@@ -1,8 +1,9 @@
 """One right answer, handed in in every way that tools, systems and people wrap it: what is graded is the same.
 
 The names come from what users of other tools reported: otter-grader and abc-classroom (renamed notebooks), jupytext
-(minor versions with ids), nbgrader ("WMS q3.ipynb"), submit50 (environments), canvas-unzipper (downloads of Canvas)
-and BBGradebookOrganiser (7z, RAR, __MACOSX, node_modules).
+(minor versions with ids), nbgrader ("WMS q3.ipynb"), submit50 (environments), canvas-unzipper (downloads of Canvas),
+BBGradebookOrganiser (7z, RAR, __MACOSX, node_modules), bb-file-cleanup (downloads of Blackboard), kodiak and GradeFast
+(of Brightspace), and Sakai's own source and programs that read its folders.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ import pytest
 
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
+from autograder.lms.collect import collect
+from autograder.lms.roster import read_roster
 from autograder.submission.intake import Submission, read_submission
 from tests.answers import BOOK, CHAPTER, TARGET, Answer, Files, filled, make_answer, tarred, write, zipped
 
@@ -224,6 +227,45 @@ ARCHIVES: dict[str, Callable[[Answer], bytes]] = {
     "renamed.zip": lambda a: zipped({"02_nodes-1.ipynb": a.files[BOOK]}),
 }
 
+ROSTER = """Username,Student ID,Last Name,First Name,ID
+jdoe3,101,Doe,Jane,jdoe3
+broe,102,Roe,Bob,broe
+"""
+BLACKBOARD = "Chapter 13 Problems_jdoe3_attempt_2014-04-30-21-02-38"
+LATER = "Chapter 13 Problems_jdoe3_attempt_2014-05-01-00-00-00"
+RECEIPT = b"Name: Jane Doe (jdoe3)\nAssignment: Chapter 13 Problems\n"
+BRIGHTSPACE = "397063-2557369 - Jane Doe - Sep 24, 2024"
+SAKAI = "Lab 00/Doe, Jane(jdoe3)"
+
+# The download of a class, with the submission of the student jdoe3 in it, and perhaps an older one.
+DOWNLOADS: dict[str, Callable[[Answer], Files]] = {
+    "Blackboard, a zip": lambda a: {f"{BLACKBOARD}.txt": RECEIPT, f"{BLACKBOARD}_a (1).zip": zipped(a.files)},
+    "Blackboard, the newer of two attempts": lambda a: {
+        f"{BLACKBOARD}.txt": RECEIPT,
+        f"{BLACKBOARD}_02_nodes.ipynb": filled(a.released[BOOK], "old = True\n"),
+        f"{LATER}.txt": RECEIPT,
+        f"{LATER}_02_nodes.ipynb": a.files[BOOK],
+        f"{LATER}_notes.pdf": b"%PDF",
+    },
+    "Brightspace, a folder": lambda a: {"index.html": b"", f"{BRIGHTSPACE} 926 PM/02_nodes.ipynb": a.files[BOOK]},
+    "Brightspace, the newer of two folders": lambda a: {
+        f"{BRIGHTSPACE} 926 PM/X.ZIP": zipped(a.files),
+        f"{BRIGHTSPACE} 1126 AM/X.ZIP": zipped({**a.files, TARGET: b"old = True\n"}),
+    },
+    "Brightspace, files": lambda a: {f"{BRIGHTSPACE} 1205 PM - EGillotti - Homework 6.zip": zipped(a.files)},
+    "Sakai, folders": lambda a: {
+        "Lab 00/grades.csv": b"",
+        f"{SAKAI}/timestamp.txt": b"201701271144002",
+        f"{SAKAI}/Submission attachment(s)/02_nodes.zip": zipped(a.files),
+        f"{SAKAI}/Feedback Attachment(s)/02_nodes.zip": zipped({**a.files, TARGET: b"# 3 of 5\n"}),
+        **below("Lab 00/Roe, Bob(broe)/Submission attachment(s)", a.files),
+    },
+    "Sakai, no folders": lambda a: {
+        "Doe, Jane(jdoe3)_Submission attachment(s)_02_nodes.ipynb": a.files[BOOK],
+        "Doe, Jane(jdoe3)__submissionText.html": b"",
+    },
+}
+
 
 def stub_file(released: bytes) -> bytes:
     """Return the file that the untouched cell writes."""
@@ -233,7 +275,7 @@ def stub_file(released: bytes) -> bytes:
 
 
 def test_there_are_sixty_envelopes_and_more() -> None:
-    assert len(FOLDERS) + len(NOTEBOOKS) + len(ARCHIVES) >= 60
+    assert len(FOLDERS) + len(NOTEBOOKS) + len(ARCHIVES) + len(DOWNLOADS) >= 60
 
 
 @pytest.mark.parametrize("envelope", FOLDERS)
@@ -257,6 +299,20 @@ def test_a_notebook_is_graded_as_the_plain_answer(
 def test_a_file_is_graded_as_the_plain_answer(name: str, answer: Answer, plain: Submission, tmp_path: Path) -> None:
     (tmp_path / name).write_bytes(ARCHIVES[name](answer))
     _is_same(read_submission(tmp_path / name, CHAPTER), plain)
+
+
+@pytest.mark.parametrize("name", DOWNLOADS)
+def test_a_download_holds_the_plain_answer_of_its_student(
+    name: str, answer: Answer, plain: Submission, tmp_path: Path
+) -> None:
+    (tmp_path / "roster.csv").write_text(ROSTER)
+    (tmp_path / "scratch").mkdir()
+    folder = write(tmp_path / "download", DOWNLOADS[name](answer))
+    found = collect(folder, read_roster(tmp_path / "roster.csv"), CHAPTER, tmp_path / "scratch")
+    assert found.unmatched == ()
+    assert found.entries[0].student == "jdoe3"
+    for entry in found.entries:
+        _is_same(read_submission(entry.path, CHAPTER), plain)
 
 
 def _package(submission: Submission) -> dict[str, bytes]:

@@ -135,6 +135,143 @@ def test_the_files_of_a_late_canvas_attempt_replace_those_of_one_in_time(tmp_pat
     assert collected.older == ("doejane_7001_9001_draft.zip", "doejane_7001_9002_notes.pdf")
 
 
+BLACKBOARD = """Last Name,First Name,Username,Student ID,Availability
+Doe,Jane,jdoe3,101,Yes
+Roe,Bob,b_roe,102,Yes
+Poe,Zoë,zpoe,103,Yes
+"""
+
+
+def receipts(folder: Path, **logins: str) -> None:
+    """Write the first lines of Blackboard's receipts, by the beginning of their names."""
+    for path in folder.glob("*_attempt_????-??-??-??-??-??.txt"):
+        login = logins.get(path.name[0], "")
+        path.write_text(f"Name: Some Body ({login})\nAssignment: Lab\nComments:\nName: Jane Doe (jdoe3)\n")
+
+
+def test_a_blackboard_download_holds_attempts_and_a_receipt_for_each(tmp_path: Path) -> None:
+    folder = download(
+        tmp_path / "gradebook",
+        "Chapter 13 Problems_jdoe3_attempt_2014-04-30-21-02-38.txt",
+        "Chapter 13 Problems_jdoe3_attempt_2014-04-30-21-02-38_chapter (13).zip",
+        "Chapter 13 Problems_jdoe3_attempt_2014-05-01-08-00-00.txt",
+        "Chapter 13 Problems_jdoe3_attempt_2014-05-01-08-00-00_answer_2.zip",
+        "Chapter 13 Problems_jdoe3_attempt_2014-05-01-08-00-00_notes.pdf",
+        "Bb_nodes_b_roe_attempt_2014-04-30-21-02-38_x_jdoe3_attempt_2015-01-01-00-00-00_a.zip",
+        "Bb_nodes_b_roe_attempt_2014-04-30-21-02-38.txt",
+        "Z_nodes_zpoe_attempt_2014-04-30-21-02-38.txt",
+        "E_nodes_eve_zpoe_attempt_2014-04-30-21-02-38_a.zip",
+        "E_nodes_eve_zpoe_attempt_2014-04-30-21-02-38.txt",
+        "No_zpoe_attempt_2014-04-30-21-02-38_a.zip",
+    )
+    receipts(folder, C="jdoe3", B="b_roe", Z="zpoe", E="eve_zpoe")
+    collected, entries = found(folder, BLACKBOARD)
+    assert entries == {
+        "jdoe3": "answer_2.zip + notes.pdf",
+        "b_roe": "Bb_nodes_b_roe_attempt_2014-04-30-21-02-38_x_jdoe3_attempt_2015-01-01-00-00-00_a.zip",
+    }
+    assert collected.older == ("Chapter 13 Problems_jdoe3_attempt_2014-04-30-21-02-38_chapter (13).zip",)
+    assert collected.missing == ("zpoe",)
+    assert dict(collected.unmatched) == {
+        "E_nodes_eve_zpoe_attempt_2014-04-30-21-02-38.txt": "no student of roster.csv fits",
+        "E_nodes_eve_zpoe_attempt_2014-04-30-21-02-38_a.zip": "no student of roster.csv fits",
+        "No_zpoe_attempt_2014-04-30-21-02-38_a.zip": "unclear: Blackboard's receipt beside it is missing, or names "
+        "somebody else",
+        "Z_nodes_zpoe_attempt_2014-04-30-21-02-38.txt": "it is no file that was handed in",
+    }
+
+
+BRIGHTSPACE = """OrgDefinedId,Username,Last Name,First Name,Email,End-of-Line Indicator
+#1001,#msmith,Smith,Mary-Ann,m@example.edu,#
+#1002,#jdoe,Doe,John,j@example.edu,#
+#1003,#egil,Gillotti,Eric,e@example.edu,#
+#1004,#zoe,Poe,Zoë,z@example.edu,#
+"""
+
+
+def test_a_brightspace_download_names_the_student_and_the_time_in_folders_or_files(tmp_path: Path) -> None:
+    folder = download(
+        tmp_path / "Lab 1 Download",
+        "index.html",
+        "397063-2557369 - Mary-Ann Smith - Sep 24, 2024 1126 AM/answer.zip",
+        "397063-2557369 - Mary-Ann Smith - Sep 24, 2024 926 PM/answer.zip",
+        "397063-2557369 - Group 1 - John Doe - Sep 24, 2024 926 PM/02_nodes.ipynb",
+        "13394-80551 - Eric Gillotti - Mar 29, 2018 1205 PM - E - John Doe - Mar 30, 2018 100 PM - 6.zip",
+        "13394-80551 - Eric Gillotti - Mar 29, 2018 1205 PM - notes.pdf",
+        "13394-80551 - Eric Gillotti - Mar 29, 2018 1155 AM - draft.zip",
+        "13394-80552 - 1004 - Mar 29, 2018 1155 - a.zip",
+        "13394-80553 - Eve Stranger - 29 März 2018 - a.zip",
+        "13394-80554 - Zoë Poe - Eve Stranger - Mar 29, 2018 1155 PM - a.zip",
+    )
+    collected, entries = found(folder, BRIGHTSPACE)
+    assert entries == {
+        "msmith": "397063-2557369 - Mary-Ann Smith - Sep 24, 2024 926 PM/answer.zip",
+        "jdoe": "397063-2557369 - Group 1 - John Doe - Sep 24, 2024 926 PM/02_nodes.ipynb",
+        "egil": "E - John Doe - Mar 30, 2018 100 PM - 6.zip + notes.pdf",
+        "zoe": "13394-80552 - 1004 - Mar 29, 2018 1155 - a.zip",
+    }
+    assert collected.older == (
+        "13394-80551 - Eric Gillotti - Mar 29, 2018 1155 AM - draft.zip",
+        "397063-2557369 - Mary-Ann Smith - Sep 24, 2024 1126 AM",
+    )
+    assert [name for name, _ in collected.unmatched] == [
+        "13394-80553 - Eve Stranger - 29 März 2018 - a.zip",
+        "13394-80554 - Zoë Poe - Eve Stranger - Mar 29, 2018 1155 PM - a.zip",  # a group may call itself anything
+    ]
+
+
+SAKAI = """Lab 00,Points,,,
+,,,,
+Display ID,ID,Last Name,First Name,grade
+llate2,llate2,Late,Laura,0.0
+sspeedy2,sspeedy2,Speedy,Sam,0.0
+nobody,nobody,Nix,Nora,0.0
+typist,typist,Text,Tom,0.0
+"""
+
+
+def test_a_sakai_download_has_a_folder_for_each_student_or_group(tmp_path: Path) -> None:
+    folder = download(
+        tmp_path / "bulk_download",
+        "Lab 00/grades.csv",
+        "Lab 00/Late, Laura(llate2); Speedy, Sam (Sammy)(sspeedy2)/Submission attachment(s)/answer.zip",
+        "Lab 00/Late, Laura(llate2); Speedy, Sam (Sammy)(sspeedy2)/Feedback Attachment(s)/marked.zip",
+        "Lab 00/Late, Laura(llate2); Speedy, Sam (Sammy)(sspeedy2)/timestamp.txt",
+        "Lab 00/Late, Laura(llate2); Speedy, Sam (Sammy)(sspeedy2)/comments.txt",
+        "Lab 00/Nix, Nora(nobody)/Submission attachment(s)/",
+        "Lab 00/Nix, Nora(nobody)/comments.txt",
+        "Lab 00/Text, Tom(typist)/timestamp.txt",
+        "Lab 00/Text, Tom(typist)/Text, Tom(typist)_submissionText.html",
+        "Lab 00/Stranger, Eve(eve)/Submission attachment(s)/a.zip",
+    )
+    collected, entries = found(folder, SAKAI)
+    answer = "Lab 00/Late, Laura(llate2); Speedy, Sam (Sammy)(sspeedy2)/Submission attachment(s)/answer.zip"
+    assert entries == {"llate2": answer, "sspeedy2": answer}
+    assert collected.missing == ("nobody", "typist")
+    assert collected.unmatched == (
+        ("Stranger, Eve(eve)", "no student of roster.csv fits"),
+        ("Text, Tom(typist)", "it is no file that was handed in"),
+    )
+
+
+def test_a_sakai_download_without_folders_has_the_names_of_folders_in_those_of_files(tmp_path: Path) -> None:
+    folder = download(
+        tmp_path / "bulk_download",
+        "grades.csv",
+        "Late, Laura(llate2)_Submission attachment(s)_work.zip",
+        "Late, Laura(llate2)_Submission attachment(s)_report.pdf",
+        "Late, Laura(llate2)__submissionText.html",
+        "Speedy, Sam(sspeedy2)_Submission attachment(s)_x(nobody)_Submission attachment(s)_a.zip",
+        "Text, Tom(typist)__submissionText.html",
+    )
+    collected, entries = found(folder, SAKAI)
+    assert entries == {
+        "llate2": "report.pdf + work.zip",
+        "sspeedy2": "Speedy, Sam(sspeedy2)_Submission attachment(s)_x(nobody)_Submission attachment(s)_a.zip",
+    }
+    assert collected.unmatched == (("Text, Tom(typist)__submissionText.html", "it is no file that was handed in"),)
+
+
 def test_each_member_of_a_gradescope_group_has_the_submission(tmp_path: Path) -> None:
     folder = download(tmp_path / "export", "submission_1/ws/src/p/package.xml", "submission_2/x", "notes.pdf")
     (folder / "submission_metadata.yml").write_text(
