@@ -11,7 +11,7 @@ from pathlib import Path
 from autograder import layout
 from autograder.building.keeper import attend
 from autograder.grade.job import Job
-from autograder.run.sandbox.cell import CellReport, ended, in_cell
+from autograder.run.sandbox.cell import CellReport, ended, in_cell, place_of
 from autograder.run.sandbox.limits import GRADING_CELL
 from autograder.run.sandbox.parcel import ParcelError
 from autograder.run.sandbox.spec import View
@@ -25,7 +25,8 @@ def in_own_cell(job: Job, seconds: float) -> CellReport:
     ours, theirs = Pipe()
 
     def command(scratch: Path) -> list[str]:
-        return _worker(replace(job, scratch=scratch, out=scratch / "out", seconds=seconds), theirs.fileno())
+        path = place_of(job.path, job.tier, scratch)
+        return _worker(replace(job, path=path, scratch=scratch, out=scratch / "out", seconds=seconds), theirs.fileno())
 
     limits = replace(GRADING_CELL, wall_seconds=seconds + GRACE)
     with ours, ExitStack() as stack:

@@ -12,7 +12,7 @@ from typing import Any
 
 from autograder.exceptions import GraderError, UsageError
 from autograder.run.sandbox import best_tier
-from autograder.run.sandbox.cell import run_in_cell
+from autograder.run.sandbox.cell import place_of, run_in_cell
 from autograder.run.sandbox.limits import NOTEBOOK_CELL
 from autograder.run.sandbox.spec import View
 from autograder.suite.fingerprint import places
@@ -34,7 +34,8 @@ def run_in_worker(verb: str, workspace: Path, **arguments: Any) -> Iterator[tupl
     with tempfile.TemporaryDirectory(prefix="request-") as folder:
 
         def command(scratch: Path) -> list[str]:
-            request = {"verb": verb, "source": source.resolve(), "out": folder, "scratch": scratch}
+            place = place_of(source.resolve(), best_tier(), scratch)
+            request = {"verb": verb, "source": place, "out": folder, "scratch": scratch}
             request["arguments"] = arguments
             file = Path(folder) / REQUEST  # a command line has no room for the walls of a large map
             file.write_text(json.dumps(request, default=str))

@@ -229,3 +229,32 @@ def test_root_reads_no_submission_for_a_preview_or_a_comparison(
     assert apart.read_code(classroom / "alice", ASSIGNMENT, Tier.BUBBLEWRAP) == "# pkg/node.py\nx = '\n'"
     with pytest.raises(StudentError, match=r"carol.zip is not a folder"):
         apart.read_preview(classroom / "carol.zip", ASSIGNMENT, Tier.BUBBLEWRAP)
+
+
+WHO = """
+out("is", os.getuid() in range(47000, 48000), os.getgid() == os.getuid(), os.getgroups())
+out("rights", int(open("/proc/self/status").read().split("CapEff:")[1].split()[0], 16))
+out("reads", (job.path / "src" / "pkg" / "package.xml").read_text())
+(job.out / "mine").parent.mkdir()
+(job.out / "mine").write_text("")
+try: Path(STORED).write_text("mine")
+except OSError: out("is refused")
+"""
+
+
+@pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can be somebody else")
+def test_root_is_given_up_without_namespaces_too(classroom: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for path in (classroom / "alice", *(classroom / "alice").rglob("*")):
+        path.chmod(0o700 if path.is_dir() else 0o600)
+    stored = classroom / "results" / "bob" / "result.json"
+    before = stored.read_bytes()
+    taken_over(monkeypatch, WHO, STORED=str(stored))
+    out = classroom / "results" / "alice"
+    grade_submission(classroom / "alice", ASSIGNMENT, student="alice", seed=1, out=out, isolation=Tier.PROCESS)
+    log = (out / "grader.log").read_text()
+    assert "OUT is True True []" in log
+    assert "OUT rights 0" in log
+    assert "OUT reads <package/>" in log
+    assert "OUT is refused" in log
+    assert "Traceback" not in log
+    assert stored.read_bytes() == before

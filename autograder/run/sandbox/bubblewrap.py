@@ -77,10 +77,14 @@ def cell(
     if user is None:
         return ["bwrap", "--die-with-parent", *own_proc, *mounts, "--", *inside]
     # Root makes the mounts, for it can reach what they show. A change of user resets the signal at a parent's death.
-    drop = ("setpriv", f"--reuid={user}", f"--regid={user}", "--clear-groups", "--no-new-privs", "--pdeathsig=KILL")
     within = ("bwrap", "--die-with-parent", "--dev-bind", "/", "/", *own_proc)
     made = ("bwrap", "--die-with-parent", "--bind", "/proc", "/proc", *mounts)
-    return [*made, "--", *drop, *within, "--", *inside]
+    return [*made, "--", *becoming(user), *within, "--", *inside]
+
+
+def becoming(user: int) -> list[str]:
+    """Return what root puts before a command that is to run as another user."""
+    return ["setpriv", f"--reuid={user}", f"--regid={user}", "--clear-groups", "--no-new-privs", "--pdeathsig=KILL"]
 
 
 def _cell_mounts(view: View, scratch: Path, groups: tuple[Path, ...]) -> list[str]:

@@ -21,7 +21,7 @@ from autograder.run.sandbox.launcher import TIER_VARIABLE
 from autograder.run.sandbox.limits import GRADING_CELL, Limits, TreeLimits
 from autograder.run.sandbox.process import Ending, Process
 from autograder.run.sandbox.spec import View
-from autograder.run.sandbox.tiers import Tier, require
+from autograder.run.sandbox.tiers import Tier, gives_up_root, require
 from autograder.run.sandbox.trees import copy_unread
 from autograder.submission.intake.files import MAX_DEPTH, MAX_READ_BYTES, MAX_SCANNED
 from autograder.submission.intake.ignored import environment_parts, is_ignored
@@ -97,6 +97,17 @@ def in_cell(
                 view = view if user is None else _reachable(view, scratch, user)
                 command = group.enter(bubblewrap.cell(command, view, scratch=scratch, user=user, groups=group.folders))
                 environment = {**_passed(environment), **_own(scratch, tier), "HOME": "/tmp", "TMPDIR": "/tmp"}
+            elif gives_up_root(tier):
+                user = stack.enter_context(ordinary_user())
+                assert user is not None
+                for path in view.submitted:
+                    place = place_of(path, tier, scratch)
+                    place.parent.mkdir(exist_ok=True)
+                    copy_submission(path, place)
+                for folder in (scratch, *view.writable):
+                    os.chown(folder, user, user)
+                command = [*bubblewrap.becoming(user), *command]
+                environment = {**_passed(environment), **_own(scratch, tier), "HOME": str(scratch)}
             # `python -m` imports from the folder it is started in, and that may hold submissions.
             place = Path("/")
             process = Process(command, limits, environment=environment, pass_fds=pass_fds, group=group, cwd=place)
@@ -105,6 +116,11 @@ def in_cell(
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
         os.close(held)
+
+
+def place_of(path: Path, tier: Tier, scratch: Path) -> Path:
+    """Return where the command of a cell finds what was handed in: in its own place, or in a copy that it can read."""
+    return scratch / "submitted" / path.name if gives_up_root(tier) else path
 
 
 def _reachable(view: View, scratch: Path, user: int) -> View:

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
+import sys
+import tempfile
 from enum import Enum
 from functools import cache
 from pathlib import Path
 
+from autograder import layout
 from autograder.exceptions import IsolationError
 from autograder.run.sandbox import bubblewrap
 from autograder.run.sandbox.identity import ordinary_user
 from autograder.run.sandbox.spec import Sandbox, View
+
+_FOUND = {"PATH": os.defpath, "PYTHONPATH": str(layout.ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
 
 
 class Tier(str, Enum):
@@ -46,8 +52,32 @@ def namespaces_failure() -> str | None:
     return None if done.returncode == 0 else done.stderr.strip() or f"bwrap ended with status {done.returncode}"
 
 
+def gives_up_root(tier: Tier) -> bool:
+    """Return whether a cell of this process becomes another user without any namespace."""
+    return tier is Tier.PROCESS and os.geteuid() == 0
+
+
+@cache
+def _root_failure(temporary: str) -> str | None:
+    """Return why root's cells cannot run as other users, with their folders in `temporary`, or None where they can."""
+    if shutil.which("setpriv") is None:
+        return "setpriv is not installed"
+    with ordinary_user() as user:
+        assert user is not None
+        trial = [sys.executable, "-c", "import os, sys, autograder.grade; os.chdir(sys.argv[1])", temporary]
+        command = [*bubblewrap.becoming(user), *trial]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, cwd="/", env=_FOUND)
+    return None if done.returncode == 0 else (done.stderr.strip().splitlines() or ["setpriv failed"])[-1]
+
+
 def require(tier: Tier) -> Tier:
     """Return `tier` if this machine can give it, or raise an IsolationError that says why not and how to fix it."""
+    temporary = tempfile.gettempdir()
+    if gives_up_root(tier) and (why := _root_failure(temporary)) is not None:
+        raise IsolationError(
+            f"with `--isolation process` root's gradings run as an ordinary user, which fails here: {why}. Let others "
+            f"read the grader (`chmod -R go+rX {layout.ROOT}`) and enter {temporary}, or start it as an ordinary user"
+        )
     failure = namespaces_failure() if tier is Tier.BUBBLEWRAP else None
     if failure is not None:
         raise IsolationError(

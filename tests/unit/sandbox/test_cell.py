@@ -15,6 +15,8 @@ from autograder.run.sandbox.cell import run_in_cell
 
 
 def test_only_folders_of_cells_without_a_lock_are_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for folder in (tmp_path, *list(tmp_path.parents)[:2]):  # root's cell becomes another user, who comes from here
+        folder.chmod(0o711)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     left, held, young, other = (
         tmp_path / f"{name}" for name in ("autograder-cell-1", "autograder-cell-2", "autograder-cell-3", "other")

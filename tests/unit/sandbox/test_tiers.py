@@ -19,6 +19,7 @@ def tools(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     def forget() -> None:
         tiers.best_tier.cache_clear()
         tiers.namespaces_failure.cache_clear()
+        tiers._root_failure.cache_clear()
 
     monkeypatch.setenv("PATH", str(tmp_path))
     forget()
@@ -41,9 +42,18 @@ def test_without_bubblewrap_the_strong_tier_is_refused_with_the_remedy(tools: Pa
     assert "`--isolation process`" in sentence
 
 
-def test_the_weak_tier_is_never_chosen_for_the_caller_but_can_be_asked_for(tools: Path) -> None:
+def test_the_weak_tier_is_never_chosen_for_the_caller_but_can_be_asked_for(
+    tools: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "geteuid", lambda: 1000)
     assert require(Tier.PROCESS) is Tier.PROCESS
     assert best_tier() is Tier.PROCESS
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root has to become somebody else")
+def test_root_that_can_become_nobody_else_is_refused_the_weak_tier_too(tools: Path) -> None:
+    with pytest.raises(IsolationError, match=r"`--isolation process` root's .*setpriv is not installed.*ordinary user"):
+        require(Tier.PROCESS)
 
 
 def test_a_kernel_that_forbids_namespaces_is_quoted(tools: Path) -> None:
