@@ -100,6 +100,7 @@ classes:        ## a class of five hands in each chapter, graded through nbgrade
 
 docs:           ## build the site in .build/site/html, with the notebooks' outputs, and look at it in a browser
 	@$(BOOTSTRAP) --dev --browser
+	@$(BIN)/autograder course tables
 	@$(BIN)/autograder notebooks --released
 	$(BIN)/python -m pytest tests/browser/test_site.py $(PYTEST_ARGS)
 

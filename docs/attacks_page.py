@@ -1,4 +1,4 @@
-"""Writes attacks.md from attacks.yaml: `python docs/attacks_page.py`."""
+"""The page `attacks.md`, from `attacks.yaml`."""
 
 from __future__ import annotations
 
@@ -11,13 +11,12 @@ from autograder.author.verification.cases import attacks
 from autograder.layout import ROOT
 from autograder.suite import suites
 
-PAGE = ROOT / "docs" / "attacks.md"
 ROWS: list[dict[str, Any]] = yaml.safe_load((ROOT / "docs" / "attacks.yaml").read_text(encoding="utf-8"))
 
 HEAD = """# Attacks and their tests
 
 What a malicious submission can try. The proof grades submissions that try it, and tests try it on a part alone.
-`python docs/attacks_page.py` writes this page from `docs/attacks.yaml`.
+`make docs` writes this page from `docs/attacks.yaml`.
 """
 OPEN = """
 ## Not blocked
@@ -56,7 +55,3 @@ def current() -> str:
 def _tests(files: dict[str, list[str]]) -> str:
     names = (name.removeprefix("test_") for named in files.values() for name in named)
     return "; ".join(name.replace("_s_", "'s ").replace("_", " ") for name in names)
-
-
-if __name__ == "__main__":
-    PAGE.write_text(current(), encoding="utf-8")

@@ -1,13 +1,14 @@
 """Builds the site from the pages in `docs`. `make docs` executes the notebooks before, and looks at the site after it.
 
 Some pages are made here: the chapters as students get them, with the outputs of their last run in .build/notebooks, the
-run on the start page, and the table of the proof.
+run on the start page, the table of the proof, and what the modules named *_page.py return.
 """
 
 from __future__ import annotations
 
 import math
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -31,8 +32,7 @@ from sim.export import to_html
 DOCS = layout.ROOT / "docs"
 SITE = layout.BUILD / "site"
 SOURCE, HTML = SITE / "source", SITE / "html"
-# For instructors alone: it says what each hidden check looks for.
-KEPT_BACK = ("checks.md", "cluster", "*.py", "__pycache__")
+KEPT_BACK = ("cluster", "*.py", "__pycache__")
 # Of the robot on the start page: it turns when something is nearer than ROOM within AHEAD of its bow.
 AHEAD, ROOM = math.radians(50.0), 0.6
 FOLDER_OF_A_LINK = re.compile(r"\]\((?:docs|\.\./chapters)/")
@@ -58,6 +58,9 @@ def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
     shutil.rmtree(SITE, ignore_errors=True)
     shutil.copytree(DOCS, SOURCE, ignore=shutil.ignore_patterns(*KEPT_BACK))
     shutil.copy(DOCS / "conf.py", SOURCE)
+    for script in DOCS.glob("*_page.py"):
+        text = runpy.run_path(str(script))["current"]()
+        (SOURCE / script.name.replace("_page.py", ".md")).write_text(text, encoding="utf-8")
     for name in FROM_ELSEWHERE:
         shutil.copy(layout.ROOT / name, SOURCE)
     for page in SOURCE.glob("*.md"):  # the site has the pages of all folders in one

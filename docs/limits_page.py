@@ -1,4 +1,4 @@
-"""Writes limits.md from the limits that the sandbox keeps: `python docs/limits_page.py`."""
+"""The page `limits.md`, from the limits that the sandbox keeps."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from autograder.grade.answer import MAX_RESULT, MAX_SHOWN
 from autograder.grade.bounded_json import NOTEBOOK_VALUES, RESULT_VALUES, RUN_VALUES
 from autograder.grade.executed_notebook import MAX_BYTES
 from autograder.harness.launch import MAX_STATUS
-from autograder.layout import ROOT
 from autograder.run.fork_server import seccomp
 from autograder.run.lockstep.protocol import MAX_LINE
 from autograder.run.patience import HELD_SECONDS
@@ -17,11 +16,10 @@ from autograder.run.sandbox import limits
 from autograder.run.sandbox.limits import MIB, TreeLimits
 from autograder.submission.intake.files import MAX_FILES, MAX_READ_BYTES, MAX_TOTAL_BYTES
 
-PAGE = ROOT / "docs" / "limits.md"
 HEAD = """# Limits by kind
 
-What a submission may use, what keeps the limit, and where that is tested. `python docs/limits_page.py` writes this
-page from the values in the code, most of them in `autograder/run/sandbox/limits.py`.
+What a submission may use, what keeps the limit, and where that is tested. `make docs` writes this page from
+ the values in the code, most of them in `autograder/run/sandbox/limits.py`.
 """
 FOOT = """
 Where an ordinary user grades, all cells are the same user of the machine. What the kernel counts by user and no row
@@ -123,7 +121,3 @@ def _mib(size: int) -> str:
 
 def _tree(tree: TreeLimits) -> str:
     return f"{tree.names:,} names, {_mib(tree.size)}, holes counted"
-
-
-if __name__ == "__main__":
-    PAGE.write_text(current(), encoding="utf-8")

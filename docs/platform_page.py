@@ -1,4 +1,4 @@
-"""Writes platform.md, the versions of ROS's platform and what is installed here: `python docs/platform_page.py`."""
+"""The page `platform.md`: the versions of ROS's platform, and what is installed here."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from autograder.ros.distribution import PlatformPackage
 from autograder.ros.ros2.exceptions import NotCoveredError
 from autograder.ros.ros2.main import COMMANDS
 
-PAGE = ROOT / "docs" / "platform.md"
 LOCK = ROOT / "requirements.lock"
 DIFFERENCES = ROOT / "tests" / "e2e" / "launch_standin" / "differences.yaml"
 SUBMODULES = ROOT / "autograder" / "ros" / "standins" / "standin_submodules.py"
@@ -32,7 +31,7 @@ has the versions of that platform, so that what a student learns here holds ther
 `requirements.lock`. `autograder doctor` says where a machine has others. The versions of Ubuntu are those of
 {ROS.platform_page}; that of catkin_pkg is the one in ROS's own package repository.
 
-`python docs/platform_page.py` writes this page from the lock. A test fails if the page is out of date.
+`make docs` writes this page from the lock.
 """
 COLUMNS = ("package", "apt's name", ROS.platform, "here", "where a student meets it", "why another version")
 TAIL = """## Interface packages without wheels
@@ -220,7 +219,3 @@ def _row(package: PlatformPackage, by_python: dict[str, dict[str, str]]) -> tupl
 
 def _span(pythons: list[str]) -> str:
     return pythons[0] if len(pythons) == 1 else f"{pythons[0]} to {pythons[-1]}"
-
-
-if __name__ == "__main__":
-    PAGE.write_text(current(), encoding="utf-8")

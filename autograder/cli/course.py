@@ -64,4 +64,5 @@ def tables() -> None:
     course = layout.course()
     pages = {layout.CHAPTERS / "README.md": page, course.root / course.guide: checks_page()}
     for path, text in {**titles(), **pages}.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Writes `docs/checks.md` for instructors: the contract, the hidden checks, and the mutants that fail them."""
+"""The page `checks.md` for instructors: the contract, the hidden checks, and the mutants that fail them."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ NOT_READ = (
     "autograder/checks/ch05_parameters/support/robot.py",
     "chapters/03_interfaces/03_interfaces.ipynb",
     "chapters/02_nodes/figures/sector.svg",
-    "docs/checks.md",
+    "docs/index.md",
     "solutions/my_robot_package/setup.py",
 )
 READS = ("solutions/speed_guard",)
