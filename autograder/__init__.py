@@ -3,4 +3,4 @@
 The command line is `autograder` (`autograder --help`); what notebooks import is `autograder.notebook`.
 """
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
