@@ -11,6 +11,7 @@ from pathlib import Path
 import click
 
 from autograder import layout
+from autograder.author.verification import costs
 from autograder.author.verification.cases import cases
 from autograder.author.verification.claims import CaseKind, Claim
 from autograder.author.verification.mutation_run import MutantResult, run_mutants
@@ -83,7 +84,10 @@ def verify(
     point. Of the generated mutants that are not equivalent to the reference, at least 95 in 100 of each chapter and
     97 in 100 of all chapters lose a check. Every other one has a reason in survivors.yaml. A mutant with a reason
     is graded only if --only names it. A stopped run continues: a result counts as long as the checks, the grader
-    and the submission are the same. The file mutants.md in the folder for the results has the table.
+    and the submission are the same. The file mutants.md in the folder for the results has the tables.
+
+    A named mutant that loses more than twice the points of its own check is listed, unless its result or its entry
+    in mutants.yaml has a reason.
 
     The exit status is 0 when all of this is true, and 1 otherwise.
     """
@@ -118,18 +122,22 @@ def verify(
             echo(record_failures(chapter, claims), err=True)
         claims = compared_again(claims)
     echo("\n" + table([(_name(claim), score_text(claim.result), _verdict(claim)) for claim in claims], HEADINGS))
-    counted = summary(claims, time.monotonic() - began) | counts(chapters)
+    paid = () if quick else costs.costs(claims)
+    counted = summary(claims, time.monotonic() - began) | counts(chapters) | costs.counts(paid)
     echo("\n" + "  ".join(f"{name} {value}" for name, value in counted.items()))
     plain = {
         "summary": counted,
         "claims": [_plain(claim) for claim in claims],
         "mutants": mutant_counts(chapter_results),
+        "costs": [vars(cost) for cost in paid],
     }
     for path in filter(None, (out / "verify.json", json_file)):
         write_json(path, plain)
-    write_atomically(out / "mutants.md", report(chapter_results).encode())
+    write_atomically(out / "mutants.md", f"{report(chapter_results)}\n{costs.report(paid)}".encode())
     for fault in (found := faults(chapter_results)):
         echo(fault, err=True)
+    for sentence in costs.unexplained(paid):
+        echo(sentence, err=True)
     sys.exit(0 if all(claim.holds for claim in claims) and not found else 1)
 
 

@@ -52,6 +52,7 @@ class Mutant:
         diagnosis: what the result says of building and starting the programs, as recorded.
         demo: whether `make demo` grades it.
         slow: whether grading it waits for a time-out.
+        reason: why it loses far more than its own check, where its result does not say so; see `costs`.
     """
 
     id: str
@@ -62,6 +63,7 @@ class Mutant:
     diagnosis: Kind = Kind.OK
     demo: bool = False
     slow: bool = False
+    reason: str = ""
 
 
 def mutants(assignment: str) -> tuple[Mutant, ...]:
@@ -137,4 +139,5 @@ def _mutant(entry: dict[str, Any], file: str, known: frozenset[str], recorded: M
         diagnosis=record.diagnosis,
         demo=entry.get("demo", False),
         slow=entry.get("slow", False),
+        reason=entry.get("reason", ""),
     )

@@ -1,0 +1,113 @@
+"""A named mutant that loses far more than its own check has a reason, or the proof says that it has none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from autograder.author.verification import costs
+from autograder.author.verification.claims import CaseKind, Claim
+from autograder.author.verification.costs import Cost
+from autograder.author.verification.mutants import Mutant
+from autograder.diagnosis import OK, Diagnosis, Kind
+from autograder.result.model import CheckResult
+from autograder.suite import Check, Outcome
+from autograder.suite.declaration import Visibility
+from tests.conftest import MakeResult
+
+CHECKS = {
+    name: Check(name, name, points, "g", Visibility.HIDDEN, (), None, needs, holds, after)
+    for name, points, holds, needs, after in (
+        ("turns", 2.0, ("near", "left"), (), ()),
+        ("sector", 3.0, ("near",), (), ()),
+        ("lidars", 4.0, ("bearings",), (), ("sector", "turns")),
+        ("edges", 1.0, ("edge",), (), ("lidars",)),
+        ("drives", 4.0, ("world",), ("turns",), ()),
+        ("ends", 5.0, ("ends",), (), ()),
+    )
+}
+
+
+def cost(
+    make_result: MakeResult,
+    monkeypatch: pytest.MonkeyPatch,
+    *failed: str,
+    unchecked: tuple[str, ...] = (),
+    fraction: float = 0.0,
+    reason: str = "",
+    diagnosis: Diagnosis = OK,
+) -> Cost:
+    """Return the cost of a mutant that was written for `turns`."""
+    mutant = Mutant("m", "t", (), "turns", reason=reason)
+    monkeypatch.setattr(costs, "mutants", lambda assignment: (mutant,))
+    outcomes = dict.fromkeys(failed, Outcome.FAILED) | dict.fromkeys(unchecked, Outcome.NOT_CHECKED)
+    checks = tuple(
+        CheckResult.of(check, outcomes.get(name, Outcome.PASSED), "so", fraction=fraction)
+        for name, check in CHECKS.items()
+    )
+    result = make_result(checks=checks, diagnosis=diagnosis, max_score=19.0)
+    (found,) = costs.costs([Claim("02_nodes", CaseKind.MUTANT, "m", result, "")])
+    return found
+
+
+def test_a_mutant_that_loses_little_needs_no_reason(make_result: MakeResult, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = cost(make_result, monkeypatch, "turns", "edges")
+    assert (found.points, found.lost, found.sentences) == (2.0, 3.0, ("near", "left", "edge"))
+    assert not found.is_dear
+    assert costs.unexplained([found]) == []
+
+
+@pytest.mark.parametrize(
+    ("failed", "unchecked", "reason"),
+    [
+        (("turns", "sector"), (), "3 of the same sentence"),
+        (("turns", "lidars", "edges"), (), "5 after it"),
+        (("turns",), ("drives",), "4 not checked"),
+        (("turns", "sector"), ("drives",), "3 of the same sentence; 4 not checked"),
+        (("turns", "ends"), (), ""),
+        (("turns", "sector", "ends"), (), ""),
+    ],
+    ids=["a sentence with two checks", "after", "not checked", "both", "nothing", "not all of it"],
+)
+def test_what_the_result_says_is_the_reason(
+    make_result: MakeResult,
+    monkeypatch: pytest.MonkeyPatch,
+    failed: tuple[str, ...],
+    unchecked: tuple[str, ...],
+    reason: str,
+) -> None:
+    found = cost(make_result, monkeypatch, *failed, unchecked=unchecked)
+    assert found.is_dear
+    assert found.reason == reason
+    assert len(costs.unexplained([found])) == (not reason)
+
+
+def test_part_of_a_check_counts_in_part(make_result: MakeResult, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not cost(make_result, monkeypatch, "turns", "ends", fraction=0.5).is_dear
+
+
+def test_a_program_that_does_not_live_and_a_written_reason_are_reasons(
+    make_result: MakeResult, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    dead = Diagnosis(Kind.CRASHED_AT_IMPORT, "It ends.")
+    assert cost(make_result, monkeypatch, "turns", "ends", diagnosis=dead).reason == "crashed at import"
+    assert cost(make_result, monkeypatch, "turns", "ends", reason="it is off").reason == "it is off"
+
+
+def test_the_table_and_the_counts_name_who_has_no_reason(
+    make_result: MakeResult, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = [cost(make_result, monkeypatch, "turns", "ends"), cost(make_result, monkeypatch, "turns")]
+    assert costs.counts(found) == {"mutants_dear": 1, "mutants_dear_unexplained": 1}
+    assert "| 02 | m | turns | 2 | 7 | near, left, ends | **no reason** |" in costs.report(found)
+    assert "| 02 | m | turns | 2 | 2 | near, left |  |" in costs.report(found)
+    assert costs.unexplained(found) == [
+        "02_nodes mutant m: it loses 7 points, turns has 2, and nothing says why",
+    ]
+    assert costs.report([]) == ""
+
+
+def test_only_named_mutants_that_were_graded_are_counted(make_result: MakeResult) -> None:
+    claim = Claim("02_nodes", CaseKind.VARIANT, "v", make_result(), "")
+    assert costs.costs([claim, replace(claim, kind=CaseKind.ATTACK)]) == ()
