@@ -1,0 +1,67 @@
+"""Records what all gradings share, a digest for each file, with the GRADER_VERSION that it was recorded for.
+
+    python -m tests.unit.fingerprint.record
+
+What changes no mark by itself is left out of a module's digest: comments of a whole line, docstrings, empty lines.
+There is a line for each file, so that two branches that change two files do not collide.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import io
+import tokenize
+from collections.abc import Iterator
+from pathlib import Path
+
+from autograder import layout
+from autograder.suite import fingerprint
+
+RECORD = Path(__file__).with_name("recorded.txt")
+LOCK = layout.ROOT / "requirements.lock"  # the packages that students' programs meet
+
+
+def current() -> str:
+    """Return the record as it would be now."""
+    any_chapter = layout.assignments()[0]
+    shared = {*fingerprint.files(any_chapter), LOCK}.difference(fingerprint.chapter_files(any_chapter))
+    lines = (f"{_digest(path)}  {path.relative_to(layout.ROOT).as_posix()}" for path in sorted(shared))
+    return "\n".join([f"GRADER_VERSION {fingerprint.GRADER_VERSION}", *lines, ""])
+
+
+def _digest(path: Path) -> str:
+    data = path.read_bytes()
+    if path.suffix == ".py":
+        data = "\n".join(_telling(data.decode())).encode()
+    return hashlib.sha256(data).hexdigest()[:12]
+
+
+def _telling(source: str) -> Iterator[str]:
+    """Yield the lines of a module that can change what it does."""
+    silent = {number for begin, end in _docstrings(source) for number in range(begin, end + 1)}
+    lines = source.split("\n")
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        number, column = token.start
+        if token.type == tokenize.COMMENT and not lines[number - 1][:column].strip():
+            silent.add(number)
+    for number, line in enumerate(lines, start=1):
+        if number not in silent and line.strip():
+            yield line
+
+
+def _docstrings(source: str) -> Iterator[tuple[int, int]]:
+    """Yield the first and the last line of each docstring."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and node.body:
+            first = node.body[0]
+            if (
+                isinstance(first, ast.Expr)
+                and isinstance(first.value, ast.Constant)
+                and isinstance(first.value.value, str)
+            ):
+                yield first.lineno, first.end_lineno or first.lineno
+
+
+if __name__ == "__main__":
+    RECORD.write_text(current(), encoding="utf-8")

@@ -1,0 +1,27 @@
+"""Nobody changes how marks come about without a look at GRADER_VERSION."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.unit.fingerprint.record import RECORD, _telling, current
+
+HELP = """
+These files, which all gradings share, are not as they were recorded for {version}. If a submission can get another
+mark, or another reason for it, with the same seed, raise GRADER_VERSION in autograder/suite/fingerprint.py. Then, or
+if no mark can change, record them anew: python -m tests.unit.fingerprint.record
+"""
+
+
+def test_what_all_gradings_share_is_as_it_was_recorded_for_this_version() -> None:
+    recorded, now = RECORD.read_text(encoding="utf-8").splitlines(), current().splitlines()
+    changed = sorted({line.split()[-1] for line in {*recorded} ^ {*now}})
+    if changed:
+        pytest.fail(HELP.format(version=recorded[0]) + "\n".join(changed), pytrace=False)
+
+
+def test_comments_and_docstrings_are_no_change() -> None:
+    source = (
+        '"""What it is."""\n\n# Why.\ndef f():\n    """Return.\n\n    Two.\n    """\n    return """\n# text"""  # 2\n'
+    )
+    assert list(_telling(source)) == ["def f():", '    return """', '# text"""  # 2']
