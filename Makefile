@@ -79,6 +79,7 @@ lint-standins:
 
 lint-imports:
 	$(BIN)/lint-imports --no-cache --no-logo
+	cd autograder/ros/standins && $(abspath $(BIN))/lint-imports --no-cache --no-logo --config importlinter.ini
 
 # Workers that need the simulator's compiled engine at the same time would each compile it.
 fast-engine:

@@ -60,3 +60,17 @@ def test_each_step_of_a_submission_is_drawn_at_a_part() -> None:
     placed = {step for part in SOURCE["packages"].values() for step in part.get("steps", ())}
     placed |= {number for number, step in enumerate(SOURCE["way"], start=1) if step.get("module") in SOURCE["modules"]}
     assert placed == set(range(1, len(SOURCE["way"]) + 1))
+
+
+def test_the_contract_of_the_sandbox_names_every_program_that_runs_there() -> None:
+    (contract,) = (contract for contract in CONTRACTS if contract["id"] == "sandboxed")
+    found = {
+        ".".join(path.relative_to(ROOT).with_suffix("").parts)
+        for pattern in ("*_host", "*_host.py", "*preload.py")
+        for path in (ROOT / "autograder").rglob(pattern)
+        if path.is_dir() or not any(parent.name.endswith("_host") for parent in path.parents)
+    }
+    inside = {
+        f"autograder.run.fork_server.{name}" for name in ("children", "confinement", "emulation")
+    }  # a forked program's own
+    assert found | inside == set(contract["protected_modules"])
