@@ -2,8 +2,9 @@
 
 A cause costs at most the points of the sentences that it breaks. A mutant that loses more than twice the points of its
 own check needs a reason. Some reasons follow from its result: the program was not built or did not live, checks could
-not be run, or other checks hold the same sentence or are declared to come after the mutant's own. For what is left, an
-entry of `mutants.yaml` may have a `reason`. Whoever has none is listed.
+not be run, other checks hold the same sentence or are declared to come after the mutant's own, or several checks say
+word for word the same, such as that nobody understands a message. For what is left, an entry of `mutants.yaml` may have
+a `reason`. Whoever has none is listed.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from autograder.result.model import CheckResult, Result, Status
 from autograder.suite import Outcome
 
 MOST = 2.0  # times the points of its own check
-NOT_CHECKED, SAME, AFTER = "not checked", "of the same sentence", "after it"
+NOT_CHECKED, SAME, AFTER, ALIKE = "not checked", "of the same sentence", "after it", "for one and the same reason"
 HEAD = """## What each named mutant costs
 
 The points of its own check, those that it loses, and the sentences whose checks failed.
@@ -126,7 +127,9 @@ def _kind(check: CheckResult, own: CheckResult, lost: Sequence[CheckResult]) -> 
         if (name := pending.pop()) in before and name not in reached:
             reached.add(name)
             pending += before[name]
-    return AFTER if own.id in reached else ""
+    if own.id in reached:
+        return AFTER
+    return ALIKE if sum(each.message == check.message for each in lost) > 1 else ""
 
 
 def _points(checks: Iterable[CheckResult]) -> float:

@@ -37,13 +37,14 @@ def cost(
     fraction: float = 0.0,
     reason: str = "",
     diagnosis: Diagnosis = OK,
+    said: str = "",
 ) -> Cost:
     """Return the cost of a mutant that was written for `turns`."""
     mutant = Mutant("m", "t", (), "turns", reason=reason)
     monkeypatch.setattr(costs, "mutants", lambda assignment: (mutant,))
     outcomes = dict.fromkeys(failed, Outcome.FAILED) | dict.fromkeys(unchecked, Outcome.NOT_CHECKED)
     checks = tuple(
-        CheckResult.of(check, outcomes.get(name, Outcome.PASSED), "so", fraction=fraction)
+        CheckResult.of(check, outcomes.get(name, Outcome.PASSED), said or f"{name} is wrong", fraction=fraction)
         for name, check in CHECKS.items()
     )
     result = make_result(checks=checks, diagnosis=diagnosis, max_score=19.0)
@@ -81,6 +82,11 @@ def test_what_the_result_says_is_the_reason(
     assert found.is_dear
     assert found.reason == reason
     assert len(costs.unexplained([found])) == (not reason)
+
+
+def test_checks_that_say_the_same_have_one_reason(make_result: MakeResult, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = cost(make_result, monkeypatch, "turns", "ends", "lidars", "edges", said="There is no topic.")
+    assert found.reason == "5 after it; 5 for one and the same reason"
 
 
 def test_part_of_a_check_counts_in_part(make_result: MakeResult, monkeypatch: pytest.MonkeyPatch) -> None:
