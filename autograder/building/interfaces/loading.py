@@ -6,15 +6,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from autograder.building.interfaces.definitions import (
-    KINDS,
-    MAX_BYTES,
-    MAX_FILES,
-    Definition,
-    DefinitionError,
-    read,
-    require_uses,
-)
+from autograder.building.interfaces.definition_reader import MAX_BYTES, MAX_FILES, read
+from autograder.building.interfaces.definitions import KINDS, Definition, DefinitionError, require_uses
 from autograder.building.interfaces.prefix import exists
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError

@@ -13,7 +13,8 @@ from functools import lru_cache, partial
 from pathlib import Path
 
 from autograder.building.interfaces.cache import Cache
-from autograder.building.interfaces.definitions import InterfaceError, packages_used, read, require_uses
+from autograder.building.interfaces.definition_reader import read
+from autograder.building.interfaces.definitions import InterfaceError, packages_used, require_uses
 from autograder.ros import RosEnvironment, activate
 from autograder.ros.environment import without_wheel_bootstrap
 

@@ -14,7 +14,8 @@ from pathlib import Path
 import yaml
 
 from autograder.building.interfaces.cache import Cache
-from autograder.building.interfaces.definitions import InterfaceError, read
+from autograder.building.interfaces.definition_reader import read
+from autograder.building.interfaces.definitions import InterfaceError
 from autograder.building.interfaces.prefix import build
 from autograder.ros import RosError, find
 

@@ -11,14 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autograder.building.interfaces import rosidl
-from autograder.building.interfaces.definitions import (
-    MAX_BYTES,
-    MAX_FILES,
-    DefinitionError,
-    packages_used,
-    read,
-    require_uses,
-)
+from autograder.building.interfaces.definition_reader import MAX_BYTES, MAX_FILES, read
+from autograder.building.interfaces.definitions import DefinitionError, packages_used, require_uses
 from autograder.probes import interfaces
 
 

@@ -16,7 +16,7 @@ import nbformat
 from hypothesis import strategies as st
 
 from autograder.building import build_log
-from autograder.building.interfaces import definitions
+from autograder.building.interfaces import definition_reader, definitions
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.grade import submitted_notebook
 from autograder.grade.run_notebook import _would_overwrite, read_answer
@@ -277,7 +277,7 @@ DOORS: dict[str, Door] = {
         _definition("wheels_msgs", "action"), altered(DEFINITION["action"]), refuses=(interfaces.Unreadable,)
     ),
     "definition that is built": Door(
-        lambda data, place: definitions.read("wheels_msgs", {"msg/Status.msg": data.decode(errors="replace")}),
+        lambda data, place: definition_reader.read("wheels_msgs", {"msg/Status.msg": data.decode(errors="replace")}),
         altered(DEFINITION["msg"]),
         refuses=(definitions.DefinitionError,),
     ),

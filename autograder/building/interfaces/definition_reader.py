@@ -1,0 +1,222 @@
+"""Reading interface definitions with bounds and with errors that name the line: texts in, plain definitions out.
+
+The real parser decides what a definition means. What it would let through and generated code could not bear (words of
+C and Python, gigantic arrays) is refused here. The text that goes on is written anew from what was parsed, without
+comments: nothing of the author's own text reaches a generator, and comments do not count for a type's hash.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import keyword
+import math
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from autograder.building.interfaces import rosidl
+from autograder.building.interfaces.definitions import Constant, Definition, DefinitionError, Field, Section
+
+MAX_FILES = 64
+MAX_BYTES = 64 * 1024
+MAX_FIELDS = 512
+MAX_ELEMENTS = 100_000  # a message's fixed arrays, multiplied through all that it holds
+FOREIGN_ELEMENTS = 128  # what a message of ROS's counts for
+SECTIONS = {"msg": 1, "srv": 2, "action": 3}
+PARTS = {"msg": "a message has none", "srv": "request --- response", "action": "goal --- result --- feedback"}
+
+_PATH = re.compile(r"(msg|srv|action)/([A-Z][A-Za-z0-9]{0,79})\.(msg|srv|action)")
+_PACKAGE = re.compile(r"(?!.*__)[a-z][a-z0-9_]{0,78}[a-z0-9]")
+_PRINTABLE = re.compile(r"[ -~]*")
+# C and C++ both compile the generated structures.
+_C_WORDS = frozenset(
+    re.findall(
+        r"\w+",
+        """
+    alignas alignof and asm auto bitand bitor bool break case catch char class compl const constexpr continue
+    decltype default delete do double dynamic_cast else enum explicit export extern false float for friend goto if
+    inline int long mutable namespace new noexcept not nullptr operator or private protected public register
+    reinterpret_cast restrict return short signed sizeof static static_assert static_cast struct switch template
+    this thread_local throw true try typedef typeid typename typeof union unsigned using virtual void volatile
+    wchar_t while xor linux unix errno
+    """,
+    )
+)
+
+
+def require_package_name(name: str) -> None:
+    """Raise a DefinitionError unless a package's name is one that ROS takes for interfaces."""
+    if not _PACKAGE.fullmatch(name) or keyword.iskeyword(name):
+        raise DefinitionError(
+            "package.xml", f"{name[:80]!r} is no package name: begin with a letter, use a-z, 0-9 and single underscores"
+        )
+
+
+def read(
+    package: str, files: Mapping[str, str], below: Mapping[tuple[str, str], int] | None = None
+) -> tuple[Definition, ...]:
+    """Read the definitions of a package.
+
+    Args:
+        package: its name.
+        files: texts by their path such as `msg/RobotStatus.msg`.
+        below: the elements of other packages' messages, by package and name, where they are known.
+
+    Raises:
+        DefinitionError: the first thing that is wrong, by file and line.
+    """
+    require_package_name(package)
+    if not files:
+        raise DefinitionError(package, "no .msg, .srv or .action file: put them into msg/, srv/ and action/")
+    if len(files) > MAX_FILES:
+        raise DefinitionError(package, f"{len(files)} definitions, at most {MAX_FILES} are read")
+    for path in files:
+        match = _PATH.fullmatch(path)
+        if not match or match[1] != match[3]:
+            raise DefinitionError(
+                path[:120], "definitions are called msg/Name.msg, srv/Name.srv or action/Name.action, Name in CamelCase"
+            )
+    lowered = [path.lower() for path in files]
+    for path in files:
+        if lowered.count(path.lower()) > 1:
+            raise DefinitionError(path, "another file differs only in capital letters: rename one of them")
+    own = {path[4:-4] for path in files if path.startswith("msg/")}
+    read = {path: _Reader(package, path, text, own) for path, text in sorted(files.items())}
+    messages = {path[4:-4]: reader for path, reader in read.items() if path.startswith("msg/")}
+    elements = {path: reader.weigh(messages, below or {}, ()) for path, reader in read.items()}
+    return tuple(Definition(path, each.sections, tuple(each.uses), elements[path]) for path, each in read.items())
+
+
+class _Reader:
+    """One file on its way from raw text to a definition."""
+
+    def __init__(self, package: str, path: str, raw: str, own: set[str]) -> None:
+        self._package, self._path, self._own = package, path, own
+        if len(raw.encode("utf-8", "replace")) > MAX_BYTES:
+            raise DefinitionError(path, f"more than {MAX_BYTES // 1024} KiB: a definition is short")
+        self._kind, name = path.split("/")
+        self._name = name.rpartition(".")[0]
+        lines = raw.replace("\r\n", "\n").split("\n")
+        self._lines = [self._clean(line) for line in lines]
+        self.uses: list[tuple[str, str, str]] = []
+        self._arrays: list[tuple[int, tuple[str, str] | None, str]] = []  # of messages: package and name
+        self.sections = tuple(self._read_section(lines) for lines in self._split())
+
+    def weigh(
+        self, messages: Mapping[str, _Reader], below: Mapping[tuple[str, str], int], above: tuple[str, ...]
+    ) -> int:
+        """Count the elements that a fresh message of this type makes room for."""
+        if self._path in above:
+            raise self._error("the message contains itself: take the field out that leads back to it")
+        total = 1
+        for count, inner, line in self._arrays:
+            each = 1
+            if inner is not None and inner[0] == self._package:
+                each = messages[inner[1]].weigh(messages, below, (*above, self._path))
+            elif inner is not None:
+                each = below.get(inner, FOREIGN_ELEMENTS)
+            total += count * each
+            if total > MAX_ELEMENTS:
+                raise self._error(
+                    f"arrays of more than {MAX_ELEMENTS} elements in all: use fewer, or an unbounded array",
+                    line,
+                )
+        return total
+
+    def _error(self, problem: str, line: str = "") -> DefinitionError:
+        return DefinitionError(self._path, problem, line)
+
+    def _clean(self, line: str) -> str:
+        code = line.replace("\t", " ").partition("#")[0].rstrip()
+        if not _PRINTABLE.fullmatch(code):
+            raise self._error("outside comments only plain ASCII characters can stand", ascii(code))
+        if "\\" in code:
+            raise self._error("a backslash cannot stand in a definition: take it out", code)
+        if code == "---" and line != "---":
+            raise self._error("the separator --- stands alone, without comment or space", line)
+        return code
+
+    def _split(self) -> list[list[str]]:
+        sections: list[list[str]] = [[]]
+        for line in self._lines:
+            if line == "---":
+                sections.append([])
+            elif line:
+                sections[-1].append(line)
+        wanted = SECTIONS[self._kind]
+        if len(sections) != wanted:
+            problem = f"{len(sections) - 1} separator lines ---, {wanted - 1} are needed: {PARTS[self._kind]}"
+            raise self._error(problem)
+        return sections
+
+    def _read_section(self, lines: list[str]) -> Section:
+        if len(lines) > MAX_FIELDS:
+            raise self._error(f"more than {MAX_FIELDS} fields: use an array")
+        names: set[str] = set()
+        fields: list[Field] = []
+        constants: list[Constant] = []
+        for line in lines:
+            if line.startswith(" "):
+                raise self._error("the line begins with a space: take it out", line)
+            spec = self._parse(line)
+            for element in (*spec.fields, *spec.constants):
+                if element.name in names:
+                    raise self._error(f"{element.name} is there twice: rename one", line)
+                names.add(element.name)
+            for constant in spec.constants:
+                self._check_value(constant.value, line)
+                constants.append(Constant(constant.name, str(constant.type), constant.value))
+            for field in spec.fields:
+                self._check_field(field, line)
+                kind = field.type
+                fields.append(
+                    Field(
+                        *(field.name, kind.type, kind.pkg_name, kind.string_upper_bound, bool(kind.is_array)),
+                        *(kind.array_size, bool(kind.is_upper_bound), field.default_value),
+                    )
+                )
+        section = Section(tuple(fields), tuple(constants))
+        if not self._reads_the_same(section):
+            raise self._error("a text with both kinds of quotation marks: use one kind in it")
+        return section
+
+    def _reads_the_same(self, section: Section) -> bool:
+        """Return whether the lines that are written anew mean what they were written from."""
+        spec = self._parse(str(section))
+        values = [constant.value for constant in section.constants] + [field.default for field in section.fields]
+        return values == [constant.value for constant in spec.constants] + [f.default_value for f in spec.fields]
+
+    def _parse(self, line: str) -> Any:
+        try:
+            with contextlib.redirect_stderr(io.StringIO()):
+                return rosidl.parser().parse_message_string(self._package, self._name, line)
+        except Exception as error:  # the parser raises NameError, TypeError, ValueError and its own
+            what = "a field is written `type name`, a constant `type NAME=value`"
+            reason = str(error)
+            raise self._error(what if reason == line else f"{reason} ({what})", line) from None
+
+    def _check_field(self, field: Any, line: str) -> None:
+        if field.name in _C_WORDS or keyword.iskeyword(field.name):
+            raise self._error(f"{field.name} is a word of C or Python: give the field another name", line)
+        kind = field.type
+        if kind.type in ("time", "duration") and kind.pkg_name is None:
+            new = kind.type.capitalize()
+            raise self._error(f"ROS 2 has no {kind.type}: use builtin_interfaces/{new}", line)
+        count = kind.array_size if kind.is_array and kind.array_size and not kind.is_upper_bound else 1
+        inner = None if kind.pkg_name is None else (kind.pkg_name, kind.type)
+        if kind.pkg_name == self._package:
+            if kind.type not in self._own:
+                raise self._error(
+                    f"there is no msg/{kind.type}.msg in {self._package}: write it, or correct the name", line
+                )
+        elif kind.pkg_name is not None:
+            self.uses.append((kind.pkg_name, kind.type, line))
+        self._arrays.append((count, inner, line))
+        if field.default_value is not None:
+            self._check_value(field.default_value, line)
+
+    def _check_value(self, value: object, line: str) -> None:
+        for single in value if isinstance(value, list) else [value]:
+            if isinstance(single, float) and not math.isfinite(single):
+                raise self._error("a value must be a finite number", line)
