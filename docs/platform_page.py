@@ -64,7 +64,7 @@ STAND_INS = """## What the stand-ins do not cover
 Tests hold them to records of the real packages: launch files in Python, XML and YAML, launch tests, and the commands of
 `ros2`. Where a stand-in does something else, `tests/e2e/launch_cases/differences.yaml` and
 `tests/e2e/ros2_records/differences.yaml` have it, each with its reason. What is not covered raises an error that says
-so. All of it works after `make real-launch`, or with a sourced ROS 2.
+so. After `make real-launch`, or with a sourced ROS 2, the real packages run instead.
 """
 OTHERWISE = """
 `tests/e2e/launch_standin` tests the stand-ins more closely. With the real packages installed, it tests those. They do

@@ -88,6 +88,12 @@ def test_what_came_with_a_failure_unfolds_below_it(
     assert complaints == []
 
 
+@pytest.mark.promise(
+    "you can play its run and jump to the instant at which it broke a rule",
+    "A failed check of a robot that drove has its run.",
+    "with its track and the instant at which it failed",
+    "in the same player",
+)
 def test_the_run_of_a_failed_check_plays(
     page: Page, make_result: Callable[..., Result], tmp_path: Path, complaints: list[str], screenshots: Path
 ) -> None:

@@ -85,6 +85,10 @@ def cell_of(notebook: NotebookNode, name: str) -> NotebookNode:
     return next(cell for cell in notebook.cells if cell.id == name)
 
 
+@pytest.mark.promise(
+    "is graded by a person in formgrader",
+    "autograder grade submitted --assignment 02_nodes --out .build/nbgrader/02_nodes -j 8",
+)
 @pytest.mark.parametrize(
     "size", [3, pytest.param(30, marks=[pytest.mark.nightly, pytest.mark.timeout(7200)])], ids=["3", "30"]
 )

@@ -72,6 +72,7 @@ def test_the_player_plays_to_the_end_of_the_run_and_stops(
     assert complaints == []
 
 
+@pytest.mark.promise("Press Play, drag the time line, or use the space bar and the arrow keys.")
 def test_the_slider_and_the_keys_show_any_instant(page: Page, opened: Path, complaints: list[str]) -> None:
     clock, first = page.locator(".run-player output"), drawn(page)
     page.get_by_label("Time in seconds").fill("1.5")

@@ -98,6 +98,7 @@ def test_a_page_fits_a_phone(site: Path, page: Page, name: str) -> None:
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
 
 
+@pytest.mark.promise("Press Play, drag the time line, or use the space bar and the arrow keys.")
 def test_the_run_on_the_start_page_plays_by_keyboard(site: Path, page: Page) -> None:
     page.goto((site / "index.html").as_uri())
     run = page.frame_locator("iframe")
@@ -116,6 +117,10 @@ def test_each_glossary_term_is_linked_at_most_once_in_a_chapter(site: Path) -> N
         assert len(words) == len(set(words)), chapter.assignment
 
 
+@pytest.mark.promise(
+    "`make docs` writes this page from",
+    "`make docs` builds the site: guides, chapters with their outputs, and the reference of the simulator.",
+)
 def test_each_internal_link_of_the_site_has_a_target(site: Path) -> None:
     """Sphinx checks links from page to page. It does not check those of raw HTML and of notebook outputs."""
     for path in site.rglob("*.html"):

@@ -111,6 +111,7 @@ def is_blank(picture: str) -> bool:
         return len(image.convert("RGB").resize((64, 64)).getcolors(64 * 64) or ()) < 8
 
 
+@pytest.mark.promise("Open a chapter in JupyterLab and run it from the top.", "Students start it with `make lab`.")
 @pytest.mark.slow
 @pytest.mark.timeout(60 * MINUTES + 120)
 @pytest.mark.parametrize("chapter", CHOSEN)

@@ -70,6 +70,11 @@ def run_all(page: Page, lab: Lab, folder: Path) -> str:
     return str(page.evaluate(OUTPUTS))
 
 
+@pytest.mark.promise(
+    "Running the notebook again does not destroy what you wrote in the editor.",
+    "| The cell says that your file was kept. |",
+    "make lab",
+)
 def test_run_all_keeps_a_file_that_was_edited_in_the_editor(page: Page, lab: Lab, chapter: Path) -> None:
     run_all(page, lab, chapter)
     assert "NotImplementedError" in (chapter / FILE).read_text()

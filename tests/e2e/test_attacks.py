@@ -53,6 +53,7 @@ def _grade(assignment: str, attack: Attack, checks: frozenset[str], folder: Path
     return grade_submission(path, assignment, student="mallory", seed=2026, out=out, scope=scope)
 
 
+@pytest.mark.promise("No attack gains a point.")
 @pytest.mark.parametrize(("assignment", "attack"), _attacks())
 def test_an_attack_gains_no_point_and_learns_nothing(
     assignment: str, attack: Attack, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

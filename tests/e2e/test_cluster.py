@@ -91,6 +91,18 @@ def grade_during_kills(cluster: LocalCluster, kills: int, draw: random.Random) -
     raise AssertionError(f"not graded within {DEADLINE} s, after {killed} kills:\n{cluster.log(CLIENT)[-3000:]}")
 
 
+@pytest.mark.promise(
+    ".venv/bin/dask scheduler",
+    ".venv/bin/dask worker",
+    ".venv/bin/autograder grade submissions/ --assignment 02_nodes --scheduler tls://SCHEDULER:8786",
+    "| A worker dies. |",
+    "| The scheduler dies, or the client. |",
+    "Nothing else changes: the verb, the results, `--resume` and Ctrl-C are the same.",
+    "Workers see no folder of the client.",
+    "What was tried: the commands above",
+    "A large class goes to [many machines]",
+    "A large class is graded [on many machines]",
+)
 @pytest.mark.parametrize(
     ("kills", "flawed"), [pytest.param(3, 0, id="3"), pytest.param(20, 8, id="20", marks=pytest.mark.nightly)]
 )
@@ -136,6 +148,7 @@ def answered(data: bytes) -> bytes:
     return Answer({"result.json": json.dumps(result.to_json()).encode()}).pack()
 
 
+@pytest.mark.promise("| Two workers die with the same submission. |")
 def test_a_submission_that_kills_two_workers_is_not_graded_and_the_others_are(
     requests: list[GradingRequest], tmp_path: Path
 ) -> None:
@@ -148,6 +161,9 @@ def test_a_submission_that_kills_two_workers_is_not_graded_and_the_others_are(
     assert "KilledWorker" in (requests[1].out / "grader.log").read_text()
 
 
+@pytest.mark.promise(
+    "It gets no submission, and the client says in a sentence what differs.", "| No worker fits for two minutes. |"
+)
 def test_a_worker_of_another_suite_is_refused_and_gets_no_submission(
     requests: list[GradingRequest], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -163,6 +179,10 @@ def test_a_worker_of_another_suite_is_refused_and_gets_no_submission(
     assert sentence.endswith("and here it is another: give both the same version of the course.")
 
 
+@pytest.mark.promise(
+    "`--scheduler local` makes such a cluster on this machine",
+    "Nothing else changes: the verb, the results, `--resume` and Ctrl-C are the same.",
+)
 def test_ctrl_c_keeps_the_gradings_that_have_begun_and_resume_grades_the_rest(tmp_path: Path) -> None:
     for student in ("alice", "bob", "carol"):
         (tmp_path / "class" / student / "src").mkdir(parents=True)

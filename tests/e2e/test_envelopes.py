@@ -49,6 +49,16 @@ def a_class(answer: Answer, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.promise(
+    "It has no mark then, the table says why, and the exit status is 1.",
+    "Where an attempt holds two different answers, it is unclear",
+    "Hand in one version: two notebooks with different answers are unclear",
+    '| The table says "unclear". |',
+    "Other names, archives in archives, environments, caches and files beside the answer change no mark.",
+    "What counts is what students checked: the files in `ws/src`.",
+    "Archives in a folder or in another archive are opened",
+    "The notebook itself runs only where its other cells have to make files.",
+)
 def test_each_envelope_has_all_points_or_is_unclear(a_class: Path) -> None:
     done, results = grade(a_class)
     full = results["draft"]["max_score"]
@@ -67,6 +77,7 @@ def test_each_envelope_has_all_points_or_is_unclear(a_class: Path) -> None:
     assert "notebook" not in results["draft"]["phases"]  # type: ignore[operator]
 
 
+@pytest.mark.promise("`--dry-run` grades nothing")
 def test_a_dry_run_names_what_counts_and_what_is_not_used(a_class: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "autograder", "grade", str(a_class), "--assignment", CHAPTER, "--dry-run"],
@@ -82,6 +93,10 @@ def test_a_dry_run_names_what_counts_and_what_is_not_used(a_class: Path) -> None
     assert not (a_class / "results").exists()
 
 
+@pytest.mark.promise(
+    "The newest attempt of a student counts, with all of its files",
+    "Each member of a group on Gradescope has the group's result",
+)
 def test_all_files_of_a_canvas_attempt_and_all_members_of_a_gradescope_group_count(
     answer: Answer, tmp_path: Path
 ) -> None:

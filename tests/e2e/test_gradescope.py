@@ -40,6 +40,7 @@ def graded(home: Path) -> dict[str, object]:
     return report
 
 
+@pytest.mark.promise("Gradescope builds an image of it and grades each submission when it comes.")
 def test_the_reference_has_all_points_and_an_answer_without_packages_has_no_score(home: Path) -> None:
     submission = home / "submission"
     write_reference(suites.hidden(ASSIGNMENT).sources, submission / "ws")
@@ -55,6 +56,27 @@ def test_the_reference_has_all_points_and_an_answer_without_packages_has_no_scor
     assert "package" in str(report["output"])
 
 
+@pytest.mark.promise("Then no submission gets a mark, and the output of each says why.")
+def test_without_namespaces_a_submission_has_no_result_and_the_output_says_why(home: Path, tmp_path: Path) -> None:
+    bwrap = tmp_path / "bwrap"
+    bwrap.write_text("#!/bin/sh\necho 'No permissions to create new namespace' >&2\nexit 1\n")
+    bwrap.chmod(0o755)
+    (home / "submission").mkdir(exist_ok=True)
+    (home / "results" / "results.json").unlink(missing_ok=True)
+    path = f"{tmp_path}{os.pathsep}{os.environ['PATH']}"
+    script = home / "source" / "run_autograder"
+    ran = subprocess.run(
+        [script], env={**os.environ, "GRADESCOPE_HOME": str(home), "PATH": path}, capture_output=True, text=True
+    )
+    assert ran.returncode == 1
+    assert "cannot isolate submissions" in ran.stderr
+    assert "No permissions to create new namespace" in ran.stderr
+    assert not (home / "results" / "results.json").exists()
+
+
+@pytest.mark.promise(
+    "autograder gradescope 02_nodes --out 02_nodes.zip", "The zip holds `setup.sh`, `run_autograder`, and the course"
+)
 def test_the_zip_holds_what_setup_needs_and_nothing_that_was_built(home: Path) -> None:
     names = set(zipfile.ZipFile(home / "upload.zip").namelist())
     assert {"setup.sh", "run_autograder", "course/Makefile", "course/requirements.lock"} <= names

@@ -65,6 +65,9 @@ def _grade(path: Path, out: Path) -> Result:
     return grade_submission(path, ASSIGNMENT, student="alice", seed=SEED, out=out)
 
 
+@pytest.mark.promise(
+    "A submission is the student's folder, a zip or tar archive of it, the notebook alone, or a source tree."
+)
 @pytest.mark.parametrize("layout", ["zip", "notebook"])
 def test_the_reference_gets_everything_in_every_layout(together: dict[str, Result], layout: str) -> None:
     result = together[layout]
@@ -80,10 +83,12 @@ def test_the_reference_gets_everything_in_every_layout(together: dict[str, Resul
     assert result.build.packages[-1] == PACKAGE
 
 
+@pytest.mark.promise("Each student has a folder in `results`: `result.json`, pictures, and")
 def test_the_pictures_of_the_tracks_are_stored_beside_the_result(together: dict[str, Result]) -> None:
     assert {artifact.check for artifact in together["zip"].artifacts} == {"room", "pillars", "corridor"}
 
 
+@pytest.mark.promise("A minute of driving takes seconds, and a mark is the same every time.")
 def test_grading_one_at_a_time_gives_the_same_result_as_two_at_once(
     together: dict[str, Result], layouts: tuple[Entry, ...], tmp_path: Path
 ) -> None:
@@ -94,6 +99,10 @@ def test_grading_one_at_a_time_gives_the_same_result_as_two_at_once(
     assert len(set(tracks)) == 3
 
 
+@pytest.mark.promise(
+    "autograder replay results/alice --check room",
+    "A mark comes with its seed, and the same seed gives the same inputs.",
+)
 def test_a_check_is_replayed_with_the_seed_of_its_result(
     together: dict[str, Result], layouts: tuple[Entry, ...], tmp_path: Path
 ) -> None:
@@ -235,6 +244,9 @@ SteppedHarness.step = step
 """
 
 
+@pytest.mark.promise(
+    'If the grader itself fails, the result says "not graded", never zero.', '| The result says "not graded". |'
+)
 @pytest.mark.parametrize(
     ("code", "logged"),
     [
@@ -293,6 +305,7 @@ def test_a_machine_without_namespaces_refuses_to_grade_with_the_weak_tier(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.promise("`--isolation process` grades there all the same")
 def test_the_weaker_tier_is_named_in_the_result(reference: Path, tmp_path: Path) -> None:
     shutil.copytree(reference, tmp_path / "alice")
     (tmp_path / "alice" / "src" / PACKAGE / "setup.py").unlink()

@@ -30,6 +30,7 @@ def resume(folder: Path) -> subprocess.Popen[str]:
     )
 
 
+@pytest.mark.promise("Ctrl-C loses nothing")
 def test_ctrl_c_ends_a_class_and_resume_goes_on(tmp_path: Path) -> None:
     for student in STUDENTS:
         package = tmp_path / "class" / student / "src" / "my_robot_package"

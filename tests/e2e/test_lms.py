@@ -90,6 +90,16 @@ def imported(path: Path, worksheet: Path) -> dict[str, str]:
     return {row[0]: row[grade] for row in rows}
 
 
+@pytest.mark.promise(
+    "autograder grade download.zip --assignment 02_nodes --roster worksheet.csv --out results -j 4",
+    "autograder export results --format moodle --roster worksheet.csv --out marks.csv",
+    "A submission that fits no student is listed, and the exit status is 1.",
+    "`results/handed_in.json` lists the late students",
+    "`--format moodle`: the worksheet with grades",
+    "A download of Moodle, Canvas, Gradescope or GitHub Classroom is graded",
+    "Marks are scaled to the maximum that the table says.",
+    "Two commands take a class from the system's download to the table that it imports.",
+)
 @pytest.mark.parametrize(
     ("assignment", "flawed", "students"),
     [

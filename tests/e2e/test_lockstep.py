@@ -142,6 +142,7 @@ def two_runs(name: str) -> Any:
     return in_cell(trace, PROGRAMS[name], 2)
 
 
+@pytest.mark.promise("Robot time is stepped.")
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_program_prints_the_same_in_every_run_and_receives_every_message(name: str) -> None:
     first, again = two_runs(name)

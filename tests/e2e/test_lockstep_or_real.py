@@ -171,6 +171,11 @@ def met(scratch: Path, text: str) -> Any:
     return ways, workspace.time_record.explain()
 
 
+@pytest.mark.promise(
+    "for example, runs in real time, and the result says so.",
+    "| Grading takes minutes. |",
+    "`AutoHarness` steps a program where that is possible",
+)
 @pytest.mark.parametrize(
     ("reason", "words"),
     [

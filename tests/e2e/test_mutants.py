@@ -35,6 +35,12 @@ def workers() -> Iterator[WorkerPool]:
         yield worker
 
 
+@pytest.mark.promise(
+    "The reference and right answers in another style have all marks.",
+    "The untouched release has none.",
+    "About a thousand wrong answers each lose the checks that they should",
+    "The tests execute the notebooks, and grade some of the submissions whose mark is known.",
+)
 @pytest.mark.slow
 @pytest.mark.parametrize("case", PROOF.values(), ids=PROOF)
 def test_a_submission_gets_its_expected_result(case: Case, workers: WorkerPool, tmp_path: Path) -> None:

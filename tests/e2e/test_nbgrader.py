@@ -85,6 +85,9 @@ def results(graded: Classroom) -> dict[str, Result]:
     return {item.result.student: item.result for item in load(graded.grade("--resume"))}
 
 
+@pytest.mark.promise(
+    "`autograde` takes its points from the grader of this course.", "nbgrader's gradebook, by `nbgrader autograde`"
+)
 @pytest.mark.parametrize("student", CLASS)
 def test_the_gradebook_has_the_points_that_the_grader_gave(
     student: str, graded: Classroom, results: dict[str, Result]
@@ -151,6 +154,7 @@ def test_outputs_of_the_sandboxed_kernel_are_in_the_autograded_notebook(graded: 
     assert [output.text.split()[0] for output in solution.outputs] in (["Writing"], ["Overwriting"])
 
 
+@pytest.mark.promise("`release_assignment`, `collect`, `autograde` and `generate_feedback` work as usual.")
 def test_students_fetch_their_feedback(graded: Classroom) -> None:
     graded.nbgrader("release_feedback")
     folder = graded.place / "flawed"
@@ -160,6 +164,10 @@ def test_students_fetch_their_feedback(graded: Classroom) -> None:
     assert page.read_bytes() == made.read_bytes()
 
 
+@pytest.mark.promise(
+    "nbgrader autograde 02_nodes",
+    "It records a stored result of `autograder grade` and does not grade that submission again.",
+)
 def test_results_graded_before_in_parallel_are_recorded(graded: Classroom, results: dict[str, Result]) -> None:
     stored = graded.place / "results"
     before = (stored / ASSIGNMENT / "flawed" / "result.json").stat().st_mtime_ns

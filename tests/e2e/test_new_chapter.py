@@ -35,6 +35,11 @@ def on(course: Path, words: str) -> subprocess.CompletedProcess[str]:
     return shell(f"autograder --course {course} {words}", course.parent)
 
 
+@pytest.mark.promise(
+    "`autograder new chapter 10_mapping` writes a small one that works",
+    "`autograder --course FOLDER VERB` works on it with every verb.",
+    "The new chapter is small, but nothing is missing.",
+)
 def test_a_new_chapter_keeps_every_rule(course: Path) -> None:
     checked = on(course, "course check")
     assert (checked.returncode, checked.stdout) == (0, "")
@@ -51,6 +56,7 @@ def test_a_new_chapter_contains_no_placeholder_of_the_template(course: Path) -> 
     assert [path for path, text in texts.items() if "NEW_" in f"{path}{text}" or "TODO" in text] == []
 
 
+@pytest.mark.promise("Without `--only`, `verify` also tries every small error in all that students write")
 @pytest.mark.nightly
 def test_every_mutant_of_a_new_chapter_is_killed(course: Path) -> None:
     done = on(course, "verify -j 2")
@@ -86,6 +92,15 @@ def test_an_invalid_name_of_a_new_chapter_is_refused_and_nothing_is_written(
     assert {*course.rglob("*")} == before
 
 
+@pytest.mark.promise(
+    "The variable says on which course `autograder` works.",
+    "The reference and the variant get all points, the untouched release none",
+    "`--record` writes all checks that the error fails to `mutants.snapshot.yaml`.",
+    "`autograder verify --assignment 02_nodes --only index_zero_is_forward` grades one of them",
+    "`sync` writes that, and `check` finds what does not fit together",
+    "`graded/ada/feedback.html` shows the check, your hint, and the sentence of the notebook.",
+    "Students get the course without hidden checks and answers, by this command:",
+)
 def test_every_command_of_the_tutorial_prints_what_the_page_says(tmp_path: Path) -> None:
     blocks = BLOCKS.findall(PAGE.read_text(encoding="utf-8"))
     script = "".join(f"{text}\necho =====\n" for kind, text in blocks if kind == "sh")

@@ -33,6 +33,7 @@ def text_of(folder: Path) -> str:
     return "\n".join(path.read_text(errors="replace") for path in folder.rglob("*") if path.is_file())
 
 
+@pytest.mark.promise("autograder release --out course", "The folder holds the notebooks without their solutions")
 def test_the_release_contains_every_chapter_as_nbgrader_releases_it(bundle: Path) -> None:
     for chapter in chapters():
         released = in_form(chapter.read(), Form.RELEASED)
@@ -49,6 +50,7 @@ def test_the_release_contains_no_caches_or_build_folders(bundle: Path) -> None:
     assert layout.NOT_COPIED(str(bundle), names) == {"build", "__pycache__", ".mypy_cache", ".ruff_cache"}
 
 
+@pytest.mark.promise("Students start it with `make lab`.")
 def test_each_make_target_that_the_release_names_is_in_its_makefile(bundle: Path) -> None:
     texts = [path for path in bundle.rglob("*") if path.suffix in (".py", ".md", ".ipynb")]
     named = {name for path in texts for name in re.findall(r"`make ([a-z-]+)`", path.read_text())}
@@ -56,6 +58,7 @@ def test_each_make_target_that_the_release_names_is_in_its_makefile(bundle: Path
     assert {"setup", "real-launch"} <= named <= targets
 
 
+@pytest.mark.promise("It holds no hidden check and no solution.", "autograder release --out course")
 def test_the_release_contains_no_line_of_a_hidden_suite(bundle: Path) -> None:
     shown = text_of(bundle)
     hidden = {
@@ -74,6 +77,7 @@ def test_the_release_contains_no_line_of_a_hidden_suite(bundle: Path) -> None:
     assert kept == {"__init__.py", "conftest.py", "support", "visible"}
 
 
+@pytest.mark.promise("autograder check 02_nodes` does the same", "`autograder check 02_nodes` runs the same checks")
 def test_check_of_the_release_runs_without_the_instructors_modules(bundle: Path) -> None:
     """A copy of Python's environment is not needed for it: the code of the bundle comes first on the path."""
     check = [sys.executable, "-m", "autograder", "check", "00_welcome"]
@@ -89,6 +93,13 @@ def test_check_of_the_release_runs_without_the_instructors_modules(bundle: Path)
     assert re.findall(r"^  ([a-z]+)  ", listed.stdout, re.MULTILINE) == ["check", "doctor", "ros", "update"]
 
 
+@pytest.mark.promise(
+    "autograder release 00_welcome 01_package_structure --out week-1",
+    "autograder release 02_nodes --out week-2-again --newest /srv/ros2/newest",
+    ".venv/bin/autograder update ../FOLDER",
+    "They unpack it and type `autograder update FOLDER`.",
+    "A later release, of all chapters or of one, updates the folders that students have already:",
+)
 def test_a_release_of_one_chapter_updates_a_bundle_of_all_chapters(bundle: Path, tmp_path: Path) -> None:
     mine = shutil.copytree(bundle, tmp_path / "mine")
     later = tmp_path / "later"

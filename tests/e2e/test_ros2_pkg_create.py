@@ -136,6 +136,7 @@ def test_ros2_run_starts_an_executable(workspace: Workspace) -> None:
     assert workspace.ros2("run", "--prefix", "echo would run", "py_pkg", "hello", "-x").stdout.startswith("would run /")
 
 
+@pytest.mark.promise("| `Package 'my_robot_package' not found` in a terminal |")
 @pytest.mark.parametrize(
     ("words", "error"),
     [

@@ -92,6 +92,7 @@ def _out(*names: str) -> list[str]:
         return [out for name in names if (out := in_cell(tries, name, server.getsockname()[1]))]
 
 
+@pytest.mark.promise("sandbox without network and without sight of the checks")
 def test_no_file_process_or_memory_of_the_grader_can_be_read() -> None:
     assert _out("files", "processes", "memory") == []
 
@@ -127,6 +128,10 @@ def test_a_large_file_is_cut_off() -> None:
     assert "File too large" in answer["output"]
 
 
+@pytest.mark.promise(
+    "sandbox without network and without sight of the checks",
+    "Students' code does not see it: the sandbox has neither the network nor that folder.",
+)
 def test_there_is_no_way_out_to_any_network() -> None:
     assert _out("network", "loopback") == []
 
@@ -167,6 +172,7 @@ def test_neither_the_grader_nor_anything_outside_can_be_signalled_or_traced() ->
     assert _out("signals", "memory") == []
 
 
+@pytest.mark.promise("With `--isolation process` it has both", "students' code could then read the checks")
 @pytest.mark.parametrize("way", ["started"], indirect=True)
 @pytest.mark.parametrize("name", ["files", "processes", "network", "unmapped memory"])
 def test_without_a_sandbox_the_same_programs_get_out(name: str, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -27,6 +27,7 @@ def prefix() -> Path:
     return ros.prefixes[0]
 
 
+@pytest.mark.promise("Their types have the hashes of the real ones")
 def test_an_interface_type_has_the_hash_of_the_real_package(prefix: Path) -> None:
     described = json.loads((prefix / "share/example_interfaces/srv/AddTwoInts.json").read_text())
     hashes = {entry["type_name"]: entry["hash_string"] for entry in described["type_hashes"]}
@@ -70,6 +71,7 @@ def test_an_installed_interface_package_is_not_built_again(prefix: Path) -> None
     assert tutorials.install(prefix) == []
 
 
+@pytest.mark.promise("Set-up builds them for Python programs")
 def test_a_missing_package_is_built_and_a_loaded_library_is_never_written_to(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -179,6 +179,11 @@ def text(page: Step) -> Page:
     return Page((Path(os.environ[SOURCE]) / "source/Tutorials" / f"{page['page']}.rst").read_text())
 
 
+@pytest.mark.promise(
+    "`make tutorials` does what the Python tutorials of Jazzy's documentation say",
+    '`make tutorials PYTEST_ARGS="-k NAME"` does one of them',
+    "It takes commands, code and changes of files from the pages",
+)
 @pytest.mark.nightly
 @pytest.mark.skipif(not os.environ.get(SOURCE), reason=f"{SOURCE} names no clone")
 @pytest.mark.timeout(4 * PATIENCE)

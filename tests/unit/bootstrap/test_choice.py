@@ -29,6 +29,7 @@ def test_each_python_that_jazzy_has_wheels_for_is_accepted(version: tuple[int, i
     assert bootstrap.check_machine(version, "Linux", "x86_64") is None
 
 
+@pytest.mark.promise("You need Linux on x86-64, Python 3.10 to 3.13")
 @pytest.mark.parametrize("version", [(2, 7), (3, 9), (3, 14)])
 def test_an_unsupported_python_is_refused_with_the_supported_ones(version: tuple[int, int]) -> None:
     with pytest.raises(
@@ -37,6 +38,7 @@ def test_an_unsupported_python_is_refused_with_the_supported_ones(version: tuple
         bootstrap.check_machine(version, "Linux", "x86_64")
 
 
+@pytest.mark.promise("You need Linux on x86-64, Python 3.10 to 3.13", "On macOS, Windows or ARM, open the")
 @pytest.mark.parametrize("machine", [("Darwin", "arm64"), ("Windows", "AMD64"), ("Linux", "aarch64")])
 def test_an_unsupported_machine_is_refused_with_the_supported_ones(machine: tuple[str, str]) -> None:
     with pytest.raises(SetUpError, match=f"this is {' '.join(machine)}: use the container"):
@@ -70,6 +72,7 @@ def test_a_students_workspace_over_the_wheels_does_not_count_as_sourced() -> Non
     assert bootstrap.sourced_ros(overlaid, VENV, PY312) is None
 
 
+@pytest.mark.promise("Where a ROS 2 Jazzy is sourced, that one is used.")
 def test_a_sourced_jazzy_is_used(ros: Path) -> None:
     sourced = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": "/opt/ros/jazzy", "PYTHONPATH": f"/elsewhere:{ros}"}
     assert bootstrap.sourced_ros(sourced, VENV, PY312) == str(ros)

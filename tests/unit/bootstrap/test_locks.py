@@ -52,6 +52,7 @@ def test_a_lock_names_no_address_and_no_index(lock: str) -> None:
     )
 
 
+@pytest.mark.promise("`make setup` installs them from `requirements.lock`.")
 def test_the_tests_run_with_the_pins_that_users_install() -> None:
     assert pins(BASE) <= pins(DEV)
 
@@ -62,6 +63,7 @@ def test_additional_locks_do_not_change_the_pins_of_the_tests(lock: str) -> None
     assert not any(name.startswith("ros-") for name in names(lock))
 
 
+@pytest.mark.promise("make cluster")
 def test_the_extra_for_clusters_has_the_packages_of_its_lock() -> None:
     data = tomllib.loads((ROOT / "pyproject.toml").read_text())
     assert data["dependency-groups"]["cluster"] == data["project"]["optional-dependencies"]["cluster"]

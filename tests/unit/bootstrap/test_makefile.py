@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -27,12 +28,27 @@ def make(*arguments: str, path: str | None = None, **environ: str) -> str:
     return done.stdout
 
 
+@pytest.mark.promise("`make` lists every target.")
 def test_make_alone_lists_every_target_with_its_help() -> None:
     told = make()
-    for target in ("setup", "demo", "test", "check", "lab", "bench", "verify", "lock", "clean"):
+    (phony,) = re.findall(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    for target in set(phony.split()) - {"$(LINTERS)", "fast-engine"}:  # which others call
         line = next(line for line in told.splitlines() if line.startswith(f"  make {target} "))
         assert len(line.split()) > 3, line
     assert make("help") == told
+
+
+@pytest.mark.promise("`.ci/run` runs lint, types and all tests but the nightly ones.")
+def test_ci_runs_lint_types_doctor_and_all_tests_but_the_nightly_ones() -> None:
+    assert re.search(r"^make test ", (ROOT / ".ci" / "run").read_text(), re.MULTILINE)
+    told = make("-n", "test")
+    for command in ("lint-types", "lint-style", "lint-imports", "autograder doctor", "pytest -n 4", '-m "not nightly"'):
+        assert command in told, command
+
+
+@pytest.mark.promise("make lab")
+def test_make_lab_opens_jupyterlab_on_the_chapters() -> None:
+    assert "bin/autograder ros jupyter lab --ServerApp.root_dir=chapters" in make("-n", "lab")
 
 
 @pytest.fixture
@@ -82,6 +98,7 @@ def test_without_a_usable_python_the_makefile_takes_python3_and_the_set_up_repor
     assert chosen(interpreters) == "python3"
 
 
+@pytest.mark.promise("`make PYTHON=...` takes a Python of your choice", "`make setup PYTHON=python3.12`")
 def test_the_interpreter_that_the_user_chose_is_used(interpreters: Path) -> None:
     assert chosen(interpreters, PYTHON="/opt/python3.13") == "/opt/python3.13"
 

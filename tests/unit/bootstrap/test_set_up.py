@@ -20,6 +20,7 @@ def set_up(clone: Path, commands: Any) -> SetUp:
     return SetUp(clone, PY312, None, commands)
 
 
+@pytest.mark.promise("make setup")
 def test_a_set_up_is_made_once(set_up: SetUp, commands: Any, capsys: pytest.CaptureFixture[str]) -> None:
     set_up.make(dev=False)
     assert commands.take() == ["venv", "base", "project", "patch", "tutorials"]
@@ -95,6 +96,7 @@ def test_an_unreadable_stamp_counts_as_a_missing_stamp(set_up: SetUp, stamp: str
     assert set_up.missing_parts(dev=False) == ["base", "project"]
 
 
+@pytest.mark.promise("Run the same `make` command again. It begins from the start.")
 @pytest.mark.parametrize("step", ["-m venv", "requirements.lock", "-e ", "ros.patch_wheels", "interfaces.tutorials"])
 def test_an_interrupted_set_up_is_made_again_from_the_start(set_up: SetUp, commands: Any, step: str) -> None:
     commands.interrupting = step
@@ -142,6 +144,7 @@ def test_a_python_without_ensurepip_gets_pip_from_the_systems_pip(set_up: SetUp,
     assert f"--target {set_up.venv}/lib/python3.12/site-packages pip" in commands.ran[2]
 
 
+@pytest.mark.promise("`sudo apt-get install python3-venv`")
 def test_a_python_without_pip_is_reported_with_the_package_to_install(set_up: SetUp, commands: Any) -> None:
 
     def run(*command: str, quiet: bool = False) -> int:

@@ -41,6 +41,7 @@ def test_a_whole_package_is_found_by_the_name_in_its_manifest(tmp_path: Path) ->
     assert build.find_packages(tmp_path) == ({NAME: tmp_path / NAME}, {})
 
 
+@pytest.mark.promise("The message names what was found.")
 def test_a_missing_package_is_named_with_what_is_there(tmp_path: Path) -> None:
     _package(tmp_path, **{"package.xml": "<package><name>my_robot</name></package>"})
     (tmp_path / NAME).rename(tmp_path / "other")
@@ -55,6 +56,7 @@ def test_a_folder_without_a_manifest_is_no_package(tmp_path: Path) -> None:
     assert "src/my_robot_package has no package.xml with <name>my_robot_package</name>" in sentence
 
 
+@pytest.mark.promise('| A submission "holds no package" |')
 def test_a_missing_src_and_an_empty_src_have_different_messages(tmp_path: Path) -> None:
     assert "There is no ws/src folder" in _fault(tmp_path / "src")[1]
     assert "src holds no package at all" in _fault(tmp_path)[1]

@@ -72,6 +72,7 @@ def test_a_module_that_only_helps_a_verb_is_not_listed_as_one(tmp_path: Path, mo
     assert (listed.exit_code, re.findall(r"\n  ([a-z]+) ", listed.output)) == (0, ["check", "update"])
 
 
+@pytest.mark.promise("autograder grade submissions/ --assignment 02_nodes --out results -j 4")
 def test_grading_prints_a_line_and_a_row_for_each_submission_and_exits_0(
     tmp_path: Path, make_result: MakeResult, graded: Callable[..., dict[str, Any]]
 ) -> None:
@@ -89,6 +90,11 @@ def test_grading_prints_a_line_and_a_row_for_each_submission_and_exits_0(
     assert (out / "index.html").is_file()
 
 
+@pytest.mark.promise(
+    "autograder grade submissions/ --assignment 02_nodes --out results --resume -j 4",
+    "lists the marks that differ",
+    "At the end come the students whose mark has changed, by how much, and by which checks.",
+)
 def test_regrading_with_resume_lists_the_students_whose_mark_changed(
     tmp_path: Path, make_result: MakeResult, graded: Callable[..., dict[str, Any]]
 ) -> None:
@@ -171,6 +177,7 @@ def test_a_known_error_is_reported_in_a_sentence(
     assert capsys.readouterr().err == f"autograder: {error}\n"
 
 
+@pytest.mark.promise("In a terminal, `autograder check 02_nodes` does the same.")
 @pytest.mark.parametrize("folder", ["ws", "02_nodes/ws", "chapters/02_nodes/ws"])
 def test_checking_finds_the_workspace_from_the_chapter_and_from_the_course(
     folder: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

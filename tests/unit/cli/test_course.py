@@ -49,6 +49,7 @@ def run(verb: str, *names: str) -> Result:
     return CliRunner().invoke(command.course, [verb, *names])
 
 
+@pytest.mark.promise("`autograder course check` finds what differs")
 def test_course_check_names_all_findings_and_exits_with_1(course: Path) -> None:
     result = run("check")
     assert result.exit_code == 1
@@ -83,6 +84,7 @@ def test_the_lists_of_hidden_checks_that_students_get_are_up_to_date() -> None:
     assert "The node is called robot_controller." in json.loads(layout.judged_later("02_nodes").read_text())
 
 
+@pytest.mark.promise("After `check(...)` has passed, it lists the hidden checks")
 @pytest.mark.parametrize("assignment", suites.graded_assignments())
 def test_a_student_whose_visible_checks_all_pass_gets_the_list_of_hidden_checks(
     assignment: str, monkeypatch: pytest.MonkeyPatch

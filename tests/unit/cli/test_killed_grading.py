@@ -77,6 +77,11 @@ def listed(folder: Path) -> list[str]:
     return [f"\n{heading}{text.partition('[')[0]}" for text in texts]
 
 
+@pytest.mark.promise(
+    "nor does a machine that stops",
+    "the same command lists all changes at its end",
+    "Each old result stays until the new one is complete.",
+)
 @pytest.mark.slow
 @pytest.mark.parametrize("instant", range(INSTANTS))
 def test_the_list_of_changes_is_whole_after_a_kill_at_any_instant(

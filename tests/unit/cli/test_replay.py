@@ -27,6 +27,7 @@ def stored(make_result: Callable[..., Result], tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.promise("autograder replay results/alice --check room")
 def test_the_kept_run_of_one_check_is_shown_alone(stored: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(variable, raising=False)

@@ -59,6 +59,7 @@ def with_run(result: Result, name: str) -> Result:
     return replace(result, artifacts=(Artifact("turns.png", "track", SHA256, "turns", run=name),))
 
 
+@pytest.mark.promise("A submission travels as its files")
 def test_a_parcel_is_unpacked_as_it_was_packed_for_any_file_names() -> None:
     names = ("src/a b/ü.py", "src/\udcff.txt", "run")
     files = tuple(SubmittedFile(PurePosixPath(name), name.encode("utf-8", "replace"), name == "run") for name in names)
@@ -83,6 +84,7 @@ def test_a_parcel_writes_no_file_outside_its_folder(name: str) -> None:
         Parcel.unpack(data)
 
 
+@pytest.mark.promise("The student's name stays with the client.")
 def test_an_answer_is_stored_under_the_student_s_name(request_: GradingRequest, result: Result) -> None:
     told = with_run(result, "turns.run.json")
     taken = accept(answer(told, **{"turns.png": png(), "turns.run.json": b"{}"}), request_, SHA256)
@@ -152,6 +154,7 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
     }
 
 
+@pytest.mark.promise("The client checks it as that of a stranger", "Nothing is written before all of it holds.")
 def test_a_hostile_answer_is_refused_and_writes_nothing(request_: GradingRequest, result: Result) -> None:
     for name, (data, why) in hostile(result).items():
         with pytest.raises(AnswerError, match=why):
@@ -174,6 +177,7 @@ def test_a_submission_that_intake_refuses_is_unclear_and_needs_no_worker(tmp_pat
     assert (result.status, result.score, result.diagnosis) == (Status.UNCLEAR, 0.0, caught.value.diagnosis)
 
 
+@pytest.mark.promise("An answer is at most 64 MiB")
 def test_an_answer_that_would_be_too_large_is_a_failure() -> None:
     files: dict[str, Any] = {"result.json": b"\x00" * (MAX_ANSWER + 1)}
     assert "which is too much" in Answer.unpack(Answer(files).pack()).failure

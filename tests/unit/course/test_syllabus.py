@@ -69,6 +69,7 @@ def test_the_page_has_a_row_for_each_and_keeps_to_markdown() -> None:
     assert "| 7 | no | yes | 02_nodes: Write it |" in text
 
 
+@pytest.mark.promise("`chapters/README.md` in the repository lists the objectives of each chapter")
 def test_the_course_covers_the_syllabus_and_its_page_is_up_to_date() -> None:
     written, findings = course_page()
     assert [str(finding) for finding in findings] == []

@@ -33,6 +33,7 @@ def small(tmp_path: Path, **course: Any) -> Chapter:
     return chapter(tmp_path, notebook(prose("# A title", "title"), cell))
 
 
+@pytest.mark.promise("`autograder course sync` writes the cells that copy it")
 def test_sync_writes_the_cell_with_its_answer_marked(tmp_path: Path, solutions: Path) -> None:
     made = small(tmp_path)
     assert [finding.cell for finding in sync_chapter(made)] == ["node"]

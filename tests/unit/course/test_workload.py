@@ -51,6 +51,7 @@ def test_a_duration_is_rounded_to_steps(minutes: float, words: str) -> None:
     assert duration_text(minutes) == words
 
 
+@pytest.mark.promise("The notebook's first cell says how long a beginner takes")
 def test_a_chapter_that_states_a_wrong_time_is_reported() -> None:
     (finding,) = outdated_time_sentence("turn.ipynb", BOOK)
     assert "5 minutes to read and run, 5 minutes for the exercises" in str(finding)

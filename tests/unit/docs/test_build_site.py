@@ -6,12 +6,14 @@ import runpy
 from pathlib import Path
 
 import nbformat
+import numpy as np
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
 from autograder import layout
 from autograder.author.course.sync import Chapter
 from autograder.layout import Course
+from sim import RobotSpec, Simulation, load_world, run
 
 GLOSSARY = layout.CHAPTERS / "glossary.md"
 MADE = runpy.run_path(str(layout.ROOT / "docs" / "build_site.py"))
@@ -58,6 +60,15 @@ def test_each_exception_from_linking_names_a_term_of_the_glossary() -> None:
     words = {word for entry in MADE["ENTRY"].finditer(GLOSSARY.read_text()) for word in entry["words"].split(", ")}
     assert MADE["EVERYWHERE"].union(*MADE["MEANT_OTHERWISE"].values()) <= words
     assert {name for name in MADE["MEANT_OTHERWISE"] if name[0].isdigit()} <= set(layout.assignments())
+
+
+@pytest.mark.promise("This robot finds its way by its lidar alone.")
+def test_the_robot_on_the_start_page_drives_into_nothing() -> None:
+    simulation = Simulation(load_world(layout.WORLDS / "lab.yaml"), (RobotSpec(),))
+    recording = run(simulation, MADE["wander"], seconds=40.0)
+    hits = [event for event in recording.events if event.kind == "collision"]
+    assert [event.what for event in hits if event.speed] == []  # a colleague may walk into the robot
+    assert np.ptp(recording.poses[..., :2], axis=0).max() > 2.0
 
 
 def test_the_table_of_the_proof_has_each_graded_chapter() -> None:

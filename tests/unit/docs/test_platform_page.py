@@ -35,6 +35,10 @@ def test_the_platform_page_lists_what_the_lock_installs_and_which_tutorials_run(
     assert "| yes | `publisher_and_subscriber` |" in page
 
 
+@pytest.mark.promise(
+    "pytest, setuptools, CMake and the like have the versions of Jazzy's own platform",
+    "What students' programs, builds and tests meet has the versions of that platform",
+)
 @pytest.mark.parametrize("python", MADE["PYTHONS"])
 def test_the_lock_installs_the_platforms_versions_or_the_page_gives_the_reason(python: str) -> None:
     versions = locked(LOCK.read_text(encoding="utf-8"), python)
@@ -46,6 +50,7 @@ def test_the_lock_installs_the_platforms_versions_or_the_page_gives_the_reason(p
     assert unexplained == {}
 
 
+@pytest.mark.promise("What is not covered raises an error that says so.")
 @pytest.mark.parametrize("name", MADE["LAUNCH"])
 def test_each_name_listed_as_not_covered_raises_an_error_that_says_so(name: str) -> None:
     module, _, last = name.rpartition(".")

@@ -346,6 +346,15 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
 }
 
 
+@pytest.mark.promise(
+    "autograder doctor` says which command fixes it",
+    "autograder doctor` names the command for each thing that is missing",
+    "autograder doctor` finds many of these by itself and names the command that fixes them",
+    "autograder doctor` looks at your machine and names the command that fixes it",
+    "`autograder doctor` tells them that their release is an older one",
+    "`autograder doctor` says where a machine has others",
+    "| `g++: command not found` |",
+)
 @pytest.mark.parametrize(("name", "lack", "status", "found", "fix"), LACKS.values(), ids=LACKS.keys())
 def test_a_missing_thing_is_named_with_the_command_that_fixes_it(
     name: str, lack: dict[str, Any], status: Status, found: str, fix: str
@@ -403,6 +412,7 @@ def test_the_report_aligns_findings_and_never_breaks_a_command() -> None:
     assert render(findings[:1]).endswith("Everything needed is here. 1 ok, 0 weak, 0 missing.")
 
 
+@pytest.mark.promise(".venv/bin/autograder doctor")
 def test_this_machine_can_run_the_course() -> None:
     findings = {found.name: found for found in examine(System())}
     for name in ("Python", "environment", "ROS 2", "rclpy", "compiler", "build tools", "notebooks", "disk"):
@@ -437,6 +447,9 @@ def forgets_tries() -> Iterator[None]:
     namespaces_failure.cache_clear()
 
 
+@pytest.mark.promise(
+    "The command that `autograder doctor` prints", "`autograder doctor` in a container says whether it is enough"
+)
 def test_a_bubblewrap_that_is_denied_namespaces_is_detected_on_this_machine(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgets_tries: None
 ) -> None:

@@ -63,6 +63,7 @@ def test_a_student_with_two_results_is_refused(make_result: MakeResult) -> None:
         changes(stored(), stored(make_result("alice"), make_result("alice")))
 
 
+@pytest.mark.promise("autograder compare results regraded")
 def test_the_command_names_students_checks_and_another_submission(make_result: MakeResult, tmp_path: Path) -> None:
     alice = make_result("alice")
     write_json(tmp_path / "old" / "alice" / "result.json", alice.to_json())

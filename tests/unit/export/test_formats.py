@@ -41,6 +41,9 @@ def rows(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
+@pytest.mark.promise(
+    "autograder export results --format csv --out marks.csv", "| `classroom_roster.csv` | `--format csv` |"
+)
 def test_csv_has_a_row_for_each_submission_and_a_column_for_each_check(a_class: Class, tmp_path: Path) -> None:
     alice, bob, carol = rows(write(a_class, "csv", tmp_path / "new" / "marks.csv"))
     assert (alice["student"], alice["score"], alice["max_score"], alice["percent"]) == ("alice", "4.0", "10.0", "40.0")
@@ -84,6 +87,7 @@ def gradescope(stored: Class, out: Path) -> list[dict[str, Any]]:
     return [json.loads((out / item.result.student / "results.json").read_text(encoding="utf-8")) for item in stored]
 
 
+@pytest.mark.promise("`--format gradescope`: a `results.json` each")
 def test_gradescope_gets_the_score_and_a_test_for_each_check(a_class: Class, tmp_path: Path) -> None:
     alice, bob, _ = gradescope(a_class, tmp_path / "out")
     assert (alice["score"], alice["execution_time"], alice["output"]) == (4.0, 12, "")
@@ -107,6 +111,7 @@ def test_gradescope_names_the_failure_with_which_another_came(a_class: Class, tm
     assert came not in tests[2]["output"] + tests[4]["output"]
 
 
+@pytest.mark.promise("Students read the results of hidden checks when you publish the marks.")
 def test_gradescope_shows_hidden_checks_with_the_marks(a_class: Class, tmp_path: Path) -> None:
     tests = gradescope(a_class, tmp_path / "out")[0]["tests"]
     assert {test["visibility"] for test in tests} == {"after_published"}
@@ -118,6 +123,7 @@ def test_gradescope_gets_no_zero_for_an_ungraded_submission(a_class: Class, tmp_
     assert NOT_GRADED in carol["output"]
 
 
+@pytest.mark.promise("autograder export results --format html --out pages")
 def test_html_has_a_page_for_each_student_with_its_pictures_and_a_table(
     make_result: MakeResult, track: Callable[..., Artifact], tmp_path: Path
 ) -> None:

@@ -54,6 +54,7 @@ def test_the_page_shows_the_score_each_check_and_the_reason(make_result: MakeRes
     assert page.all("aria-label") == ["passed", "passed", "failed", "not checked", "failed"]
 
 
+@pytest.mark.promise("for example, runs in real time, and the result says so.")
 def test_only_a_result_with_a_program_in_real_time_has_the_note_on_real_time(
     make_result: MakeResult, tmp_path: Path
 ) -> None:
@@ -117,6 +118,7 @@ def test_many_checks_that_could_not_be_checked_are_a_line_that_unfolds(
     assert page.tags.count("details") == 1
 
 
+@pytest.mark.promise("The second hint says more than the first.")
 def test_hints_are_folded_one_inside_the_other_and_the_page_to_read_is_linked(
     make_result: MakeResult, tmp_path: Path
 ) -> None:
@@ -127,6 +129,7 @@ def test_hints_are_folded_one_inside_the_other_and_the_page_to_read_is_linked(
     assert "https://docs.ros.org/en/jazzy/p/sensor_msgs/" in page.all("href")
 
 
+@pytest.mark.promise("Feedback quotes them.", "which sentence of the notebook asks for something else")
 def test_a_failed_check_quotes_its_sentence_of_the_contract(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
@@ -253,6 +256,7 @@ def test_control_characters_and_half_characters_do_not_reach_the_page(make_resul
     assert "red \ufffd \ufffd \ufffdevil" in text
 
 
+@pytest.mark.promise("`feedback.html` is one file that opens in any browser.")
 def test_a_page_asks_for_nothing_from_the_network(
     make_result: MakeResult, track: Callable[..., Artifact], tmp_path: Path
 ) -> None:
@@ -262,6 +266,7 @@ def test_a_page_asks_for_nothing_from_the_network(
     assert [href for href in page.all("href") if "://" in href] == ["https://docs.ros.org/en/jazzy/p/sensor_msgs/"]
 
 
+@pytest.mark.promise("give everybody a page of feedback")
 def test_the_table_links_each_page_and_sums_up(
     make_result: MakeResult, broken_result: Result, ungraded_result: Result, tmp_path: Path
 ) -> None:

@@ -73,6 +73,10 @@ def grade(folder: Path, worker: Worker, seconds: float = 900.0) -> Result:
     )
 
 
+@pytest.mark.promise(
+    "If such a program loses a point while the machine was busy, it is graded once more, alone.",
+    "a program in real time that lost a point while the machine was busy is graded once more, alone",
+)
 def test_a_result_in_doubt_is_graded_again_alone_and_replaced(tmp_path: Path, lost: Result) -> None:
     worker = Worker(lost, whole(lost))
     result = grade(tmp_path, worker)

@@ -34,13 +34,13 @@ def grade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Grade:
     monkeypatch.setenv("PYTEST_ADDOPTS", "--collect-only")
     monkeypatch.setenv("PYTEST_PLUGINS", "no_such_plugin")
 
-    def grade_text(text: str, scope: Scope = ALL, last: bool = False) -> GradingPlugin:
+    def grade_text(text: str, scope: Scope = ALL, last: bool = False, seed: int = 7) -> GradingPlugin:
         # A name of its own: pytest keeps the modules that this process has imported.
         path = tmp_path / "chapter" / "hidden" / f"checks_{next(_NUMBERS)}.py"
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(HEAD + textwrap.dedent(text))
         workspace = Workspace(tmp_path / "ws", activate(), tmp_path)
-        plugin = GradingPlugin(workspace, 7, Gallery(tmp_path / "out"), scope=scope, last=last)
+        plugin = GradingPlugin(workspace, seed, Gallery(tmp_path / "out"), scope=scope, last=last)
         run((path,), plugin)
         return plugin
 
@@ -101,6 +101,9 @@ def test_each_check_passes_or_fails_with_its_fraction_in_the_order_of_the_file(g
     assert plugin.diagnosis is OK
 
 
+@pytest.mark.promise(
+    "`hint` is shown when the check fails", "`expect(..., hints=...)` has others for a failure that they do not fit"
+)
 def test_a_failure_has_the_hints_of_the_check_or_its_own(grade: Grade) -> None:
     plugin = grade("""
         @check(points=1, group="g")
@@ -118,6 +121,7 @@ def test_a_failure_has_the_hints_of_the_check_or_its_own(grade: Grade) -> None:
     assert [result.hints for result in plugin.results.values()] == [("of the check",), ("of the failure",)]
 
 
+@pytest.mark.promise('If one of them did not pass, this one is "not checked".')
 def test_checks_that_need_a_failed_check_directly_or_not_are_not_run(grade: Grade) -> None:
     plugin = grade("""
         @check(points=1, group="g")
@@ -144,6 +148,7 @@ def test_checks_that_need_a_failed_check_directly_or_not_are_not_run(grade: Grad
     assert plugin.failures == []
 
 
+@pytest.mark.promise("This one is run in any case, and feedback shows it under them if both fail.")
 def test_a_check_after_one_that_failed_is_run_and_judged_by_itself(grade: Grade) -> None:
     plugin = grade("""
         @check(points=1, group="g")
@@ -215,6 +220,7 @@ def test_any_other_exception_is_the_grader_s_own_failure(grade: Grade, error: st
     assert len(plugin.failures) == 1
 
 
+@pytest.mark.promise("`grader.log` beside the result says where.")
 @pytest.mark.parametrize("where", ["check", "fixture", "module"])
 def test_an_error_over_data_in_hand_fails_that_check_alone_and_is_kept_for_the_instructor(
     grade: Grade, where: str
@@ -346,6 +352,18 @@ def test_a_check_gets_the_workspace_the_seed_and_a_gallery_of_its_own(grade: Gra
             expect(seed == 7 and gallery.check == "it" and workspace.install.name == "install", "wrong fixtures")
         """)
     assert _outcomes(plugin) == {"it": (Outcome.PASSED, 1.0)}
+
+
+@pytest.mark.promise("`draw` gives random numbers that follow from the seed of the grading.")
+def test_what_a_check_draws_follows_from_the_seed(grade: Grade) -> None:
+    text = """
+        @check(points=1, group="g")
+        def test_it(draw):
+            '''It is so.'''
+            expect(False, str(draw.random()))
+    """
+    first, again, other = (grade(text, seed=seed).results["it"].message for seed in (7, 7, 8))
+    assert first == again != other
 
 
 def test_files_around_the_suite_are_not_collected(grade: Grade, tmp_path: Path) -> None:

@@ -278,6 +278,10 @@ def test_there_are_sixty_envelopes_and_more() -> None:
     assert len(FOLDERS) + len(NOTEBOOKS) + len(ARCHIVES) + len(DOWNLOADS) >= 60
 
 
+@pytest.mark.promise(
+    "a file that is missing, or still as you got it, is taken from the notebook's cell",
+    "A file that is missing, or still as released, is taken from the notebook's cell.",
+)
 @pytest.mark.parametrize("envelope", FOLDERS)
 def test_a_folder_is_graded_as_the_plain_answer(
     envelope: str, answer: Answer, plain: Submission, tmp_path: Path
@@ -341,6 +345,7 @@ def test_a_link_outside_of_the_packages_is_left_out_and_named(
     assert found.unused == ("latest is a symbolic link", "pipe is not a regular file")
 
 
+@pytest.mark.promise("Screenshots, reports and readmes beside the answer are listed and not used.")
 def test_each_file_that_plays_no_part_is_named(answer: Answer, tmp_path: Path) -> None:
     files = {
         **answer.released,
@@ -383,6 +388,9 @@ UNCLEAR: dict[str, tuple[Callable[[Answer], Files], str]] = {
 }  # fmt: skip
 
 
+@pytest.mark.promise(
+    "For 7z, RAR and Zstandard, the message says to unpack them.", "A submission is *unclear* if it cannot be opened"
+)
 @pytest.mark.parametrize("envelope", UNCLEAR)
 def test_what_may_hold_an_answer_and_is_unclear_says_what_to_do(envelope: str, answer: Answer, tmp_path: Path) -> None:
     files, words = UNCLEAR[envelope]

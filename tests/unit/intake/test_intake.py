@@ -69,6 +69,9 @@ def _refused(path: Path) -> tuple[Kind, str]:
 # Every layout.
 
 
+@pytest.mark.promise(
+    "A submission is the student's folder, a zip or tar archive of it, the notebook alone, or a source tree."
+)
 @pytest.mark.parametrize("layout", ["folder", "folder in a folder", "zip", "zip with a top folder", "zip by two"])
 def test_a_whole_folder_is_recognised_however_it_is_packed(tmp_path: Path, layout: str) -> None:
     if layout.startswith("folder"):
@@ -89,6 +92,9 @@ def test_a_lone_notebook_may_have_any_name(tmp_path: Path) -> None:
     assert (taken.notebook, taken.source, taken.extra) == (NOTEBOOK, (), ())
 
 
+@pytest.mark.promise(
+    "A submission is the student's folder, a zip or tar archive of it, the notebook alone, or a source tree."
+)
 def test_a_bare_source_tree_has_no_notebook(tmp_path: Path) -> None:
     taken = read_submission(_write(tmp_path / "bob", {"src/pkg/package.xml": b"x"}), CHAPTER)
     assert taken.notebook is None
@@ -100,6 +106,7 @@ def test_ws_src_is_preferred_to_a_folder_called_src_beside_it(tmp_path: Path) ->
     assert [(str(entry.path), entry.data) for entry in taken.source] == [("pkg/a", b"1")]
 
 
+@pytest.mark.promise("Folders named `build`, `install` and `log` are not needed")
 def test_files_that_colcon_and_python_generate_are_ignored(tmp_path: Path) -> None:
     left = ["ws/build/x", "ws/install/lib/x", "ws/log/x", "ws/src/my_robot_package/__pycache__/x.pyc", ".git/config"]
     plain, full = _write(tmp_path / "plain", TREE), _write(tmp_path / "full", {**TREE, **dict.fromkeys(left, b"x")})

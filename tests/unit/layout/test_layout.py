@@ -21,12 +21,14 @@ def course(folder: Path, lines: str) -> Course:
     return Course.read(folder)
 
 
+@pytest.mark.promise("A course is a folder with a `course.yaml`, which needs a `name` and a `title`.")
 def test_a_course_needs_a_name_and_a_title_and_all_else_has_a_default(tmp_path: Path) -> None:
     small = course(tmp_path, LINES)
     assert (small.name, small.title, small.chapters, small.checks) == ("small", "A small course", "chapters", "checks")
     assert small.released == ()
 
 
+@pytest.mark.promise("the file may name other places")
 def test_a_course_file_names_the_folders_and_the_files_that_students_get(tmp_path: Path) -> None:
     small = course(tmp_path, LINES + "checks: suites\nreleased: [chapters/commands.md]\n")
     assert small.checks == "suites"

@@ -95,6 +95,10 @@ def test_the_name_of_a_moodle_file_cannot_make_it_another_students(tmp_path: Pat
     assert collected.missing == ("zoe@example.edu", "bob@example.edu")
 
 
+@pytest.mark.promise(
+    "A download of Moodle, Canvas, Gradescope or GitHub Classroom is graded",
+    "Canvas says in the names of files who was late",
+)
 def test_a_canvas_download_names_attempts_and_late_submissions(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "canvas",
@@ -122,6 +126,7 @@ def test_the_files_of_a_canvas_attempt_come_together_whatever_their_numbers(tmp_
     assert (collected.older, collected.unmatched) == ((), ())
 
 
+@pytest.mark.promise("A late attempt replaces one that was in time.")
 def test_the_files_of_a_late_canvas_attempt_replace_those_of_one_in_time(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "canvas",
@@ -149,6 +154,11 @@ def receipts(folder: Path, **logins: str) -> None:
         path.write_text(f"Name: Some Body ({login})\nAssignment: Lab\nComments:\nName: Jane Doe (jdoe3)\n")
 
 
+@pytest.mark.promise(
+    "| Blackboard |",
+    "Whose a file of Blackboard is, the receipt beside it says",
+    "A text that a student typed in without a file is listed, and the exit status is 1.",
+)
 def test_a_blackboard_download_holds_attempts_and_a_receipt_for_each(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "gradebook",
@@ -189,6 +199,7 @@ BRIGHTSPACE = """OrgDefinedId,Username,Last Name,First Name,Email,End-of-Line In
 """
 
 
+@pytest.mark.promise("| Brightspace (D2L) |", "Brightspace names the member who handed in")
 def test_a_brightspace_download_names_the_student_and_the_time_in_folders_or_files(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "Lab 1 Download",
@@ -230,6 +241,7 @@ typist,typist,Text,Tom,0.0
 """
 
 
+@pytest.mark.promise("| Sakai |", "and each one whom the name of a folder of Sakai names")
 def test_a_sakai_download_has_a_folder_for_each_student_or_group(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "bulk_download",
@@ -290,6 +302,7 @@ def test_each_member_of_a_gradescope_group_has_the_submission(tmp_path: Path) ->
     )
 
 
+@pytest.mark.promise("A download of Moodle, Canvas, Gradescope or GitHub Classroom is graded")
 def test_the_list_of_a_gradescope_download_names_student_and_time_of_each_folder(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "export", *(f"assignment_1_export/submission_{n}/ws/src/p/package.xml" for n in (1, 2, 3, 4))
@@ -309,6 +322,7 @@ def test_the_list_of_a_gradescope_download_names_student_and_time_of_each_folder
     assert [name for name, _ in collected.unmatched] == ["submission_4"]
 
 
+@pytest.mark.promise("A download of Moodle, Canvas, Gradescope or GitHub Classroom is graded", "| GitHub Classroom |")
 def test_a_github_classroom_clone_is_assigned_by_the_account_in_its_name(tmp_path: Path) -> None:
     names = ("02-nodes-jane-doe/ws/src/p/x", "02-nodes-Zoe/ws/src/p/x", "02-nodes-doe/ws/src/p/x", "02-nodes-eve/x")
     folder = download(tmp_path / "02-nodes-submissions", *names)
@@ -321,6 +335,11 @@ def test_a_github_classroom_clone_is_assigned_by_the_account_in_its_name(tmp_pat
 GITHUB = "identifier,github_username,github_id,name\nbob,bob,1,\neve,eve,2,\nzoë,ada-zoe,3,\n"
 
 
+@pytest.mark.promise(
+    "A clone of GitHub Classroom is ASSIGNMENT-ACCOUNT",
+    "In another folder it is what most clones begin with",
+    "Where that leaves a doubt, the clone is listed as unclear.",
+)
 @pytest.mark.parametrize(
     ("folder", "names", "entries", "strangers"),
     [

@@ -34,6 +34,10 @@ def rows(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
+@pytest.mark.promise(
+    "Marks are scaled to the maximum that the table says.",
+    "A student without a grade or a submission keeps an empty cell.",
+)
 def test_moodle_gets_marks_scaled_to_its_own_maximum(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
 ) -> None:
@@ -49,6 +53,10 @@ def test_moodle_gets_marks_scaled_to_its_own_maximum(
     assert after == [{key: value for key, value in row.items() if key != "Grade"} for row in before]
 
 
+@pytest.mark.promise(
+    "`--format canvas`: the gradebook's columns of names and the assignment's",
+    "Moodle and Canvas get [their own tables]",
+)
 def test_canvas_gets_the_column_of_the_assignment_and_late_submissions_lose_points(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
 ) -> None:
@@ -97,6 +105,7 @@ def test_a_table_of_another_shape_is_a_usage_error(
         write_marks(stored, system, roster, tmp_path / "out.csv")
 
 
+@pytest.mark.promise("`--late-penalty 20` takes a fifth of the marks of a late submission.")
 def test_export_applies_the_late_penalty_to_late_students(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
 ) -> None:

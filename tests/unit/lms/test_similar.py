@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
@@ -36,6 +37,27 @@ class Finder:
 """
 
 
+@pytest.mark.promise(".venv/bin/pip install copydetect")
+def test_without_copydetect_the_command_says_how_to_install_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Missing:
+        @staticmethod
+        def find_spec(name: str, *_: object) -> None:
+            if name == "copydetect":
+                raise ModuleNotFoundError(name=name)
+
+    for name in [name for name in sys.modules if name.partition(".")[0] == "copydetect"]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.delitem(sys.modules, "autograder.lms.similar")
+    monkeypatch.setattr(sys, "meta_path", [Missing, *sys.meta_path])
+    with pytest.raises(SystemExit) as ended:
+        main(["similar", str(tmp_path), "--assignment", "02_nodes", "--out", str(tmp_path / "out")])
+    assert ended.value.code == 2
+    assert "run `.venv/bin/pip install copydetect`" in capsys.readouterr().err
+
+
+@pytest.mark.promise("What the release gives is taken out, and other names hide nothing.")
 def test_a_renamed_copy_is_found_and_given_code_is_ignored() -> None:
     codes = {name: GIVEN + text for name, text in {"alice": OWN, "bob": RENAMED, "carol": OTHER}.items()}
     (found,) = pairs(codes, GIVEN, 0.5)
@@ -49,6 +71,7 @@ def test_unchanged_releases_are_not_similar() -> None:
     assert pairs({"alice": GIVEN, "bob": GIVEN, "carol": ""}, GIVEN, 0.0) == []
 
 
+@pytest.mark.promise("The page `similar/index.html` shows pairs of submissions side by side")
 def test_the_page_of_a_pair_shows_both_texts_escaped_and_says_that_it_is_no_verdict(tmp_path: Path) -> None:
     text = "# <script>\n" + OWN
     page = write_pairs(pairs({"alice": text, "<bob>": text}, "", 0.5), tmp_path).read_text()
@@ -70,6 +93,7 @@ def test_the_code_of_a_submission_is_its_modules_and_its_notebooks_cells() -> No
     assert "z = 2" in code(replace(detect_layout(submitted, "02_nodes"), notebook=b"no notebook"))
 
 
+@pytest.mark.promise("autograder similar submissions/ --assignment 02_nodes --out similar")
 def test_similar_compares_a_class_and_names_unreadable_submissions(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -104,6 +128,7 @@ HARD = (
 )
 
 
+@pytest.mark.promise("the command names whose code is longer")
 def test_of_a_long_text_so_many_characters_are_compared_and_that_is_said() -> None:
     told: dict[str, str] = {}
     long = "".join(f"{OWN}# {number}" for number in range(2_000))

@@ -76,6 +76,7 @@ def test_an_unwritten_answer_has_no_points_and_needs_no_manual_grading(
     assert course.grades("bob") == {**TRUSTED, "explain": (0.0, 2.0, False)}
 
 
+@pytest.mark.promise("which shows the mark scheme above each answer")
 def test_formgrader_shows_the_answer_below_the_mark_scheme(course: Any, verdict: Callable[..., Any]) -> None:
     course.grade = lambda *a, **k: verdict()
     course.submit("alice", answered(course, "Because it is so."))

@@ -53,6 +53,10 @@ def test_nothing_is_said_where_the_file_is_what_its_student_means(
     assert write(tmp_path, cell, file, last, saved_later=saved_later) == ()
 
 
+@pytest.mark.promise(
+    "Where a cell has another text than its file, `check(...)` and the feedback say so.",
+    '| "differs from the cell that writes it" |',
+)
 @pytest.mark.parametrize(
     ("cell", "file", "last", "saved_later"),
     [

@@ -115,6 +115,9 @@ def test_a_grade_cell_outside_of_grading_is_worth_nothing_to_nbgrader() -> None:
 LATER = ("It turns <left>.", "It stops.")
 
 
+@pytest.mark.promise(
+    "After `check(...)` has passed, it lists the hidden checks, which run only after you have handed in."
+)
 def test_a_report_lists_the_hidden_checks_if_all_visible_checks_passed() -> None:
     report = CheckReport("02_nodes", LINES[:1], later=LATER)
     assert repr(report).endswith(

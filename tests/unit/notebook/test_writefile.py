@@ -77,6 +77,7 @@ def test_a_file_is_written_kept_or_copied_first(
     assert Path(FILE).read_text() == (on_disk if "was kept" in said else cell)
 
 
+@pytest.mark.promise("It writes a file of a real ROS package into `ws/src`, beside the notebook.")
 def test_a_cell_writes_its_file_and_writes_it_again(run: Run) -> None:
     assert run(UNSOLVED) == f"Writing {FILE}\n"
     assert run(SOLVED) == f"Overwriting {FILE}\n"

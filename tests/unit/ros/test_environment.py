@@ -57,6 +57,10 @@ print(os.environ["ROS_LOG_DIR"], os.environ["FASTDDS_BUILTIN_TRANSPORTS"], os.en
     assert done.stdout.split() == ["/chosen", "LARGE_DATA", "jazzy"], done.stderr
 
 
+@pytest.mark.promise(
+    "In a terminal of JupyterLab, `ros2` and `colcon` work too.",
+    "runs the same checks, and `ros2` and `colcon` work too",
+)
 def test_activating_finds_the_programs_of_this_python_by_their_names() -> None:
     code = """
 import os, shutil
@@ -151,6 +155,7 @@ def test_a_command_runs_with_ros_on_and_its_exit_status_comes_back() -> None:
     assert (done.returncode, done.stdout.split()) == (7, [str(prefix), str(Path(sys.prefix) / "bin" / "colcon")])
 
 
+@pytest.mark.promise('eval "$(.venv/bin/autograder ros)"')
 def test_without_a_command_the_variables_are_printed_for_a_shell() -> None:
     script = f'eval "$({sys.executable} -m autograder.ros)" && python -c "import os; print(os.environ[\'ROS_DISTRO\'])"'
     done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, timeout=120, cwd=ROOT)

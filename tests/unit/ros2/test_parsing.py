@@ -94,6 +94,9 @@ def test_numbers_are_checked(kind: type, good: dict[str, float], bad: tuple[str,
             kind(text)
 
 
+@pytest.mark.promise(
+    "They are used only where the real ones are not importable.", "After `make real-launch`, or with a sourced ROS 2,"
+)
 def test_the_real_ros2cli_takes_over_when_it_is_there(tmp_path: Path) -> None:
     package = tmp_path / "ros2cli"
     package.mkdir()

@@ -65,6 +65,7 @@ def machine(tmp_path: Path) -> tuple[RosEnvironment, str]:
     return RosEnvironment("wheels", (prefix, *ros.prefixes), ros.rclpy), python
 
 
+@pytest.mark.promise("`make real-launch` installs the real ones")
 @pytest.mark.slow
 def test_packages_are_installed_from_the_places_that_the_variables_name(
     tmp_path: Path, machine: tuple[RosEnvironment, str]

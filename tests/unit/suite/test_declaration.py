@@ -13,6 +13,7 @@ from autograder.exceptions import GraderError
 from autograder.suite import CheckFailed, CheckRow, Visibility, check, check_each_row, check_of, expect, group, hint
 
 
+@pytest.mark.promise("Its docstring is the sentence that the student reads.")
 def test_a_declared_check_takes_its_id_and_title_from_the_function() -> None:
     @check(points=2, group="reaction", doc="https://docs.ros.org", needs=("starts",))
     @hint("one")

@@ -45,6 +45,7 @@ def graded(make_result: MakeResult) -> Callable[..., Claim]:
     return claim
 
 
+@pytest.mark.promise("With `--record`, it writes all checks that each mutant fails to `mutants.snapshot.yaml`.")
 def test_a_graded_mutant_s_record_is_replaced_and_the_others_stay(file: Path, graded: Callable[..., Claim]) -> None:
     before = snapshot.recorded(ASSIGNMENT)
     other = next(check.id for check in CHECKS if check.id not in {FIRST.check, *FIRST.fails})

@@ -57,6 +57,7 @@ def test_a_release_gains_nothing() -> None:
     assert verify_zero(result("nan")).startswith("it scores")
 
 
+@pytest.mark.promise("Without, it ends with 1 where a mutant passes its own check")
 def test_a_mutant_fails_its_own_check_and_what_is_recorded_and_no_other() -> None:
     mutant = next(m for m in mutants(ASSIGNMENT) if m.id == "minus_inf_dropped")
     assert verify_mutant(mutant, result(*mutant.fails)) == ""
@@ -90,6 +91,10 @@ def test_the_summary_counts_each_kind() -> None:
     }
 
 
+@pytest.mark.promise(
+    "`autograder verify --assignment 02_nodes` grades the reference, the untouched release,",
+    "`make verify` grades all of these submissions.",
+)
 def test_the_whole_proof_contains_every_kind_and_each_submission_once() -> None:
     found = cases(ASSIGNMENT)
     assert {case.kind for case in found} >= set(CaseKind) - {CaseKind.VARIANT}
@@ -103,6 +108,7 @@ def test_the_quick_proof_fails_every_check(assignment: str) -> None:
     assert covered == {check.id for check in suites.hidden(assignment).checks}
 
 
+@pytest.mark.promise("A check needs at least three entries in `mutants.yaml`")
 @pytest.mark.parametrize("assignment", suites.graded_assignments())
 def test_each_check_has_three_mutants(assignment: str) -> None:
     lost = Counter(name for mutant in mutants(assignment) for name in mutant.fails)

@@ -1,0 +1,56 @@
+"""Each promise of the README and of the guides has a test that says so, and no test names words that no page has."""
+
+from __future__ import annotations
+
+import runpy
+
+import pytest
+
+from autograder.layout import ROOT
+
+MADE = runpy.run_path(str(ROOT / "docs" / "promises_page.py"))
+TEXTS = MADE["texts"]()
+PROMISES = list(MADE["promises"]())
+
+
+@pytest.mark.parametrize("page", TEXTS)
+def test_each_promise_of_a_page_has_a_test(page: str) -> None:
+    promised = [sentence for sentence in MADE["sentences"](TEXTS[page]) if MADE["is_promise"](sentence)]
+    held = {one.words for one in PROMISES}
+    open_ones = [sentence for sentence in promised if not any(words in sentence for words in held)]
+    assert open_ones == [], "mark the test that shows it by @pytest.mark.promise, or say what is true"
+
+
+def test_the_words_of_each_promise_stand_in_a_page() -> None:
+    sentences = [sentence for text in TEXTS.values() for sentence in MADE["sentences"](text)]
+    assert [one for one in PROMISES if not any(one.words in sentence for sentence in sentences)] == []
+
+
+def test_what_is_promised_is_found() -> None:
+    text = """# Title
+
+Advice: run it. The exit status is 1. A node starts.
+
+- `make demo` ends
+  with a line. It is *never* silent.
+
+| You see | `--resume` helps |
+
+```console
+$ cd folder
+$ autograder grade class    # the class
+```
+"""
+    assert [sentence for sentence in MADE["sentences"](text) if MADE["is_promise"](sentence)] == [
+        "The exit status is 1.",
+        "- `make demo` ends with a line.",
+        "It is *never* silent.",
+        "| You see | `--resume` helps |",
+        "autograder grade class",
+    ]
+
+
+def test_the_page_names_tests_of_the_night_as_such() -> None:
+    page = MADE["current"]()
+    assert "`tests/e2e/test_tutorials.py::test_a_tutorial_runs_as_printed` (nightly)" in page
+    assert "`tests/e2e/test_interrupt.py::test_ctrl_c_ends_a_class_and_resume_goes_on`" in page
