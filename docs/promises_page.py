@@ -33,6 +33,9 @@ PROMISING = re.compile(rf"(?:^|`)(?:{COMMAND})|`--[a-z]|\bexit status\b|\bends w
 BLOCK = re.compile(r"^```(?P<kind>\w*).*?\n(?P<text>.*?)^```\n?", re.MULTILINE | re.DOTALL)
 SENTENCE = re.compile(r"(?<!^\d\.)(?<=[.?!])\s+(?=[A-Z`\"\[])")
 
+# A link, of which the text is shown, and what begins an item of a list.
+MARKUP = re.compile(r"!?\[([^\]]*)\]\([^)]*\)|^(?:-|\d\.) ")
+
 
 @dataclass(frozen=True)
 class Promise:
@@ -108,7 +111,8 @@ def current() -> str:
         for sentence in sentences(text):
             tests = [f"`{one.test}`" + " (nightly)" * one.is_nightly for one in held if one.words in sentence]
             if tests:
-                rows.append((sentence.replace("|", " ").strip(), "; ".join(sorted(set(tests)))))
+                shown = MARKUP.sub(r"\1", sentence.strip("| ")).replace("|", "·")
+                rows.append((shown, "; ".join(sorted(set(tests)))))
         parts += [f"## {page}\n", *table(("promise", "shown by"), rows)]
     return "\n".join(parts)
 
