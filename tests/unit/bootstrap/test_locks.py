@@ -63,7 +63,6 @@ def test_additional_locks_do_not_change_the_pins_of_the_tests(lock: str) -> None
     assert not any(name.startswith("ros-") for name in names(lock))
 
 
-@pytest.mark.promise("make cluster")
 def test_the_extra_for_clusters_has_the_packages_of_its_lock() -> None:
     data = tomllib.loads((ROOT / "pyproject.toml").read_text())
     assert data["dependency-groups"]["cluster"] == data["project"]["optional-dependencies"]["cluster"]

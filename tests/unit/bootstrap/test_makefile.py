@@ -51,6 +51,13 @@ def test_make_lab_opens_jupyterlab_on_the_chapters() -> None:
     assert "bin/autograder ros jupyter lab --ServerApp.root_dir=chapters" in make("-n", "lab")
 
 
+@pytest.mark.promise("make cluster")
+def test_make_cluster_installs_the_pinned_packages_of_a_cluster_beside_the_course() -> None:
+    told = make("-n", "cluster")
+    assert "autograder/bootstrap.py" in told
+    assert "--no-deps --require-hashes -r requirements-cluster.lock" in told
+
+
 @pytest.fixture
 def interpreters(tmp_path: Path) -> Path:
     """A folder that holds the shell and nothing else to run."""
