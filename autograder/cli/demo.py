@@ -13,7 +13,7 @@ from autograder.author.verification.mutants import mutants, write_mutant, write_
 from autograder.cli.grade import Progress, report
 from autograder.cli.options import isolation_option, jobs_option, json_option
 from autograder.grade import DEFAULT_SEED
-from autograder.grade.batch import Entry, grade_all
+from autograder.grade.batch import grade_all
 from autograder.result.model import write_json
 from autograder.run.sandbox import Tier
 from autograder.suite import suites
@@ -34,14 +34,14 @@ def demo(jobs: int, isolation: str, json_file: Path | None) -> None:
     shown = [mutant for mutant in mutants(assignment) if mutant.demo]
     with tempfile.TemporaryDirectory(prefix="demo-") as folder:
         names = ["reference", *(mutant.id for mutant in shown), "empty"]
-        entries = tuple(Entry(name, Path(folder) / name) for name in names)
-        write_reference(sources, entries[0].path)
+        submissions = {name: Path(folder) / name for name in names}
+        write_reference(sources, submissions["reference"])
         for mutant in shown:
-            write_mutant(mutant, sources, Path(folder) / mutant.id)
-        entries[-1].path.mkdir()
-        with Progress(len(entries)) as progress:
+            write_mutant(mutant, sources, submissions[mutant.id])
+        submissions["empty"].mkdir()
+        with Progress(len(submissions)) as progress:
             results = grade_all(
-                entries,
+                submissions,
                 assignment,
                 seed=DEFAULT_SEED,
                 out=out,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -22,7 +22,7 @@ from autograder.cli.terminal import echo, on_line
 from autograder.cli.text_tables import failure_summary, score_text, table
 from autograder.exceptions import StudentError, UsageError
 from autograder.grade.apart import read_preview
-from autograder.grade.batch import Entry, GradeEach, discover, grade_all
+from autograder.grade.batch import GradeEach, discover, grade_all
 from autograder.grade.store import LOG
 from autograder.lms.collect import COLLECTION_REPORT, collect, unpacked
 from autograder.lms.roster import read_roster
@@ -99,14 +99,17 @@ def grade(
     """
     suites.hidden(assignment)
     if dry_run:
-        with _find_submissions(paths, assignment, roster, out, write=False) as (entries, all_fit):
-            sys.exit(0 if _preview(entries, assignment, Tier(isolation)) and all_fit else 1)
-    with _find_submissions(paths, assignment, roster, out) as (entries, all_fit), Progress(len(entries)) as progress:
-        earlier = EarlierMarks(out, [entry.student for entry in entries])
+        with _find_submissions(paths, assignment, roster, out, write=False) as (submissions, all_fit):
+            sys.exit(0 if _preview(submissions, assignment, Tier(isolation)) and all_fit else 1)
+    with (
+        _find_submissions(paths, assignment, roster, out) as (submissions, all_fit),
+        Progress(len(submissions)) as progress,
+    ):
+        earlier = EarlierMarks(out, submissions)
         try:
             with _cluster_grader(scheduler, jobs, certificates) as grade_each:
                 results = grade_all(
-                    entries,
+                    submissions,
                     assignment,
                     seed=seed,
                     out=out,
@@ -155,12 +158,12 @@ def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None
 @contextmanager
 def _find_submissions(
     paths: tuple[Path, ...], assignment: str, roster: Path | None, out: Path, *, write: bool = True
-) -> Iterator[tuple[tuple[Entry, ...], bool]]:
+) -> Iterator[tuple[Mapping[str, Path], bool]]:
     """Yield the submissions, and whether each item of the download belongs to a student."""
     if roster is None:
         discovered = discover(paths, assignment)
         _print_others(discovered.others)
-        yield discovered.entries, not discovered.others
+        yield discovered.submissions, not discovered.others
         return
     if len(paths) != 1:
         raise UsageError("--roster goes with one download: give one zip or folder")
@@ -173,7 +176,7 @@ def _find_submissions(
         if write:
             lists = {name: getattr(found, name) for name in ("late", "older", "unmatched", "missing")}
             write_json(out / COLLECTION_REPORT, lists)
-        yield found.entries, not found.unmatched
+        yield found.submissions, not found.unmatched
 
 
 def _print_others(others: Sequence[tuple[str, str]]) -> None:
@@ -181,18 +184,18 @@ def _print_others(others: Sequence[tuple[str, str]]) -> None:
         echo(f"Not graded: {on_line(name)}: {on_line(why)}.", err=True)
 
 
-def _preview(entries: Sequence[Entry], assignment: str, tier: Tier) -> bool:
+def _preview(submissions: Mapping[str, Path], assignment: str, tier: Tier) -> bool:
     """Print what counts of each submission; return whether each is clear."""
     rows, all_clear = [], True
-    for entry in entries:
+    for student, path in submissions.items():
         try:
-            found = read_preview(entry.path, assignment, tier)
+            found = read_preview(path, assignment, tier)
         except StudentError as error:
-            rows.append((entry.student, "unclear", on_line(str(error))))
+            rows.append((student, "unclear", on_line(str(error))))
             all_clear = False
             continue
         runs = "the notebook has to run" if found.files is None else f"{found.files} files count"
-        rows.append((entry.student, runs, on_line(" ".join((*found.notices, _not_used(found.unused))))))
+        rows.append((student, runs, on_line(" ".join((*found.notices, _not_used(found.unused))))))
     echo(table(rows, ("submission", "what counts", "notes")))
     return all_clear
 

@@ -14,7 +14,7 @@ import click
 from autograder.cli.options import isolation_option
 from autograder.cli.terminal import echo
 from autograder.exceptions import UsageError
-from autograder.grade.job import Scope
+from autograder.grade.job import Job, Scope
 from autograder.grade.pipeline import grade_submission
 from autograder.report import feedback
 from autograder.report.export.stored import Stored, load
@@ -73,16 +73,8 @@ def _one(path: Path) -> Stored:
 
 def _grade_again(result: Result, check: str, submission: Path, out: Path, tier: Tier, recordings: bool) -> Stored:
     """Grade a check, and those that it needs, once more with the seed of its result."""
-    needed = suites.hidden(result.assignment).with_dependencies(check)
-    graded = grade_submission(
-        submission,
-        result.assignment,
-        student=result.student,
-        seed=result.seed,
-        out=out,
-        isolation=tier,
-        scope=Scope(only=needed, recordings=recordings),
-    )
+    scope = Scope(only=suites.hidden(result.assignment).with_dependencies(check), recordings=recordings)
+    graded = grade_submission(Job(submission, result.assignment, result.student, result.seed, out, tier, scope))
     if graded.status is Status.GRADED and graded.submission_sha256 != result.submission_sha256:
         echo(f"Note: {submission} is not what was graded then; the run may differ.", err=True)
     return Stored(graded, out)

@@ -51,11 +51,11 @@ def similar(paths: tuple[Path, ...], assignment: str, out: Path, least: float, j
     with tempfile.TemporaryDirectory() as name:
         write_bundle(Path(name) / "given", (assignment,))
         given = code(read_submission(Path(name) / "given" / layout.course().chapters / assignment, assignment))
-    for entry in discover(paths, assignment).entries:
+    for student, path in discover(paths, assignment).submissions.items():
         try:
-            codes[entry.student] = read_code(entry.path, assignment, Tier.BUBBLEWRAP)
+            codes[student] = read_code(path, assignment, Tier.BUBBLEWRAP)
         except StudentError as error:
-            echo(f"Not compared: {on_line(entry.student)}: {on_line(error)}", err=True)
+            echo(f"Not compared: {on_line(student)}: {on_line(error)}", err=True)
     found = pairs(codes, given, least / 100, in_part)
     for pair in found:
         shares = " and ".join(f"{100 * share:.0f} %" for share in pair.shares)

@@ -5,16 +5,15 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from PIL import Image
 
 from autograder.exceptions import GraderError, UsageError
 from autograder.grade.bounded_json import RESULT_VALUES, RUN_VALUES, read_json
+from autograder.grade.job import Job
 from autograder.grade.store import LOG, NOTEBOOK, RESULT
 from autograder.result.model import Result, Status, from_json
 from autograder.run.sandbox.limits import MIB
-from autograder.suite.suites import Suite
 
 PICTURE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.png")
 RUN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.run\.json")
@@ -29,45 +28,34 @@ class AnswerError(GraderError):
     """A worker's answer is none to what was asked."""
 
 
-@dataclass(frozen=True)
-class Asked:
-    """What a result must be about."""
-
-    suite: Suite
-    student: str
-    seed: int
-    isolation: str
-    sha256: str = ""  # of the submission, where it is known
-
-
-def checked(files: Mapping[str, bytes], asked: Asked) -> Result:
+def checked(files: Mapping[str, bytes], job: Job, sha256: str = "") -> Result:
     """Check the files that a worker left, and return the result among them.
 
-    Raises AnswerError if they are no answer to what was asked.
+    `sha256` is the digest of the submission, where it is known. Raises AnswerError if they are no answer to the job.
     """
     others = {name: data for name, data in files.items() if name not in (RESULT, NOTEBOOK, LOG)}
-    result = _result(files.get(RESULT, b""), asked)
+    result = _result(files.get(RESULT, b""), job, sha256)
     _require_artifacts(others, result)
     if NOTEBOOK in files:
         _require_notebook(files[NOTEBOOK])
     return result
 
 
-def _result(data: bytes, asked: Asked) -> Result:
+def _result(data: bytes, job: Job, sha256: str) -> Result:
     if len(data) > MAX_RESULT:
         raise AnswerError(f"a worker's answer holds a result of {len(data):,} bytes")
     try:
         result = from_json(read_json(data, RESULT_VALUES), source="a worker's answer")
     except (ValueError, UsageError, RecursionError) as error:
         raise AnswerError(f"a worker's answer holds no result: {str(error)[:1000]}") from None
-    suite, graded = asked.suite, result.status is Status.GRADED
+    suite, graded = job.suite, result.status is Status.GRADED
     versions, theirs = (suite.version, suite.files_digest), (result.suite_version, result.files_digest)
     found = (result.assignment, result.student, *theirs, result.seed, result.isolation, result.max_score)
-    wanted = (suite.assignment, asked.student, *versions, asked.seed, asked.isolation, suite.max_score)
+    wanted = (suite.assignment, job.student, *versions, job.seed, job.tier.value, suite.max_score)
     if found != wanted:
         raise AnswerError(f"a worker graded {found} instead of {wanted}")
-    if graded and asked.sha256 and result.submission_sha256 not in (asked.sha256, _UNREAD):
-        raise AnswerError(f"a worker graded {result.submission_sha256} instead of {asked.sha256}")
+    if graded and sha256 and result.submission_sha256 not in (sha256, _UNREAD):
+        raise AnswerError(f"a worker graded {result.submission_sha256} instead of {sha256}")
     worth = [(check.id, check.group, check.points) for check in suite.checks]
     if [(check.id, check.group, check.max_points) for check in result.checks] != worth:
         raise AnswerError("a worker's answer does not hold the checks of the suite")

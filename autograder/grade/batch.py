@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import json
-import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import partial
 from pathlib import Path
 
 from autograder.exceptions import AutograderError, UsageError
-from autograder.grade.apart import Digests, read_digests
+from autograder.grade.job import Job
 from autograder.grade.parallel import map_parallel
 from autograder.grade.pipeline import grade_submission
-from autograder.grade.store import LOG, NOTEBOOK, RESULT, new_result, remove_unfinished
-from autograder.result.model import Result, Status, from_json, write_json
+from autograder.grade.store import LOG, NOTEBOOK, RESULT, remove_unfinished, write_result
+from autograder.result.model import Result, Status, from_json
 from autograder.run.sandbox import Tier
 from autograder.submission.intake.exercises import exercises_of
 from autograder.submission.intake.ignored import is_ignored
 from autograder.submission.intake.names import is_archive, is_notebook, stem
-from autograder.suite import suites
 
 TIMESTAMP = "timestamp.txt"  # of nbgrader, beside what was handed in
 NO_SUBMISSION = "it is not a folder, an archive or a notebook"
@@ -28,86 +26,20 @@ OnResult = Callable[[Result], None]
 
 
 @dataclass(frozen=True)
-class Entry:
-    """One submission of a class: whose it is, and where it lies."""
-
-    student: str
-    path: Path
-
-
-@dataclass(frozen=True)
 class Discovered:
-    """The submissions in some folders, and what else lies there, as pairs of a name and the reason."""
+    """Submissions by their students, and what else lies beside them, as pairs of a name and the reason."""
 
-    entries: tuple[Entry, ...]
+    submissions: Mapping[str, Path]
     others: tuple[tuple[str, str], ...]
 
 
-@dataclass(frozen=True)
-class GradingRequest:
-    """One submission of a class to grade into the folder `out`; `resume` says whether a stored result counts."""
-
-    student: str
-    path: Path
-    assignment: str
-    seed: int
-    isolation: Tier
-    out: Path
-    resume: bool = False
-
-    @cached_property
-    def digests(self) -> Digests | None:
-        """The digests of what was handed in, None if it cannot be read."""
-        return read_digests(self.path, self.assignment, self.isolation)
-
-    def stored(self) -> Result | None:
-        """Return the stored result if it may be kept: its submission, suite, seed and isolation are the same."""
-        if not self.resume:
-            return None
-        try:
-            result = from_json(json.loads((self.out / RESULT).read_text()), source=str(self.out / RESULT))
-        except (OSError, ValueError, AutograderError):
-            return None
-        digest = self.digests and self.digests.sha256
-        suite = suites.hidden(self.assignment)
-        found = (result.student, result.submission_sha256, result.suite_version, result.seed, result.isolation)
-        same = found == (self.student, digest, suite.version, self.seed, self.isolation.value)
-        return result if same and result.status is Status.GRADED else None
-
-    def grade(self) -> Result:
-        """Grade the submission on this machine."""
-        return grade_submission(
-            self.path,
-            self.assignment,
-            student=self.student,
-            seed=self.seed,
-            out=self.out,
-            isolation=self.isolation,
-        )
-
-    def store_copy(self, result: Result, folder: Path) -> Result:
-        """Store the result of an equal submission, whose files lie in `folder`, as that of this one."""
-        shown = {name for artifact in result.artifacts for name in (artifact.name, artifact.run)}
-        own = replace(result, student=self.student)
-        if (found := self.digests) is not None:  # what counts is equal; what lies around it may differ
-            digest = found.sha256 if result.status is Status.GRADED else result.submission_sha256
-            notices = result.notices if found.notices is None else found.notices
-            own = replace(own, submission_sha256=digest, notices=notices, unused=found.unused)
-        with new_result(self.out) as new:
-            for path in (folder / name for name in (NOTEBOOK, LOG, *shown - {""})):
-                if path.is_file():
-                    shutil.copy(path, new)
-            write_json(new / RESULT, own.to_json())
-        return own
+GradeEach = Callable[[Sequence[Job], OnResult], None]
+"""Grades submissions, and hands over each result as it comes."""
 
 
-GradeEach = Callable[[Sequence[GradingRequest], OnResult], None]
-"""Grades what is asked for, and hands over each result as it comes."""
-
-
-def grade_here(requests: Sequence[GradingRequest], on_result: OnResult, *, jobs: int) -> None:
+def grade_here(todo: Sequence[Job], on_result: OnResult, *, jobs: int) -> None:
     """Grade on this machine, `jobs` submissions at once."""
-    map_parallel(GradingRequest.grade, requests, jobs=jobs, on_done=on_result)
+    map_parallel(grade_submission, todo, jobs=jobs, on_done=on_result)
 
 
 def discover(paths: tuple[Path, ...], assignment: str) -> Discovered:
@@ -118,26 +50,26 @@ def discover(paths: tuple[Path, ...], assignment: str) -> Discovered:
     Raises:
         UsageError: a path does not exist, a folder holds nothing, or two submissions have the same student's name.
     """
-    found: list[Entry] = []
+    found: list[tuple[str, Path]] = []
     others: list[tuple[str, str]] = []
     for path in paths:
         if not path.exists():
             raise UsageError(f"{path}: there is no such file or folder")
         if path.is_file():
-            found.append(Entry(student_of(path), path))
+            found.append((student_of(path), path))
         elif _is_submission(path, assignment):
-            found.append(Entry(path.resolve().name, path))
+            found.append((path.resolve().name, path))
         else:
-            entries, beside = _of_folder(path, assignment)
-            found += entries
+            inside, beside = _of_folder(path, assignment)
+            found += inside
             others += beside
-    names = [entry.student for entry in found]
+    names = [student for student, _ in found]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise UsageError(
             f"two submissions are called {', '.join(twice)}: rename one, results would overwrite each other"
         )
-    return Discovered(tuple(found), tuple(others))
+    return Discovered(dict(found), tuple(others))
 
 
 def student_of(path: Path) -> str:
@@ -157,7 +89,7 @@ def submission_in(folder: Path, assignment: str) -> Path:
 
 
 def grade_all(
-    entries: tuple[Entry, ...],
+    submissions: Mapping[str, Path],
     assignment: str,
     *,
     seed: int,
@@ -173,7 +105,7 @@ def grade_all(
     Of equal submissions one is graded, and the others take over its result.
 
     Args:
-        entries: from `discover`.
+        submissions: by their students, from `discover`.
         assignment: which assignment they answer.
         seed: every hidden input is drawn from it, the same for all.
         out: the folder of the results.
@@ -181,37 +113,60 @@ def grade_all(
         isolation: the sandbox's tier.
         resume: keep a stored result whose submission, suite, seed and isolation are the same.
         on_result: called for each result as it comes, in any order.
-        grade_each: grades the requests in place of `jobs` workers of this machine.
+        grade_each: grades them in place of `jobs` workers of this machine.
 
     Returns:
-        The results, in the order of `entries`. Ctrl-C lets end what has begun, and leaves the rest to `resume`.
+        The results, in the order of `submissions`. Ctrl-C lets end what has begun, and leaves the rest to `resume`.
     """
-    requests = [
-        GradingRequest(entry.student, entry.path, assignment, seed, isolation, out / entry.student, resume)
-        for entry in entries
-    ]
-    equal: dict[str, list[GradingRequest]] = {}
-    for request in requests:
-        remove_unfinished(request.out)
-        found = request.digests
-        equal.setdefault(found.graded_sha256 if found else f"of {request.student}", []).append(request)
-    first = {group[0].student: group for group in equal.values()}
+    equal: dict[str, list[Job]] = {}
+    for student, path in submissions.items():
+        job = Job(path, assignment, student, seed, out / student, isolation)
+        remove_unfinished(job.out)
+        digests = job.digests if len(submissions) > 1 else None  # one alone is read by its worker, and nowhere else
+        equal.setdefault(digests.graded_sha256 if digests else f"of {student}", []).append(job)
+    groups = {group[0].student: group for group in equal.values()}
     results: dict[str, Result] = {}
 
-    def store(result: Result) -> None:
-        graded, *others = first[result.student]
-        for other in (result, *(request.stored() or request.store_copy(result, graded.out) for request in others)):
-            results[other.student] = other
-            on_result(other)
+    def kept(job: Job) -> Result | None:
+        return stored(job) if resume else None
+
+    def take(result: Result) -> None:
+        graded, *others = groups[result.student]
+        for each in (result, *(kept(job) or _copy(result, graded, job) for job in others)):
+            results[each.student] = each
+            on_result(each)
 
     left = []
-    for request, *_ in first.values():
-        if (kept := request.stored()) is not None:
-            store(kept)
+    for job, *_ in groups.values():
+        if (result := kept(job)) is not None:
+            take(result)
         else:
-            left.append(request)
-    (grade_each or partial(grade_here, jobs=jobs))(left, store)
-    return tuple(results[entry.student] for entry in entries)
+            left.append(job)
+    (grade_each or partial(grade_here, jobs=jobs))(left, take)
+    return tuple(results[student] for student in submissions)
+
+
+def stored(job: Job) -> Result | None:
+    """Return a job's stored result if it may be kept: its submission, suite, seed and isolation are the same."""
+    try:
+        result = from_json(json.loads((job.out / RESULT).read_text()), source=str(job.out / RESULT))
+    except (OSError, ValueError, AutograderError):
+        return None
+    digest = job.digests and job.digests.sha256
+    found = (result.student, result.submission_sha256, result.suite_version, result.seed, result.isolation)
+    same = found == (job.student, digest, job.suite.version, job.seed, job.tier.value)
+    return result if same and result.status is Status.GRADED else None
+
+
+def _copy(result: Result, graded: Job, job: Job) -> Result:
+    """Store the result of a graded submission as that of an equal one."""
+    if (digests := job.digests) is not None:  # what counts is equal; what lies around it may differ
+        digest = digests.sha256 if result.status is Status.GRADED else result.submission_sha256
+        notices = result.notices if digests.notices is None else digests.notices
+        result = replace(result, submission_sha256=digest, notices=notices, unused=digests.unused)
+    shown = {name for artifact in result.artifacts for name in (artifact.name, artifact.run) if name}
+    files = ((name, graded.out / name) for name in (NOTEBOOK, LOG, *shown))
+    return write_result(job, result, {name: path.read_bytes() for name, path in files if path.is_file()})
 
 
 def _is_submission(folder: Path, assignment: str) -> bool:
@@ -222,12 +177,10 @@ def _is_submission(folder: Path, assignment: str) -> bool:
     return any((folder / name).is_dir() for name in own)  # figures, which each release of the chapter has
 
 
-def _of_folder(folder: Path, assignment: str) -> tuple[list[Entry], list[tuple[str, str]]]:
+def _of_folder(folder: Path, assignment: str) -> tuple[list[tuple[str, Path]], list[tuple[str, str]]]:
     children = sorted(child for child in folder.iterdir() if not (child.name.startswith(".") or is_ignored(child.name)))
     students = [child for child in children if child.is_dir() or is_archive(child.name) or is_notebook(child.name)]
     if not students:
         raise UsageError(f"{folder}: neither a submission of {assignment} nor a folder of submissions")
-    entries = [
-        Entry(student_of(child), submission_in(child, assignment) if child.is_dir() else child) for child in students
-    ]
-    return entries, [(child.name, NO_SUBMISSION) for child in children if child not in students]
+    found = [(student_of(child), submission_in(child, assignment) if child.is_dir() else child) for child in students]
+    return found, [(child.name, NO_SUBMISSION) for child in children if child not in students]

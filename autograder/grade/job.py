@@ -1,14 +1,18 @@
-"""A job for a worker: one submission to grade, as data that crosses a process boundary."""
+"""A job: one submission to grade, as data that crosses a process boundary."""
 
 from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from pathlib import Path
 
+from autograder.grade.apart import Digests, read_digests
 from autograder.result.model import structure
 from autograder.run.sandbox import Tier
 from autograder.run.sandbox.limits import GRADING_CELL
+from autograder.suite import suites
+from autograder.suite.suites import Suite
 
 
 @dataclass(frozen=True)
@@ -29,18 +33,30 @@ ALL = Scope()
 class Job:
     """One submission to grade."""
 
-    path: Path  # what was handed in
+    path: Path  # what was handed in: an assignment's folder, an archive of one, a notebook, or a source tree
     assignment: str  # which assignment it answers
-    student: str  # whose it is
-    seed: int  # every hidden input is drawn from it
-    tier: Tier  # how the submission is isolated
+    student: str  # whose it is; stands in the result only
+    seed: int  # every hidden input is drawn from it; the same seed gives the same inputs
+    out: (
+        Path  # the folder that gets `result.json`, `notebook.ipynb` and the pictures; `grader.log` if the grader failed
+    )
+    tier: Tier = Tier.BUBBLEWRAP  # how the submission is isolated
     scope: Scope = ALL  # how much of the suite is run
+    seconds: float = GRADING_CELL.wall_seconds  # real time for all of it: a second grading has what the first has left
     # Who starts the worker sets the rest.
-    out: Path = Path()  # the folder that gets `result.json`, `notebook.ipynb` and the pictures
     scratch: Path = Path()  # the cell's own file system; nothing in it outlives the cell
-    seconds: float = GRADING_CELL.wall_seconds  # real time for all of it
     # Whether no other try follows: an error that may be a program's or the machine's is then the program's.
     last: bool = False
+
+    @property
+    def suite(self) -> Suite:
+        """The hidden checks of its assignment. Raises UsageError if there are none."""
+        return suites.hidden(self.assignment)
+
+    @cached_property
+    def digests(self) -> Digests | None:
+        """The digests of what was handed in, None if it cannot be read. What they are of is not kept."""
+        return read_digests(self.path, self.assignment, self.tier)
 
     def to_json(self) -> str:
         """Return the job as one line of JSON."""

@@ -15,20 +15,20 @@ from autograder.run.sandbox.cell import CellReport, ended, in_cell, place_of
 from autograder.run.sandbox.limits import GRADING_CELL
 from autograder.run.sandbox.parcel import ParcelError
 from autograder.run.sandbox.spec import View
-from autograder.suite import fingerprint, suites
+from autograder.suite import fingerprint
 
 GRACE = 30.0  # s in which a worker that knows that its time is over ends what runs, and says what it knows
 
 
-def in_own_cell(job: Job, seconds: float) -> CellReport:
-    """Run a job by a worker of its own in a cell of its own, for at most `seconds`; report the files that it left."""
+def in_own_cell(job: Job) -> CellReport:
+    """Run a job by a worker of its own in a cell of its own; report the files that it left."""
     ours, theirs = Pipe()
 
     def command(scratch: Path) -> list[str]:
         path = place_of(job.path, job.tier, scratch)
-        return _worker(replace(job, path=path, scratch=scratch, out=scratch / "out", seconds=seconds), theirs.fileno())
+        return _worker(replace(job, path=path, scratch=scratch, out=scratch / "out"), theirs.fileno())
 
-    limits = replace(GRADING_CELL, wall_seconds=seconds + GRACE)
+    limits = replace(GRADING_CELL, wall_seconds=job.seconds + GRACE)
     with ours, ExitStack() as stack:
         with theirs:
             cell = in_cell(command, job.tier, limits, view=view(job), pass_fds=(theirs.fileno(),))
@@ -45,7 +45,7 @@ def in_own_cell(job: Job, seconds: float) -> CellReport:
 def view(job: Job) -> View:
     """Return what the worker of a job sees: its submission, its chapter, and what its suite reads."""
     chapter = layout.chapter(job.assignment)
-    own = fingerprint.places(job.assignment, suites.hidden(job.assignment).reads)
+    own = fingerprint.places(job.assignment, job.suite.reads)
     built = (Path(job.scope.built),) if job.scope.built else ()
     return View(shown=(chapter, *own, *built), submitted=(job.path,))
 

@@ -4,43 +4,41 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
-from autograder.result.model import UNFINISHED
+from autograder.grade.job import Job
+from autograder.result.model import UNFINISHED, Result, write_json
 
 RESULT = "result.json"
 NOTEBOOK = "notebook.ipynb"
 LOG = "grader.log"
 
 
-@contextmanager
-def new_result(out: Path) -> Iterator[Path]:
-    """Yield an empty folder for a new result; at the end of the block, its files replace those of the folder `out`.
+def write_result(job: Job, result: Result, files: Mapping[str, bytes]) -> Result:
+    """Write the result of a job, under its student's name, with files by their names; return that result.
 
-    Until then `out` has the old result, also if the block raises an exception or the process is killed. The mark
-    changes in one step, as `result.json` is replaced last. Files of the old result that the new one lacks are removed.
+    Until all are written, its folder has the old result, also if the process is killed. The mark changes in one step,
+    as `result.json` is replaced last. Files of the old result that the new one lacks are removed.
     """
+    result, out = replace(result, student=job.student), job.out
+    remove_unfinished(out)
     folder = out / UNFINISHED
-    empty(folder)
+    folder.mkdir(parents=True)
     try:
-        yield folder
+        for name in files.keys() - {RESULT}:
+            (folder / name).write_bytes(files[name])
+        write_json(folder / RESULT, result.to_json())
         _replace(folder, out)
     finally:
         remove_unfinished(out)
+    return result
 
 
 def remove_unfinished(out: Path) -> None:
-    """Remove from the folder of a result what a grading left there that was killed."""
+    """Remove from the folder of a result what a process left there that was killed."""
     shutil.rmtree(out / UNFINISHED, ignore_errors=True)
-
-
-def empty(folder: Path) -> None:
-    """Make an empty folder, whatever is there."""
-    if folder.exists():
-        shutil.rmtree(folder)
-    folder.mkdir(parents=True)
 
 
 def _replace(folder: Path, out: Path) -> None:

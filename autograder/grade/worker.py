@@ -39,8 +39,6 @@ from autograder.run.time_record import REAL
 from autograder.run.workspace import Workspace
 from autograder.submission.intake import write_tree
 from autograder.submission.reading import reading
-from autograder.suite import suites
-from autograder.suite.suites import Suite
 
 _NO_DIGEST = "0" * 64
 
@@ -48,8 +46,8 @@ _NO_DIGEST = "0" * 64
 class Grading:
     """One submission on its way from what was handed in to a result."""
 
-    def __init__(self, job: Job, suite: Suite) -> None:
-        self._job, self._suite = job, suite
+    def __init__(self, job: Job) -> None:
+        self._job, self._suite = job, job.suite
         self._folder = job.scratch / "assignment"
         patience.begin(job.seconds)
         home = job.scratch / "home"
@@ -194,10 +192,10 @@ def prepare() -> None:
     activate()
 
 
-def work(job: Job, suite: Suite) -> None:
+def work(job: Job) -> None:
     """Grade a job, and send what it left over this process's line."""
     job.out.mkdir(parents=True, exist_ok=True)
-    write_json(job.out / RESULT, Grading(job, suite).grade().to_json())
+    write_json(job.out / RESULT, Grading(job).grade().to_json())
     with line.held() as connection:
         if connection is not None:
             send_message(connection, {"do": "result"})
@@ -209,7 +207,7 @@ def main() -> None:
     job = Job.from_json(sys.argv[1])
     line.take(Connection(int(sys.argv[2])))
     prepare()
-    work(job, suites.hidden(job.assignment))
+    work(job)
 
 
 if __name__ == "__main__":

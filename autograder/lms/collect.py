@@ -8,13 +8,13 @@ from __future__ import annotations
 import shutil
 import tempfile
 import zipfile
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from autograder.exceptions import UsageError
-from autograder.grade.batch import Entry, submission_in
+from autograder.grade.batch import submission_in
 from autograder.lms.clones import FOLDER, account_in, assignment_of, beginnings
 from autograder.lms.roster import Roster
 from autograder.lms.submission_names import METADATA, DownloadedItem, read_metadata, read_names, resubmitted
@@ -29,14 +29,14 @@ class CollectedSubmissions:
     """The submissions in a download, in the order of the roster.
 
     Attributes:
-        entries: the newest submission of each student; the members of a group have one path.
+        submissions: the newest one of each student; the members of a group have one path.
         late: the students whom the system calls late.
         older: the names of the submissions that a newer one of the same student replaces.
         unmatched: what fits no student or is no submission, as pairs of a name and the reason.
         missing: the students without a submission.
     """
 
-    entries: tuple[Entry, ...]
+    submissions: Mapping[str, Path]
     late: tuple[str, ...]
     older: tuple[str, ...]
     unmatched: tuple[tuple[str, str], ...]
@@ -89,7 +89,7 @@ def collect(folder: Path, roster: Roster, assignment: str, scratch: Path) -> Col
     students = [student.id for student in roster.students]
     late = {student.id for student in roster.students if student.late}
     return CollectedSubmissions(
-        tuple(Entry(name, _together(newest[name], assignment, scratch)) for name in students if name in newest),
+        {name: _together(newest[name], assignment, scratch) for name in students if name in newest},
         tuple(name for name in students if name in newest and (name in late or any(i.late for i in newest[name]))),
         tuple(item.listed_name for name, there in handed_in.items() for item in there if item not in newest[name]),
         tuple(unmatched),

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from autograder.author.verification.mutants import write_reference
 from autograder.grade import grade_submission
+from autograder.grade.job import Job
 from autograder.suite import suites
 
 ASSIGNMENT = "08_capstone"
@@ -25,7 +26,7 @@ def figures() -> dict[str, float]:
 
 
 def _grade(folder: Path, name: str) -> None:
-    graded = grade_submission(folder / "reference", ASSIGNMENT, student=name, seed=2026, out=folder / name)
+    graded = grade_submission(Job(folder / "reference", ASSIGNMENT, name, 2026, folder / name))
     if graded.score != graded.max_score:
         raise RuntimeError(f"the reference has {graded.score:g} of {graded.max_score:g} points")
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import tempfile
 import time
+from collections.abc import Mapping
 from pathlib import Path
 
 from autograder.author.verification.mutants import write_reference
 from autograder.grade import DEFAULT_SEED
-from autograder.grade.batch import Entry, grade_all
+from autograder.grade.batch import grade_all
 from autograder.suite import suites
 
 CLASSES = {"02_nodes": 6, "08_capstone": 4}  # an even number each, for two workers
@@ -21,25 +22,25 @@ def figures() -> dict[str, float]:
     with tempfile.TemporaryDirectory() as name:
         for assignment, students in CLASSES.items():
             folder = Path(name, assignment)
-            entries = tuple(_answer(folder, assignment, number) for number in range(students))
-            _seconds(entries[:1], assignment, folder, 1)
-            two = _seconds(entries, assignment, folder, 2)
+            answers = {str(number): _answer(folder, assignment, number) for number in range(students)}
+            _seconds({"0": answers["0"]}, assignment, folder, 1)
+            two = _seconds(answers, assignment, folder, 2)
             found[f"class.submissions_per_minute_{assignment[:2]}"] = round(60 * students / two, 1)
             if assignment == ONE_AND_TWO:
-                found["class.two_workers_ratio"] = round(_seconds(entries, assignment, folder, 1) / two, 2)
+                found["class.two_workers_ratio"] = round(_seconds(answers, assignment, folder, 1) / two, 2)
     return found
 
 
-def _answer(folder: Path, assignment: str, number: int) -> Entry:
+def _answer(folder: Path, assignment: str, number: int) -> Path:
     answer = folder / str(number)
     write_reference(suites.hidden(assignment).sources, answer)
     (answer / "README").write_text(f"student {number}")  # equal answers would be graded once
-    return Entry(str(number), answer)
+    return answer
 
 
-def _seconds(entries: tuple[Entry, ...], assignment: str, folder: Path, jobs: int) -> float:
+def _seconds(answers: Mapping[str, Path], assignment: str, folder: Path, jobs: int) -> float:
     began = time.monotonic()
-    results = grade_all(entries, assignment, seed=DEFAULT_SEED, out=folder / "out", jobs=jobs)
+    results = grade_all(answers, assignment, seed=DEFAULT_SEED, out=folder / "out", jobs=jobs)
     spent = time.monotonic() - began
     if any(result.score != result.max_score for result in results):
         raise RuntimeError(f"not each reference of {assignment} has all points")

@@ -13,15 +13,14 @@ from pathlib import Path
 from distributed import Client
 
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.grade.batch import GradingRequest
 from autograder.grade.cluster.connection import LOCAL, connected
 from autograder.grade.cluster.dispatch import grade_on
 from autograder.grade.cluster.parcel import Answer, Parcel
+from autograder.grade.job import Job
 from autograder.grade.pipeline import refused
 from autograder.result.model import Result
 from autograder.run.sandbox import Tier
 from autograder.submission.intake import detect_layout
-from autograder.suite import suites
 
 ASSIGNMENT = "02_nodes"
 SUBMISSIONS, THREADS = 400, 16
@@ -38,22 +37,22 @@ def figures() -> dict[str, float]:
 def seconds(client: Client, submissions: int, pauses: Sequence[float]) -> tuple[float, float]:
     """Return the seconds that a class takes on a cluster, and the sum of its pauses, of which each has one."""
     with tempfile.TemporaryDirectory() as name:
-        requests = [_request(Path(name), number) for number in range(submissions)]
-        grade_on(client, requests[:1], lambda _: None, report=print, grade=partial(_answered, [0.0]))  # imports
+        jobs = [_job(Path(name), number) for number in range(submissions)]
+        grade_on(client, jobs[:1], lambda _: None, report=print, grade=partial(_answered, [0.0]))  # imports
         began = time.monotonic()
         results: list[Result] = []
-        grade_on(client, requests, results.append, report=print, grade=partial(_answered, pauses))
+        grade_on(client, jobs, results.append, report=print, grade=partial(_answered, pauses))
         spent = time.monotonic() - began
     assert len({result.submission_sha256 for result in results}) == submissions
     return spent, sum(result.seconds for result in results)
 
 
-def _request(folder: Path, number: int) -> GradingRequest:
+def _job(folder: Path, number: int) -> Job:
     source = folder / "class" / str(number) / "src" / "package"
     source.mkdir(parents=True)
     (source / "package.xml").write_text(str(number))
     (source / "node.py").write_text(SOURCE)
-    return GradingRequest(str(number), source.parents[1], ASSIGNMENT, 7, Tier.PROCESS, folder / "out" / str(number))
+    return Job(source.parents[1], ASSIGNMENT, str(number), 7, folder / "out" / str(number), Tier.PROCESS)
 
 
 def _answered(pauses: Sequence[float], data: bytes) -> bytes:
@@ -61,8 +60,6 @@ def _answered(pauses: Sequence[float], data: bytes) -> bytes:
     sha256 = detect_layout(list(parcel.files), ASSIGNMENT).sha256
     pause = pauses[int(sha256, 16) % len(pauses)]
     time.sleep(pause)
-    result = refused(
-        suites.hidden(ASSIGNMENT), "", parcel.seed, parcel.tier, Diagnosis(Kind.BUILD_FAILED, "no", "x" * 4000)
-    )
+    result = refused(parcel.job, Diagnosis(Kind.BUILD_FAILED, "no", "x" * 4000))
     told = replace(result, submission_sha256=sha256, seconds=pause).to_json()
     return Answer({"result.json": json.dumps(told).encode()}).pack()

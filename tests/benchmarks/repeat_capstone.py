@@ -24,6 +24,7 @@ from pathlib import Path
 
 from autograder.author.verification.mutants import write_reference
 from autograder.grade import grade_submission
+from autograder.grade.job import Job
 from autograder.layout import ROOT
 from autograder.result.model import Outcome
 from autograder.suite import suites
@@ -68,8 +69,7 @@ def cut_off(report: Path) -> bool:
 def grade(folder: Path, version: str, at_once: int, number: int) -> Grading:
     """Grade the reference in `folder`."""
     began = time.monotonic()
-    out = folder / str(number)
-    result = grade_submission(folder / "reference", ASSIGNMENT, student="reference", seed=SEED, out=out)
+    result = grade_submission(Job(folder / "reference", ASSIGNMENT, "reference", SEED, folder / str(number)))
     traces = {artifact.name: artifact.sha256[:16] for artifact in result.artifacts}
     lost = tuple(f"{check.id}: {check.message}" for check in result.checks if check.outcome is not Outcome.PASSED)
     percent, seconds = 100.0 * result.score / result.max_score, time.monotonic() - began

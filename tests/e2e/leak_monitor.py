@@ -15,16 +15,16 @@ import tempfile
 import threading
 import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from autograder.grade.batch import Entry, GradingRequest, OnResult, grade_all
-from autograder.grade.job import Scope
+from autograder.grade.batch import OnResult, grade_all
+from autograder.grade.job import Job, Scope
 from autograder.grade.parallel import map_parallel
 from autograder.grade.pipeline import DEFAULT_SEED, grade_submission
-from autograder.result.model import Result
 from autograder.run.sandbox import Limits, cgroup
 from autograder.run.sandbox.limits import GIB, MIB
 from autograder.run.sandbox.procfs import measure, name
@@ -33,12 +33,12 @@ ROOT = Path(__file__).resolve().parents[2]
 PR_SET_CHILD_SUBREAPER = 36  # prctl(2)
 
 
-def grade_monitored(place: Path, assignment: str, entries: Sequence[Entry], only: tuple[str, ...] = ()) -> None:
+def grade_monitored(place: Path, assignment: str, submissions: Mapping[str, Path], only: tuple[str, ...] = ()) -> None:
     """Grade submissions by some checks into `place`/results, and require that nothing else is left of it."""
     place.mkdir(exist_ok=True, parents=True)
     scratch = tempfile.mkdtemp(prefix="monitor-", dir="/tmp")  # the path of a kernel's sockets must be short
-    found = [[entry.student, str(entry.path)] for entry in entries]
-    job = json.dumps({"place": str(place), "assignment": assignment, "entries": found, "only": only})
+    paths = {student: str(path) for student, path in submissions.items()}
+    job = json.dumps({"place": str(place), "assignment": assignment, "paths": paths, "only": only})
     # Root's cells become other users, of which a user namespace of bubblewrap's has none.
     users = ["--unshare-user"] if os.geteuid() else ["--cap-add", "ALL"]
     space = ["bwrap", "--die-with-parent", *users, "--unshare-ipc", "--dev-bind", "/", "/"]
@@ -65,24 +65,15 @@ def _held(group: cgroup.ControlGroup) -> int:
     return sum(int(row.split()[1]) for row in rows if row.split()[0] in ("total_rss", "total_shmem", "anon", "shmem"))
 
 
-def _grade(place: str, assignment: str, entries: list[list[str]], only: list[str]) -> None:
+def _grade(place: str, assignment: str, paths: dict[str, str], only: list[str]) -> None:
     """Grade submissions, two at once."""
 
-    def one(request: GradingRequest) -> Result:
-        return grade_submission(
-            request.path,
-            assignment,
-            student=request.student,
-            seed=request.seed,
-            out=request.out,
-            scope=Scope(only=tuple(only)),
-        )
+    def each(jobs: Sequence[Job], on_done: OnResult) -> None:
+        part = [replace(job, scope=Scope(only=tuple(only))) for job in jobs]
+        map_parallel(grade_submission, part, jobs=2, on_done=on_done)
 
-    def each(requests: Sequence[GradingRequest], on_done: OnResult) -> None:
-        map_parallel(one, requests, jobs=2, on_done=on_done)
-
-    found = tuple(Entry(student, Path(path)) for student, path in entries)
-    grade_all(found, assignment, seed=DEFAULT_SEED, out=Path(place, "results"), jobs=2, grade_each=each)
+    submissions = {student: Path(path) for student, path in paths.items()}
+    grade_all(submissions, assignment, seed=DEFAULT_SEED, out=Path(place, "results"), jobs=2, grade_each=each)
 
 
 def _leftovers() -> dict[str, list[str]]:

@@ -20,7 +20,7 @@ from autograder.author.verification.leaks import LOOT, found_in, texts_of
 from autograder.author.verification.payloads import CANARY
 from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, all_checks
 from autograder.grade import grade_submission
-from autograder.grade.job import Scope
+from autograder.grade.job import Job, Scope
 from autograder.grade.store import NOTEBOOK
 from autograder.grade.submitted_notebook import grade_id
 from autograder.report import feedback
@@ -49,8 +49,8 @@ def _grade(assignment: str, attack: Attack, checks: frozenset[str], folder: Path
     attack.write(folder / "work")
     submission = folder / "work" / "submission"
     path = submission if submission.is_dir() else folder / "work"
-    scope, out = Scope(only=suites.hidden(assignment).with_dependencies(*checks)), folder / "out"
-    return grade_submission(path, assignment, student="mallory", seed=2026, out=out, scope=scope)
+    scope = Scope(only=suites.hidden(assignment).with_dependencies(*checks))
+    return grade_submission(Job(path, assignment, "mallory", 2026, folder / "out", scope=scope))
 
 
 @pytest.mark.promise("No attack gains a point.")

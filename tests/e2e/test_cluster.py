@@ -17,13 +17,13 @@ import pytest
 
 from autograder.author.verification.mutants import mutants, write_mutant, write_reference
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.grade.batch import GradingRequest
 from autograder.grade.cluster import dispatch
 from autograder.grade.cluster.connection import LOCAL, connected
 from autograder.grade.cluster.dispatch import grade_on
 from autograder.grade.cluster.exceptions import ClusterError
 from autograder.grade.cluster.machine import resource
 from autograder.grade.cluster.parcel import Answer, Parcel
+from autograder.grade.job import Job
 from autograder.grade.pipeline import refused
 from autograder.result.model import Result, Status
 from autograder.run.sandbox import Tier
@@ -121,16 +121,14 @@ def test_a_class_survives_kills_of_workers_scheduler_and_client(tmp_path: Path, 
 
 
 @pytest.fixture
-def requests(tmp_path: Path) -> list[GradingRequest]:
-    """What is asked for three submissions, each another one."""
+def todo(tmp_path: Path) -> list[Job]:
+    """Three submissions, each another one."""
     found = []
     for student in ("alice", "bob", "carol"):
         package = tmp_path / student / "src" / "package"
         package.mkdir(parents=True)
         (package / "package.xml").write_text(student)
-        found.append(
-            GradingRequest(student, tmp_path / student, ASSIGNMENT, 7, Tier.PROCESS, tmp_path / "out" / student)
-        )
+        found.append(Job(tmp_path / student, ASSIGNMENT, student, 7, tmp_path / "out" / student, Tier.PROCESS))
     return found
 
 
@@ -139,33 +137,30 @@ def answered(data: bytes) -> bytes:
     parcel = Parcel.unpack(data)
     if parcel.files[0].data == b"bob":
         os.kill(os.getpid(), signal.SIGKILL)
-    suite = suites.hidden(parcel.assignment)
     result = replace(
-        refused(suite, "", parcel.seed, parcel.tier, Diagnosis(Kind.BUILD_FAILED, "no")),
-        submission_sha256=detect_layout(list(parcel.files), parcel.assignment).sha256,
+        refused(parcel.job, Diagnosis(Kind.BUILD_FAILED, "no")),
+        submission_sha256=detect_layout(list(parcel.files), ASSIGNMENT).sha256,
         status=Status.GRADED,
     )
     return Answer({"result.json": json.dumps(result.to_json()).encode()}).pack()
 
 
 @pytest.mark.promise("| Two workers die with the same submission. |")
-def test_a_submission_that_kills_two_workers_is_not_graded_and_the_others_are(
-    requests: list[GradingRequest], tmp_path: Path
-) -> None:
+def test_a_submission_that_kills_two_workers_is_not_graded_and_the_others_are(todo: list[Job], tmp_path: Path) -> None:
     with connected(LOCAL, 1, tmp_path) as client:
         results: list[Result] = []
-        grade_on(client, requests, results.append, report=pytest.fail, grade=answered)
+        grade_on(client, todo, results.append, report=pytest.fail, grade=answered)
         alice, bob, carol = sorted(results, key=lambda result: result.student)
     assert (alice.status, bob.status, carol.status) == (Status.GRADED, Status.NOT_GRADED, Status.GRADED)
     assert bob.diagnosis.sentence.startswith("The 2 workers that had this submission died. This is no zero")
-    assert "KilledWorker" in (requests[1].out / "grader.log").read_text()
+    assert "KilledWorker" in (todo[1].out / "grader.log").read_text()
 
 
 @pytest.mark.promise(
     "It gets no submission, and the client says in a sentence what differs.", "| No worker fits for two minutes. |"
 )
 def test_a_worker_of_another_suite_is_refused_and_gets_no_submission(
-    requests: list[GradingRequest], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    todo: list[Job], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     said: list[str] = []
     other = resource(ASSIGNMENT, Tier.PROCESS).replace(suites.hidden(ASSIGNMENT).files_digest, "another")
@@ -173,7 +168,7 @@ def test_a_worker_of_another_suite_is_refused_and_gets_no_submission(
         monkeypatch.setattr(dispatch, "resource", lambda assignment, tier: other)
         monkeypatch.setattr(dispatch, "NO_WORKER_TIMEOUT_SECONDS", 0.0)
         with pytest.raises(ClusterError, match="there was no worker that can grade this"):
-            grade_on(client, requests, pytest.fail, report=said.append, grade=answered)
+            grade_on(client, todo, pytest.fail, report=said.append, grade=answered)
     (sentence,) = said
     assert f"is refused: its suite of {ASSIGNMENT} is" in sentence
     assert sentence.endswith("and here it is another: give both the same version of the course.")

@@ -20,7 +20,8 @@ from autograder.author.verification.mutants import write_reference
 from autograder.diagnosis import Kind
 from autograder.exceptions import IsolationError, UsageError
 from autograder.grade import grade_submission, own_cell
-from autograder.grade.batch import Entry, grade_all
+from autograder.grade.batch import grade_all
+from autograder.grade.job import Job
 from autograder.result.model import Result, Status, write_json
 from autograder.run.sandbox import Tier, tiers
 from autograder.suite import Outcome, suites
@@ -41,7 +42,7 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def layouts(reference: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Entry, ...]:
+def layouts(reference: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """The reference in two layouts: a zip of an assignment's folder, and a lone notebook."""
     folder = tmp_path_factory.mktemp("layouts")
     with zipfile.ZipFile(folder / "zip.zip", "w", zipfile.ZIP_DEFLATED) as archive:
@@ -51,18 +52,18 @@ def layouts(reference: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[
     cell = new_code_cell(f"%%writefile ws/src/{CONTROLLER}\n{answer}")
     cell.metadata.nbgrader = {"grade_id": "robot-controller", "grade": False, "solution": True, "locked": False}
     nbformat.write(new_notebook(cells=[cell]), folder / "notebook.ipynb")
-    return Entry("zip", folder / "zip.zip"), Entry("notebook", folder / "notebook.ipynb")
+    return {"zip": folder / "zip.zip", "notebook": folder / "notebook.ipynb"}
 
 
 @pytest.fixture(scope="session")
-def together(layouts: tuple[Entry, ...], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Result]:
+def together(layouts: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Result]:
     """The layouts' results, two graded at once."""
     results = grade_all(layouts, ASSIGNMENT, seed=SEED, out=tmp_path_factory.mktemp("together"), jobs=2)
     return {result.student: result for result in results}
 
 
 def _grade(path: Path, out: Path) -> Result:
-    return grade_submission(path, ASSIGNMENT, student="alice", seed=SEED, out=out)
+    return grade_submission(Job(path, ASSIGNMENT, "alice", SEED, out))
 
 
 @pytest.mark.promise(
@@ -90,9 +91,9 @@ def test_the_pictures_of_the_tracks_are_stored_beside_the_result(together: dict[
 
 @pytest.mark.promise("A minute of driving takes seconds, and a mark is the same every time.")
 def test_grading_one_at_a_time_gives_the_same_result_as_two_at_once(
-    together: dict[str, Result], layouts: tuple[Entry, ...], tmp_path: Path
+    together: dict[str, Result], layouts: dict[str, Path], tmp_path: Path
 ) -> None:
-    (alone,) = grade_all(layouts[:1], ASSIGNMENT, seed=SEED, out=tmp_path, jobs=1)
+    (alone,) = grade_all({"zip": layouts["zip"]}, ASSIGNMENT, seed=SEED, out=tmp_path, jobs=1)
     assert without_times(alone.to_json()) == without_times(together["zip"].to_json())
     tracks = [artifact.sha256 for artifact in alone.artifacts]
     assert tracks == [artifact.sha256 for artifact in together["notebook"].artifacts]
@@ -104,10 +105,10 @@ def test_grading_one_at_a_time_gives_the_same_result_as_two_at_once(
     "A mark comes with its seed, and the same seed gives the same inputs.",
 )
 def test_a_check_is_replayed_with_the_seed_of_its_result(
-    together: dict[str, Result], layouts: tuple[Entry, ...], tmp_path: Path
+    together: dict[str, Result], layouts: dict[str, Path], tmp_path: Path
 ) -> None:
     write_json(tmp_path / "result.json", together["zip"].to_json())
-    submission = str(layouts[0].path)
+    submission = str(layouts["zip"])
     arguments = ["replay", str(tmp_path), "--check", "room", "--submission", submission, "--mcap", "--no-open"]
     said = CliRunner().invoke(cli.group, arguments)
     assert said.exit_code == 0, said.output
@@ -293,7 +294,7 @@ def test_a_missing_submission_or_assignment_is_a_usage_error(reference: Path, tm
     with pytest.raises(UsageError, match="there is no such file or folder"):
         _grade(tmp_path / "nobody", tmp_path / "out")
     with pytest.raises(UsageError, match="there are no hidden checks for '77_none'"):
-        grade_submission(reference, "77_none", student="a", seed=1, out=tmp_path / "out")
+        grade_submission(Job(reference, "77_none", "a", 1, tmp_path / "out"))
 
 
 def test_a_machine_without_namespaces_refuses_to_grade_with_the_weak_tier(
@@ -309,8 +310,6 @@ def test_a_machine_without_namespaces_refuses_to_grade_with_the_weak_tier(
 def test_the_weaker_tier_is_named_in_the_result(reference: Path, tmp_path: Path) -> None:
     shutil.copytree(reference, tmp_path / "alice")
     (tmp_path / "alice" / "src" / PACKAGE / "setup.py").unlink()
-    graded = grade_submission(
-        tmp_path / "alice", ASSIGNMENT, student="a", seed=1, out=tmp_path / "out", isolation=Tier.PROCESS
-    )
+    graded = grade_submission(Job(tmp_path / "alice", ASSIGNMENT, "a", 1, tmp_path / "out", Tier.PROCESS))
     assert graded.isolation == "process"
     assert graded.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE

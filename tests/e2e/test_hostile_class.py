@@ -16,7 +16,6 @@ from nbformat.v4 import new_code_cell, new_notebook
 from autograder.author.verification.cases import cases
 from autograder.author.verification.claims import Attack, CaseKind, first_sentence
 from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, CONTROLLER, PACKAGE, WRITEFILE, attacks, package_writer
-from autograder.grade.batch import Entry
 from autograder.grade.store import NOTEBOOK, RESULT
 from autograder.result.model import Result, from_json
 from autograder.run.sandbox import cgroup
@@ -69,11 +68,11 @@ def hostile(names: Iterable[str]) -> Writers:
 
 def graded(place: Path, writers: Writers, only: tuple[str, ...]) -> dict[str, Result]:
     """Grade submissions below a leak monitor; return their results."""
-    entries = []
+    submissions = {}
     for student, write in writers:
         write(folder := place / "submitted" / student)
-        entries.append(Entry(student, folder / "submission" if (folder / "submission").is_dir() else folder))
-    grade_monitored(place, ASSIGNMENT, entries, only)
+        submissions[student] = folder / "submission" if (folder / "submission").is_dir() else folder
+    grade_monitored(place, ASSIGNMENT, submissions, only)
     stored = {student: place / "results" / student / RESULT for student, _ in writers}
     return {student: from_json(json.loads(path.read_text())) for student, path in stored.items()}
 

@@ -25,12 +25,12 @@ def test_a_node_that_sleeps_in_each_publish_gets_a_result_within_one_budget(tmp_
     node.write_text("".join([*lines[:at], SLOW, "\n\n", *lines[at:]]))
     budgets = []
 
-    def run(job: Job, seconds: float) -> CellReport:
-        budgets.append(seconds)
-        return own_cell.in_own_cell(job, seconds)
+    def run(job: Job) -> CellReport:
+        budgets.append(job.seconds)
+        return own_cell.in_own_cell(job)
 
-    asked = {"student": "alice", "seed": 3, "out": tmp_path / "out"}
-    result = grade_submission(tmp_path / "alice", "02_nodes", run_job=run, seconds=30.0, **asked)  # type: ignore[arg-type]
+    job = Job(tmp_path / "alice", "02_nodes", "alice", 3, tmp_path / "out", seconds=30.0)
+    result = grade_submission(job, run)
     assert budgets == [30.0]
     assert result.status is Status.GRADED
     assert result.diagnosis.kind in (Kind.TIMED_OUT, Kind.STUCK, Kind.NEVER_STARTED)  # by what it waited for last

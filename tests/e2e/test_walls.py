@@ -14,6 +14,7 @@ from autograder import layout
 from autograder.building import keeper
 from autograder.exceptions import StudentError
 from autograder.grade import apart, grade_submission, own_cell
+from autograder.grade.job import Job
 from autograder.result.model import Result, Status
 from autograder.run.sandbox import Tier
 from autograder.run.sandbox.limits import SOURCES
@@ -104,7 +105,7 @@ def classroom(tmp_path: Path) -> Path:
 
 def grade(folder: Path, student: str) -> Result:
     out = folder / "results" / student
-    return grade_submission(folder / student, ASSIGNMENT, student=student, seed=1, out=out, seconds=60.0)
+    return grade_submission(Job(folder / student, ASSIGNMENT, student, 1, out, seconds=60.0))
 
 
 def taken_over(monkeypatch: pytest.MonkeyPatch, code: str, **names: object) -> None:

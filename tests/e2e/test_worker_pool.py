@@ -17,7 +17,7 @@ from autograder.author.verification.mutants import write_reference
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.diagnosis import Kind
 from autograder.grade import grade_submission
-from autograder.grade.job import ALL, Scope
+from autograder.grade.job import ALL, Job, Scope
 from autograder.grade.pipeline import RunJob, in_own_cell
 from autograder.grade.store import LOG
 from autograder.result.model import Result, Status
@@ -46,9 +46,7 @@ def half(reference: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _grade(path: Path, out: Path, workers: RunJob, scope: Scope = ALL, tier: Tier = Tier.BUBBLEWRAP) -> Result:
-    return grade_submission(
-        path, ASSIGNMENT, student="s", seed=3, out=out, isolation=tier, scope=scope, run_job=workers
-    )
+    return grade_submission(Job(path, ASSIGNMENT, "s", 3, out, tier, scope), workers)
 
 
 def _verdicts(result: Result) -> list[tuple[object, ...]]:

@@ -28,8 +28,6 @@ from autograder.run.fork_server.profiles import PROFILES
 from autograder.run.sandbox import line
 from autograder.run.sandbox.launcher import warm_up
 from autograder.run.sandbox.parcel import send_message
-from autograder.suite import suites
-from autograder.suite.suites import Suite
 
 OUTPUT = 1024 * 1024  # bytes: the end of a child's output that goes into the reply
 
@@ -39,12 +37,11 @@ def serve(scratch: Path, client: Connection) -> None:
     log_file = scratch / "output.log"
     while True:
         job = Job.from_json(client.recv_bytes().decode())
-        suite = suites.hidden(job.assignment)
-        assert suite.version + suite.files_digest  # read once for all, too
+        assert job.suite.version + job.suite.files_digest  # read once for all, too
         child = os.fork()
         if child == 0:
             line.take(client)
-            _work(job, suite, log_file)
+            _work(job, log_file)
         _, status = os.waitpid(child, 0)
         output = log_file.read_bytes()[-OUTPUT:].decode("utf-8", errors="replace") if log_file.is_file() else ""
         reply = {"do": "done", "status": os.waitstatus_to_exitcode(status), "output": output}
@@ -53,14 +50,14 @@ def serve(scratch: Path, client: Connection) -> None:
         send_message(client, reply)
 
 
-def _work(job: Job, suite: Suite, log_file: Path) -> None:
+def _work(job: Job, log_file: Path) -> None:
     """Grade one submission in the child process, and exit: with status 0, or with 1 after an exception."""
     status = 1
     try:
         log = os.open(log_file, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         os.dup2(log, 1)
         os.dup2(log, 2)
-        worker.work(job, suite)
+        worker.work(job)
         status = 0
     except BaseException:
         traceback.print_exc()

@@ -23,7 +23,7 @@ from autograder.author.verification.population import GeneratedMutant
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.building.build import build_workspace
 from autograder.diagnosis import Kind
-from autograder.grade.job import Scope
+from autograder.grade.job import Job, Scope
 from autograder.grade.parallel import map_parallel
 from autograder.grade.pipeline import grade_submission
 from autograder.result.model import Result, Status
@@ -123,16 +123,9 @@ class MutationRun:
             write_reference(self._suite.sources, folder / "mutant")
             for file, text in texts.items():
                 (folder / "mutant" / "src" / file).write_text(text, encoding="utf-8")
-            return grade_submission(
-                folder / "mutant",
-                self._suite.assignment,
-                student="mutant",
-                seed=self._seed,
-                out=folder / "out",
-                isolation=self._workers.tier,
-                scope=scope,
-                run_job=self._workers,
-            )
+            assignment, tier = self._suite.assignment, self._workers.tier
+            job = Job(folder / "mutant", assignment, "mutant", self._seed, folder / "out", tier, scope)
+            return grade_submission(job, self._workers)
 
 
 def run_mutants(

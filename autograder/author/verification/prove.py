@@ -11,14 +11,14 @@ from autograder.author.verification.cases import Case
 from autograder.author.verification.claims import CaseKind, Claim, hidden_lines
 from autograder.author.verification.leaks import found_in, texts_of
 from autograder.author.verification.worker_pool import WorkerPool
-from autograder.grade.batch import GradingRequest
+from autograder.grade.batch import stored
+from autograder.grade.job import Job
 from autograder.grade.own_cell import in_own_cell
 from autograder.grade.parallel import map_parallel
 from autograder.grade.pipeline import grade_submission
 from autograder.grade.store import LOG
 from autograder.report import feedback
 from autograder.result.model import Result, Status
-from autograder.suite import suites
 
 SUBMISSION = "submission"
 PART = "part"  # the folder of a result for which not the whole suite was run
@@ -50,23 +50,14 @@ def prove(
         with tempfile.TemporaryDirectory(prefix="proof-") as name:
             path, place = _write(case, Path(name) / case.name), out / case.assignment / case.name
             whole = not case.scope.only
-            request = GradingRequest(case.name, path, case.assignment, seed, workers.tier, place, resume=whole)
-            stored = request.stored()
-            if stored and stored.files_digest != suites.hidden(case.assignment).files_digest:
-                stored = None  # the proof is of these very files, and not of a version
-            result = stored or grade_submission(
-                path,
-                case.assignment,
-                student=case.name,
-                seed=seed,
-                out=place if whole else place / PART,
-                isolation=workers.tier,
-                scope=case.scope,
-                run_job=in_own_cell if case.kind is CaseKind.ATTACK else workers,
-            )
+            place = place if whole else place / PART
+            job = Job(path, case.assignment, case.name, seed, place, workers.tier, case.scope)
+            result = stored(job) if whole else None
+            if result is None or result.files_digest != job.suite.files_digest:  # the proof is of these very files
+                result = grade_submission(job, in_own_cell if case.kind is CaseKind.ATTACK else workers)
         mismatch = case.verify(result) if result.status is Status.GRADED else result.diagnosis.sentence
         if case.kind is CaseKind.ATTACK:
-            mismatch = "; ".join(filter(None, (mismatch, _shown(result, place if whole else place / PART))))
+            mismatch = "; ".join(filter(None, (mismatch, _shown(result, place))))
         if result.unjudged:
             mismatch = f"checks raised errors of their own: {', '.join(result.unjudged)}; {place / LOG} says which"
         return Claim(case.assignment, case.kind, case.name, result, mismatch)

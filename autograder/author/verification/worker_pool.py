@@ -58,12 +58,12 @@ class WorkerPool:
                 worker.close()
         self._starter.shutdown()
 
-    def __call__(self, job: Job, seconds: float) -> CellReport:
-        """Grade one submission, in at most so many seconds; report the files that its worker left."""
+    def __call__(self, job: Job) -> CellReport:
+        """Grade one submission; report the files that its worker left."""
         worker = self._idle.get()
         try:
             worker = worker or self._starter.submit(_Worker, self.tier).result()
-            report = worker.grade(job, seconds)
+            report = worker.grade(job)
             if report.ending is not Ending.EXITED:
                 worker.close()
                 worker = None
@@ -97,16 +97,16 @@ class _Worker:
             cell = in_cell(command, tier, PROOF_CELL, view=view, pass_fds=(theirs.fileno(),))
             self._process, self._scratch = self._stack.enter_context(cell)
 
-    def grade(self, job: Job, seconds: float) -> CellReport:
+    def grade(self, job: Job) -> CellReport:
         """Send one job and wait for its result. If the ending is not `exited`, the worker cannot be used again."""
-        deadline = time.monotonic() + seconds + GRACE
+        deadline = time.monotonic() + job.seconds + GRACE
         place = self._scratch / "job"
         with TemporaryDirectory(dir=self._shown) as folder:
             Path(folder).chmod(0o755)
             path = Path(folder, job.path.name)
             copy_submission(job.path, path)
             scope = replace(job.scope, built=job.scope.built and str(self._show(Path(job.scope.built))))
-            told = replace(job, path=path, scope=scope, scratch=place, out=place / "out", seconds=seconds)
+            told = replace(job, path=path, scope=scope, scratch=place, out=place / "out")
             try:
                 self._server.send_bytes(told.to_json().encode())
                 over = lambda: self._process.ending is not None or time.monotonic() > deadline  # noqa: E731

@@ -18,16 +18,18 @@ from dataclasses import dataclass, replace
 from distributed import Client, Future
 
 from autograder.exceptions import StudentError
-from autograder.grade.batch import GradingRequest, OnResult
+from autograder.grade.answer import AnswerError
+from autograder.grade.batch import OnResult
 from autograder.grade.cluster import MAX_WORKER_DEATHS, work
-from autograder.grade.cluster.accept import accept, give_up, write
-from autograder.grade.cluster.exceptions import AnswerError, ClusterError
+from autograder.grade.cluster.accept import accept
+from autograder.grade.cluster.exceptions import ClusterError
 from autograder.grade.cluster.machine import difference, resource
 from autograder.grade.cluster.parcel import Parcel
-from autograder.grade.pipeline import refused
+from autograder.grade.job import Job
+from autograder.grade.pipeline import not_graded, refused
+from autograder.grade.store import write_result
 from autograder.submission.intake import read_files
 from autograder.submission.intake.files import digest
-from autograder.suite import suites
 
 TICK = 0.5  # s between two looks at the workers
 NO_WORKER_TIMEOUT_SECONDS = 120.0  # real time without a worker that can grade this
@@ -40,7 +42,7 @@ Grade = Callable[[bytes], bytes]
 class _Pending:
     """A submission that a worker grades, its digest, and how often it was sent."""
 
-    request: GradingRequest
+    job: Job
     sha256: str
     parcel: bytes
     tries: int = 1
@@ -48,7 +50,7 @@ class _Pending:
 
 def grade_on(
     client: Client,
-    requests: Sequence[GradingRequest],
+    jobs: Sequence[Job],
     on_result: OnResult,
     *,
     report: Callable[[str], None],
@@ -60,7 +62,7 @@ def grade_on(
 
     Args:
         client: the connection to the scheduler.
-        requests: what is asked for, with one assignment and tier.
+        jobs: submissions of one assignment and tier.
         on_result: called for each result as it comes, in any order.
         report: called with a sentence for each worker that is refused, which says why.
         grade: what a worker does with a packed `Parcel`; it returns a packed `Answer`.
@@ -68,9 +70,9 @@ def grade_on(
     Raises:
         ClusterError: the scheduler was lost, or no worker can grade this. What came by then is stored.
     """
-    if not requests:
+    if not jobs:
         return
-    dispatch = _Dispatch(client, requests, on_result, report, grade)
+    dispatch = _Dispatch(client, jobs, on_result, report, grade)
     try:
         with _first_interrupt() as interrupted:
             dispatch.run(interrupted)
@@ -105,18 +107,18 @@ class _Dispatch:
     def __init__(
         self,
         client: Client,
-        requests: Sequence[GradingRequest],
+        jobs: Sequence[Job],
         on_result: OnResult,
         report: Callable[[str], None],
         grade: Grade,
     ) -> None:
         self._client, self._on_result, self._report, self._grade = client, on_result, report, grade
-        self._resource = resource(requests[0].assignment, requests[0].isolation)
+        self._resource = resource(jobs[0].assignment, jobs[0].tier)
         self._refused: set[str] = set()
         self._threads = 0
         self._looked = float("-inf")
         self._fitted = time.monotonic()
-        self._parcels = self._packed(requests)
+        self._parcels = self._packed(jobs)
         self._under_way: dict[Future, _Pending] = {}
         self._ended: queue.SimpleQueue[Future] = queue.SimpleQueue()
 
@@ -168,18 +170,15 @@ class _Dispatch:
                 self._refused.add(address)
                 self._report(f"The worker {address} is refused: {why}.")
 
-    def _packed(self, requests: Sequence[GradingRequest]) -> Iterator[_Pending]:
+    def _packed(self, jobs: Sequence[Job]) -> Iterator[_Pending]:
         """Yield what has to be sent; report the results of what intake refuses."""
-        for request in requests:
+        for job in jobs:
             try:
-                files = read_files(request.path, request.assignment)
+                files = read_files(job.path, job.assignment)
             except StudentError as error:
-                suite = suites.hidden(request.assignment)
-                result = refused(suite, request.student, request.seed, request.isolation, error.diagnosis)
-                self._on_result(write(result, request))
+                self._on_result(write_result(job, refused(job, error.diagnosis), {}))
                 continue
-            parcel = Parcel(request.assignment, request.seed, request.isolation, tuple(files))
-            yield _Pending(request, digest(files), parcel.pack())
+            yield _Pending(job, digest(files), Parcel(job, tuple(files)).pack())
 
     def _send(self, pending: _Pending) -> None:
         future = self._client.submit(
@@ -200,13 +199,16 @@ class _Dispatch:
             raise ClusterError("the connection to the scheduler was lost")
         if future.status == "error":
             why = f"The {MAX_WORKER_DEATHS} workers that had this submission died."
-            self._on_result(give_up(pending.request, why, f"{future.exception()!r}\n"))
+            self._give_up(pending.job, why, f"{future.exception()!r}\n")
             return
         try:
-            self._on_result(accept(future.result(), pending.request, pending.sha256))
+            self._on_result(accept(future.result(), pending.job, pending.sha256))
         except AnswerError as error:
             if pending.tries < TRIES:
                 self._send(replace(pending, tries=pending.tries + 1))
                 return
             why = f"Workers failed on this submission {TRIES} times."
-            self._on_result(give_up(pending.request, why, f"{error}\n"))
+            self._give_up(pending.job, why, f"{error}\n")
+
+    def _give_up(self, job: Job, why: str, log: str) -> None:
+        self._on_result(write_result(job, *not_graded(job, why, log)))

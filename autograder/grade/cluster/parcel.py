@@ -8,12 +8,14 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 import msgpack
 
-from autograder.grade.cluster.exceptions import AnswerError, ClusterError
+from autograder.grade.answer import AnswerError
+from autograder.grade.cluster.exceptions import ClusterError
+from autograder.grade.job import Job
 from autograder.run.sandbox import Tier
 from autograder.submission.intake import MAX_FILES, MAX_TOTAL_BYTES, SubmittedFile
 
@@ -26,15 +28,13 @@ MAX_ANSWER_FILES = 200
 class Parcel:
     """A submission on its way to a worker: all its files, as intake read them, and what a grading has to know."""
 
-    assignment: str
-    seed: int
-    tier: Tier
+    job: Job  # without the student, and without paths
     files: tuple[SubmittedFile, ...]
 
     def pack(self) -> bytes:
         """Return the parcel as bytes. Equal parcels give equal bytes."""
         files = sorted((os.fsencode(file.path), file.data, file.executable) for file in self.files)
-        packed: bytes = msgpack.packb([self.assignment, self.seed, self.tier.value, files])
+        packed: bytes = msgpack.packb([self.job.assignment, self.job.seed, self.job.tier.value, files])
         return packed
 
     @classmethod
@@ -43,12 +43,12 @@ class Parcel:
         try:
             assignment, seed, tier, files = _unpacked(data, MAX_PARCEL)
             entries = [SubmittedFile(PurePosixPath(os.fsdecode(n)), bytes(d), bool(x)) for n, d, x in files]
-            parcel = cls(str(assignment), int(seed), Tier(tier), tuple(entries))
+            job = Job(Path(), str(assignment), "", int(seed), Path(), Tier(tier))
         except (ValueError, TypeError) as error:
             raise ClusterError(f"the parcel of a submission cannot be read: {error}") from None
-        if any(file.path.is_absolute() or ".." in file.path.parts for file in parcel.files):
+        if any(file.path.is_absolute() or ".." in file.path.parts for file in entries):
             raise ClusterError("the parcel of a submission names a file outside of it")
-        return parcel
+        return cls(job, tuple(entries))
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 import traceback
+from dataclasses import replace
 from pathlib import Path
 
 from autograder.grade import grade_submission
@@ -18,9 +19,7 @@ def grade(data: bytes) -> bytes:
         with tempfile.TemporaryDirectory(prefix="parcel-") as folder:
             submission, out = Path(folder, "submission"), Path(folder, "out")
             write_tree(parcel.files, submission)
-            grade_submission(
-                submission, parcel.assignment, student="", seed=parcel.seed, out=out, isolation=parcel.tier
-            )
+            grade_submission(replace(parcel.job, path=submission, out=out))
             return Answer({path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}).pack()
     except Exception:
         # An exception would travel as a pickle. The client keeps the text in the grader's log.

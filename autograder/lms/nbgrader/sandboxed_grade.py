@@ -18,7 +18,7 @@ from traitlets import Integer, Unicode
 from autograder.author.course.cells import group
 from autograder.exceptions import GraderError
 from autograder.grade import DEFAULT_SEED
-from autograder.grade.batch import Entry, grade_all
+from autograder.grade.batch import grade_all
 from autograder.grade.executed_notebook import decode
 from autograder.grade.store import LOG, NOTEBOOK
 from autograder.grade.submitted_notebook import grade_id
@@ -59,7 +59,7 @@ class SandboxedGrade(NbGraderPreprocessor):
         results = Path(coursedir.root) / self.results / assignment
         try:
             (result,) = grade_all(
-                (Entry(student, submitted),),
+                {student: submitted},
                 assignment,
                 seed=self.seed,
                 out=results,

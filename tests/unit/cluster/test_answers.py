@@ -14,11 +14,13 @@ import pytest
 from PIL import Image
 
 from autograder.exceptions import StudentError
-from autograder.grade.batch import GradingRequest
-from autograder.grade.cluster.accept import accept, give_up
-from autograder.grade.cluster.exceptions import AnswerError, ClusterError
+from autograder.grade.answer import AnswerError
+from autograder.grade.cluster.accept import accept
+from autograder.grade.cluster.exceptions import ClusterError
 from autograder.grade.cluster.parcel import MAX_ANSWER, Answer, Parcel
-from autograder.grade.pipeline import refused
+from autograder.grade.job import Job
+from autograder.grade.pipeline import not_graded, refused
+from autograder.grade.store import write_result
 from autograder.result.model import Artifact, CheckResult, Result, Status
 from autograder.run.sandbox import Tier
 from autograder.submission.intake import SubmittedFile, read_submission
@@ -29,8 +31,8 @@ SHA256 = "a" * 64
 
 
 @pytest.fixture
-def request_(tmp_path: Path) -> GradingRequest:
-    return GradingRequest("Zoë", tmp_path / "submission", CHAPTER, 7, Tier.BUBBLEWRAP, tmp_path / "out")
+def job(tmp_path: Path) -> Job:
+    return Job(tmp_path / "submission", CHAPTER, "Zoë", 7, tmp_path / "out")
 
 
 @pytest.fixture
@@ -63,9 +65,11 @@ def with_run(result: Result, name: str) -> Result:
 def test_a_parcel_is_unpacked_as_it_was_packed_for_any_file_names() -> None:
     names = ("src/a b/ü.py", "src/\udcff.txt", "run")
     files = tuple(SubmittedFile(PurePosixPath(name), name.encode("utf-8", "replace"), name == "run") for name in names)
-    parcel = Parcel(CHAPTER, 7, Tier.PROCESS, files)
+    job = Job(Path(), CHAPTER, "", 7, Path(), Tier.PROCESS)
+    parcel = Parcel(job, files)
+    assert Parcel.unpack(parcel.pack()).job == job
     assert set(Parcel.unpack(parcel.pack()).files) == set(files)
-    assert Parcel(CHAPTER, 7, Tier.PROCESS, files[::-1]).pack() == parcel.pack()
+    assert Parcel(job, files[::-1]).pack() == parcel.pack()
 
 
 @pytest.mark.parametrize(
@@ -78,20 +82,20 @@ def test_bytes_that_are_no_parcel_are_refused(data: bytes) -> None:
 
 
 @pytest.mark.parametrize("name", ["/etc/passwd", "src/../../x"])
-def test_a_parcel_writes_no_file_outside_its_folder(name: str) -> None:
-    data = Parcel(CHAPTER, 7, Tier.PROCESS, (SubmittedFile(PurePosixPath(name), b""),)).pack()
+def test_a_parcel_writes_no_file_outside_its_folder(job: Job, name: str) -> None:
+    data = Parcel(job, (SubmittedFile(PurePosixPath(name), b""),)).pack()
     with pytest.raises(ClusterError, match="names a file outside of it"):
         Parcel.unpack(data)
 
 
 @pytest.mark.promise("The student's name stays with the client.")
-def test_an_answer_is_stored_under_the_student_s_name(request_: GradingRequest, result: Result) -> None:
+def test_an_answer_is_stored_under_the_student_s_name(job: Job, result: Result) -> None:
     told = with_run(result, "turns.run.json")
-    taken = accept(answer(told, **{"turns.png": png(), "turns.run.json": b"{}"}), request_, SHA256)
+    taken = accept(answer(told, **{"turns.png": png(), "turns.run.json": b"{}"}), job, SHA256)
     assert taken == replace(told, student="Zoë")
-    assert json.loads((request_.out / "result.json").read_text())["student"] == "Zoë"
-    assert (request_.out / "turns.png").read_bytes() == png()
-    assert (request_.out / "turns.run.json").read_bytes() == b"{}"
+    assert json.loads((job.out / "result.json").read_text())["student"] == "Zoë"
+    assert (job.out / "turns.png").read_bytes() == png()
+    assert (job.out / "turns.run.json").read_bytes() == b"{}"
 
 
 def hostile(result: Result) -> dict[str, tuple[object, str]]:
@@ -155,25 +159,25 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
 
 
 @pytest.mark.promise("The client checks it as that of a stranger", "Nothing is written before all of it holds.")
-def test_a_hostile_answer_is_refused_and_writes_nothing(request_: GradingRequest, result: Result) -> None:
+def test_a_hostile_answer_is_refused_and_writes_nothing(job: Job, result: Result) -> None:
     for name, (data, why) in hostile(result).items():
         with pytest.raises(AnswerError, match=why):
-            pytest.fail(f"{name}: {accept(data, request_, SHA256)}")
-        assert not request_.out.exists(), name
+            pytest.fail(f"{name}: {accept(data, job, SHA256)}")
+        assert not job.out.exists(), name
 
 
-def test_a_submission_that_is_given_up_is_not_graded_and_has_no_zero(request_: GradingRequest) -> None:
-    given_up = give_up(request_, "The 2 workers that had this submission died.", "KilledWorker\n")
+def test_a_submission_that_is_given_up_is_not_graded_and_has_no_zero(job: Job) -> None:
+    given_up = write_result(job, *not_graded(job, "The 2 workers that had this submission died.", "KilledWorker\n"))
     assert given_up.status is Status.NOT_GRADED
     assert given_up.diagnosis.sentence.startswith("The 2 workers that had this submission died. This is no zero")
-    assert (request_.out / "grader.log").read_text() == "KilledWorker\n"
+    assert (job.out / "grader.log").read_text() == "KilledWorker\n"
 
 
 def test_a_submission_that_intake_refuses_is_unclear_and_needs_no_worker(tmp_path: Path) -> None:
     (tmp_path / "bob.zip").write_bytes(b"none")
     with pytest.raises(StudentError) as caught:
         read_submission(tmp_path / "bob.zip", CHAPTER)
-    result = refused(suites.hidden(CHAPTER), "bob", 7, Tier.BUBBLEWRAP, caught.value.diagnosis)
+    result = refused(Job(tmp_path / "bob.zip", CHAPTER, "bob", 7, tmp_path), caught.value.diagnosis)
     assert (result.status, result.score, result.diagnosis) == (Status.UNCLEAR, 0.0, caught.value.diagnosis)
 
 

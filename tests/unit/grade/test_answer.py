@@ -6,6 +6,7 @@ import json
 import tracemalloc
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import nbformat
 import pytest
@@ -13,23 +14,24 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
 from autograder.grade import executed_notebook
-from autograder.grade.answer import AnswerError, Asked, checked
+from autograder.grade.answer import AnswerError, checked
 from autograder.grade.bounded_json import NOTEBOOK_VALUES, read_json
 from autograder.grade.executed_notebook import MAX_BYTES, decode, encode
+from autograder.grade.job import Job
 from autograder.grade.run_notebook import MAX_VALUES
 from autograder.result.model import Artifact, CheckResult, Result
 from autograder.run.sandbox.limits import MIB
-from autograder.suite import Outcome, suites
+from autograder.suite import Outcome
 
-ASKED = Asked(suites.hidden("02_nodes"), "ada", 7, "bubblewrap")
+JOB = Job(Path("ada"), "02_nodes", "ada", 7, Path("out"))
 
 
 @pytest.fixture
 def result(make_result: Callable[..., Result]) -> Result:
-    suite = ASKED.suite
+    suite = JOB.suite
     checks = tuple(CheckResult.of(check, Outcome.PASSED) for check in suite.checks)
     told = {"suite_version": suite.version, "files_digest": suite.files_digest, "max_score": suite.max_score}
-    return make_result(ASKED.student, checks=checks, seed=ASKED.seed, isolation=ASKED.isolation, **told)
+    return make_result(JOB.student, checks=checks, seed=JOB.seed, isolation=JOB.tier.value, **told)
 
 
 def files(result: Result, **others: bytes) -> dict[str, bytes]:
@@ -59,10 +61,10 @@ def test_what_stands_in_strings_counts_as_one_value() -> None:
 
 @pytest.mark.parametrize("number", ["1" * 101, "NaN", "-Infinity", "1e999"])
 def test_a_result_with_a_number_that_no_page_can_show_is_refused(result: Result, number: str) -> None:
-    assert checked(files(result), ASKED) == result
+    assert checked(files(result), JOB) == result
     text = json.dumps(replace(result, seconds=123.25).to_json()).replace("123.25", number)
     with pytest.raises(AnswerError, match=r"it holds (a|the) number"):
-        checked({"result.json": text.encode()}, ASKED)
+        checked({"result.json": text.encode()}, JOB)
 
 
 @pytest.mark.parametrize("name", ["result.json", "notebook.ipynb", "a.run.json"])
@@ -70,18 +72,18 @@ def test_each_file_that_is_parsed_is_counted_first(result: Result, name: str) ->
     own = files(replace(result, artifacts=(Artifact("a.png", "track", "0" * 64, "x", run="a.run.json"),)))
     values = b'{"cells": [' + b"[]," * NOTEBOOK_VALUES + b"0]}"
     with pytest.raises(AnswerError, match=r"more than [0-9,]+ values|cannot identify image"):
-        checked({**own, "a.png": b"", "a.run.json": b"{}", name: values}, ASKED)
+        checked({**own, "a.png": b"", "a.run.json": b"{}", name: values}, JOB)
 
 
 def test_a_large_result_is_refused(result: Result) -> None:
     with pytest.raises(AnswerError, match="a result of 8,"):
-        checked({"result.json": b" " * (8 * MIB + 1)}, ASKED)
+        checked({"result.json": b" " * (8 * MIB + 1)}, JOB)
 
 
 def test_a_file_that_a_result_names_a_thousand_times_is_not_shown_so_often(result: Result) -> None:
     again = replace(result, artifacts=(Artifact("a.png", "track", "0" * 64, "x"),) * 1000)
     with pytest.raises(AnswerError, match="shows its 1 files 1000 times"):
-        checked(files(again, **{"a.png": bytes(MIB)}), ASKED)
+        checked(files(again, **{"a.png": bytes(MIB)}), JOB)
 
 
 def test_a_notebook_of_all_outputs_and_lines_that_a_run_may_have_is_accepted(result: Result) -> None:
@@ -91,7 +93,7 @@ def test_a_notebook_of_all_outputs_and_lines_that_a_run_may_have_is_accepted(res
     cells = [new_code_cell("\n" * 2 * MIB, outputs=lines), {**new_code_cell(), "outputs": many}]
     data = encode(NotebookNode({**new_notebook(), "cells": list(map(NotebookNode, cells))}))
     assert len(data) < MAX_BYTES
-    checked(files(result, **{"notebook.ipynb": data}), ASKED)
+    checked(files(result, **{"notebook.ipynb": data}), JOB)
     assert decode(data)[0].outputs == lines
 
 
@@ -125,4 +127,4 @@ def test_jupyter_reads_a_notebook_as_it_is_written_and_the_grader_one_of_jupyter
 )
 def test_what_is_no_notebook_is_refused(result: Result, data: bytes) -> None:
     with pytest.raises(AnswerError, match="the notebook in a worker's answer cannot be read"):
-        checked(files(result, **{"notebook.ipynb": data}), ASKED)
+        checked(files(result, **{"notebook.ipynb": data}), JOB)

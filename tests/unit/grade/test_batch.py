@@ -13,10 +13,11 @@ import pytest
 
 from autograder.exceptions import UsageError
 from autograder.grade import batch
-from autograder.grade.batch import Entry, discover, grade_all
-from autograder.result.model import Result, Status, write_json
+from autograder.grade.batch import discover, grade_all
+from autograder.grade.job import Job
+from autograder.grade.store import write_result
+from autograder.result.model import Result, Status
 from autograder.submission import intake
-from autograder.suite import suites
 
 CHAPTER = "02_nodes"
 MakeResult = Callable[..., Result]
@@ -29,7 +30,7 @@ def _submission(folder: Path) -> Path:
 
 
 def _found(*paths: Path) -> list[tuple[str, str]]:
-    return [(entry.student, entry.path.name) for entry in discover(paths, CHAPTER).entries]
+    return [(student, path.name) for student, path in discover(paths, CHAPTER).submissions.items()]
 
 
 def test_a_single_submission_has_the_name_of_its_folder_or_file(tmp_path: Path) -> None:
@@ -48,7 +49,7 @@ def test_a_folder_of_submissions_has_one_submission_for_each_student(tmp_path: P
     (tmp_path / "class" / "notes.txt").write_bytes(b"")
     (tmp_path / "class" / ".hidden").mkdir()
     found = discover((tmp_path / "class",), CHAPTER)
-    assert [entry.student for entry in found.entries] == ["alice", "bob", "carol"]
+    assert list(found.submissions) == ["alice", "bob", "carol"]
     assert [name for name, _ in found.others] == ["notes.txt"]
 
 
@@ -103,45 +104,35 @@ class Grader:
         self._make = make_result
         self._meeting = threading.Barrier(together)
 
-    def __call__(
-        self,
-        path: Path,
-        assignment: str,
-        *,
-        student: str,
-        seed: int,
-        out: Path,
-        isolation: object,
-    ) -> Result:
+    def __call__(self, job: Job) -> Result:
         self._meeting.wait(60)
-        self.graded.append(student)
+        self.graded.append(job.student)
         result = self._make(
-            student,
-            seed=seed,
-            submission_sha256=intake.read_submission(path, assignment).sha256,
-            suite_version=suites.hidden(assignment).version,
+            job.student,
+            seed=job.seed,
+            submission_sha256=intake.read_submission(job.path, job.assignment).sha256,
+            suite_version=job.suite.version,
         )
-        write_json(out / "result.json", result.to_json())
-        return result
+        return write_result(job, result, {})
 
 
 @pytest.fixture
-def entries(tmp_path: Path) -> tuple[Entry, ...]:
+def submissions(tmp_path: Path) -> dict[str, Path]:
     """The class: two with another answer each."""
     (_submission(tmp_path / "alice") / "src" / "pkg" / "README").write_text("alice's")
-    return Entry("alice", tmp_path / "alice"), Entry("bob", _submission(tmp_path / "bob"))
+    return {"alice": tmp_path / "alice", "bob": _submission(tmp_path / "bob")}
 
 
 @pytest.fixture
 def grade(
-    tmp_path: Path, entries: tuple[Entry, ...], make_result: MakeResult, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, submissions: dict[str, Path], make_result: MakeResult, monkeypatch: pytest.MonkeyPatch
 ) -> Callable[..., list[str]]:
     """Grade the class; return who was really graded."""
 
     def run(*, together: int = 1, **options: Any) -> list[str]:
         grader = Grader(make_result, together)
         monkeypatch.setattr(batch, "grade_submission", grader)
-        results = grade_all(entries, CHAPTER, **{"seed": 7, "out": tmp_path / "out", "jobs": 2, **options})
+        results = grade_all(submissions, CHAPTER, **{"seed": 7, "out": tmp_path / "out", "jobs": 2, **options})
         assert [result.student for result in results] == ["alice", "bob"]
         return sorted(grader.graded)
 

@@ -11,5 +11,5 @@ from autograder.run.sandbox import Tier
 def test_a_job_is_the_same_after_a_way_through_json(tmp_path: Path) -> None:
     scope = Scope(("starts", "ten_hertz"), first_loss=True, pictures=False)
     out, scratch = tmp_path / "out", tmp_path / "scratch"
-    job = Job(tmp_path / "größe 漢", "02_nodes", "Zoë", 7, Tier.PROCESS, scope, out, scratch, 450.0)
+    job = Job(tmp_path / "größe 漢", "02_nodes", "Zoë", 7, out, Tier.PROCESS, scope, 450.0, scratch)
     assert Job.from_json(job.to_json()) == job

@@ -30,9 +30,9 @@ class Worker:
         self.left, self.alone, self.times = list(results), list[bool](), list[float]()
         self.last: list[bool] = []  # whether each try was said to be the last one
 
-    def __call__(self, job: Job, seconds: float) -> CellReport:
+    def __call__(self, job: Job) -> CellReport:
         self.alone.append(pipeline._machine._turn.locked())
-        self.times.append(seconds)
+        self.times.append(job.seconds)
         self.last.append(job.last)
         result = self.left.pop(0)
         if result is None:
@@ -61,16 +61,7 @@ def passed(check: Check) -> CheckResult:
 
 def grade(folder: Path, worker: Worker, seconds: float = 900.0) -> Result:
     """Grade something by a worker."""
-    return grade_submission(
-        folder,
-        CHAPTER,
-        student="s",
-        seed=1,
-        out=folder / "out",
-        isolation=Tier.PROCESS,
-        run_job=worker,
-        seconds=seconds,
-    )
+    return grade_submission(Job(folder, CHAPTER, "s", 1, folder / "out", Tier.PROCESS, seconds=seconds), worker)
 
 
 @pytest.mark.promise(
@@ -117,9 +108,9 @@ class SlowWorker(Worker):
         super().__init__(*results)
         self.part = part
 
-    def __call__(self, job: Job, seconds: float) -> CellReport:
-        time.sleep(self.part * seconds)
-        return super().__call__(job, seconds)
+    def __call__(self, job: Job) -> CellReport:
+        time.sleep(self.part * job.seconds)
+        return super().__call__(job)
 
 
 def test_a_second_try_has_only_what_the_first_has_left_of_one_budget(tmp_path: Path, lost: Result) -> None:

@@ -42,7 +42,7 @@ def found(folder: Path, table: str) -> tuple[CollectedSubmissions, dict[str, str
     roster = folder.parent / "roster.csv"
     roster.write_text(table, encoding="utf-8-sig")
     collected = collect(folder, read_roster(roster), CHAPTER, Path(tempfile.mkdtemp(dir=folder.parent)))
-    return collected, {entry.student: located(entry.path, folder) for entry in collected.entries}
+    return collected, {student: located(path, folder) for student, path in collected.submissions.items()}
 
 
 def located(path: Path, folder: Path) -> str:

@@ -21,6 +21,7 @@ from nbgrader.coursedir import CourseDirectory
 from traitlets.config import PyFileConfigLoader
 
 import autograder.grade.batch
+from autograder.grade.job import Job
 from autograder.grade.store import NOTEBOOK
 from autograder.result.model import CheckResult, Result
 from autograder.suite import Check, Outcome
@@ -69,7 +70,7 @@ class Course:
 
     root: Path
     api: Any
-    grade: Callable[..., Graded] = field(default=lambda *_, **__: pytest.fail("nothing was to be graded"))
+    grade: Callable[[Job], Graded] = field(default=lambda _: pytest.fail("nothing was to be graded"))
 
     @property
     def released(self) -> NotebookNode:
@@ -131,12 +132,12 @@ def course(generated: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     """A copy of the generated course, with the grader replaced by what the test sets as `grade`."""
     made = course_in(Path(shutil.copytree(generated, tmp_path / "course")))
 
-    def grade(*args: Any, out: Path, student: str, **options: Any) -> Result:
-        graded = made.grade(*args, out=out, student=student, **options)
-        out.mkdir(parents=True, exist_ok=True)
+    def grade(job: Job) -> Result:
+        graded = made.grade(job)
+        job.out.mkdir(parents=True, exist_ok=True)
         if graded.notebook is not None:
-            nbformat.write(graded.notebook, out / NOTEBOOK)
-        return replace(graded.result, student=student)
+            nbformat.write(graded.notebook, job.out / NOTEBOOK)
+        return replace(graded.result, student=job.student)
 
     monkeypatch.setattr(autograder.grade.batch, "grade_submission", grade)
     return made

@@ -13,6 +13,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
 
 from autograder.exceptions import IsolationError
 from autograder.grade import DEFAULT_SEED
+from autograder.grade.job import Job
 from autograder.result.model import Artifact, CheckResult, Status
 from autograder.suite import Check, Outcome
 
@@ -38,18 +39,10 @@ def test_the_release_holds_the_stub_and_not_the_solution(course: Any) -> None:
 
 
 def test_the_score_of_each_group_is_recorded(course: Any, verdict: Callable[..., Any]) -> None:
-    seen: list[tuple[Any, ...]] = []
+    seen: list[Job] = []
 
-    def grade(
-        path: Path,
-        assignment: str,
-        *,
-        student: str,
-        seed: int,
-        out: Path,
-        isolation: str,
-    ) -> Any:
-        seen.append((path, assignment, student, seed, out, isolation))
+    def grade(job: Job) -> Any:
+        seen.append(job)
         return verdict()
 
     course.grade = grade
@@ -57,7 +50,7 @@ def test_the_score_of_each_group_is_recorded(course: Any, verdict: Callable[...,
     assert course.autograde("alice")["success"]
     assert course.grades("alice") == BOOKED
     out = course.root / ".build" / "nbgrader" / "tiny" / "alice"
-    assert seen == [(folder, "tiny", "alice", DEFAULT_SEED, out, "bubblewrap")]
+    assert seen == [Job(folder, "tiny", "alice", DEFAULT_SEED, out)]
     assert (out / "feedback.html").is_file()
 
 
@@ -65,7 +58,7 @@ def test_the_submitted_notebook_is_not_executed(course: Any, verdict: Callable[.
     trace = tmp_path / "executed"
     notebook = course.released
     cell(notebook, "free").source = f"open({str(trace)!r}, 'w')"
-    course.grade = lambda *a, **k: verdict()
+    course.grade = lambda job: verdict()
     course.submit("alice", notebook)
     assert course.autograde("alice")["success"]
     assert not trace.exists()
@@ -80,7 +73,7 @@ def test_outputs_of_the_sandboxed_run_are_shown_where_the_source_is_the_same(
     cell(executed, "free").outputs = [new_output("stream", text="free\n")]
     cell(executed, "solve").source += "\n# other"
     cell(executed, "solve").outputs = [new_output("stream", text="from another source")]
-    course.grade = lambda *a, **k: verdict(executed)
+    course.grade = lambda job: verdict(executed)
     course.submit("alice", notebook)
     assert course.autograde("alice")["success"]
     assert [output.text for output in cell(course.autograded("alice"), "free").outputs] == ["free\n"]
@@ -90,7 +83,7 @@ def test_outputs_of_the_sandboxed_run_are_shown_where_the_source_is_the_same(
 def test_feedback_explains_each_group_and_shows_the_track(
     course: Any, verdict: Callable[..., Any], track: Callable[..., Artifact]
 ) -> None:
-    course.grade = lambda *a, out, **k: verdict(artifacts=(track(out, check="turns"),))
+    course.grade = lambda job: verdict(artifacts=(track(job.out, check="turns"),))
     course.submit("alice", course.released)
     assert course.autograde("alice")["success"]
     html = course.feedback("alice")
@@ -107,7 +100,7 @@ def test_forged_outputs_and_metadata_earn_no_points(course: Any, verdict: Callab
     forged.source = "4.0"
     forged.metadata.nbgrader.points = 0.5
     forged.metadata.course = {"group": "graph"}
-    course.grade = lambda *a, **k: verdict(notebook)
+    course.grade = lambda job: verdict(notebook)
     course.submit("mallory", notebook)
     assert course.autograde("mallory")["success"]
     assert course.grades("mallory") == BOOKED
@@ -168,7 +161,7 @@ def test_a_tampered_notebook_neither_gains_points_nor_shrinks_the_maximum(
 ) -> None:
     notebook = course.released
     tamper(notebook)
-    course.grade = lambda *a, **k: verdict()
+    course.grade = lambda job: verdict()
     course.submit("mallory", notebook)
     done = course.autograde("mallory")
     assert done["success"], done
@@ -185,7 +178,7 @@ def test_a_tampered_notebook_neither_gains_points_nor_shrinks_the_maximum(
 def test_a_file_that_is_no_notebook_gets_the_graders_verdict(
     data: bytes, course: Any, verdict: Callable[..., Any]
 ) -> None:
-    course.grade = lambda *a, **k: verdict()
+    course.grade = lambda job: verdict()
     course.submit("bob", data)
     done = course.autograde("bob")
     assert done["success"], done
@@ -193,7 +186,7 @@ def test_a_file_that_is_no_notebook_gets_the_graders_verdict(
 
 
 def test_an_ungraded_submission_fails_and_no_score_is_recorded(course: Any, verdict: Callable[..., Any]) -> None:
-    course.grade = lambda *a, **k: verdict(status=Status.NOT_GRADED, checks=())
+    course.grade = lambda job: verdict(status=Status.NOT_GRADED, checks=())
     course.submit("carol", course.released)
     done = course.autograde("carol")
     assert not done["success"]
@@ -206,7 +199,7 @@ def test_when_the_grader_fails_the_old_score_stays_and_manual_grading_is_request
     course: Any, verdict: Callable[..., Any]
 ) -> None:
     course.submit("dave", course.released)
-    course.grade = lambda *a, **k: verdict()
+    course.grade = lambda job: verdict()
     assert course.autograde("dave")["success"]
 
     def fail(*args: Any, **kwargs: Any) -> Any:
@@ -217,7 +210,7 @@ def test_when_the_grader_fails_the_old_score_stays_and_manual_grading_is_request
     assert not done["success"]
     assert "this machine cannot isolate submissions" in done["log"]
     assert course.grades("dave") == {name: (*grade[:2], True) for name, grade in BOOKED.items()}
-    course.grade = lambda *a, **k: verdict()
+    course.grade = lambda job: verdict()
     assert course.autograde("dave", force=True)["success"]
     assert course.grades("dave") == BOOKED
 
@@ -226,7 +219,7 @@ def test_groups_that_do_not_fit_the_cells_are_refused(
     course: Any, verdict: Callable[..., Any], make_check: Callable[..., Check]
 ) -> None:
     checks = (CheckResult.of(make_check("starts", "It starts.", 3, "graph"), Outcome.PASSED),)
-    course.grade = lambda *a, **k: verdict(checks=checks, max_score=3.0)
+    course.grade = lambda job: verdict(checks=checks, max_score=3.0)
     course.submit("erin", course.released)
     done = course.autograde("erin")
     assert not done["success"]
@@ -240,7 +233,7 @@ def test_points_that_do_not_fit_the_cell_are_refused(
     checks = tuple(
         CheckResult.of(make_check(group, "It works.", 5, group), Outcome.PASSED) for group in ("graph", "reaction")
     )
-    course.grade = lambda *a, **k: verdict(checks=checks, max_score=10.0)
+    course.grade = lambda job: verdict(checks=checks, max_score=10.0)
     course.submit("frank", course.released)
     done = course.autograde("frank")
     assert not done["success"]
@@ -262,7 +255,7 @@ def test_code_in_a_students_notebook_does_not_run_in_feedback(course: Any, verdi
         ),
         new_output("error", ename="<script>", evalue="<script>", traceback=["<script>trace</script>"]),
     ]
-    course.grade = lambda *a, **k: verdict(executed)
+    course.grade = lambda job: verdict(executed)
     course.submit("mallory", notebook)
     assert course.autograde("mallory")["success"]
     html = course.feedback("mallory")

@@ -61,7 +61,7 @@ def test_the_release_holds_neither_the_mark_scheme_nor_the_model_answer(course: 
 
 
 def test_autograding_leaves_the_grade_of_an_answer_open(course: Any, verdict: Callable[..., Any]) -> None:
-    course.grade = lambda *a, **k: verdict()
+    course.grade = lambda job: verdict()
     course.submit("alice", answered(course, "Because it is so."))
     assert course.autograde("alice")["success"]
     assert course.grades("alice") == {**TRUSTED, "explain": (None, 2.0, True)}
@@ -70,7 +70,7 @@ def test_autograding_leaves_the_grade_of_an_answer_open(course: Any, verdict: Ca
 def test_an_unwritten_answer_has_no_points_and_needs_no_manual_grading(
     course: Any, verdict: Callable[..., Any]
 ) -> None:
-    course.grade = lambda *a, **k: verdict()
+    course.grade = lambda job: verdict()
     course.submit("bob", course.released)
     assert course.autograde("bob")["success"]
     assert course.grades("bob") == {**TRUSTED, "explain": (0.0, 2.0, False)}
@@ -78,7 +78,7 @@ def test_an_unwritten_answer_has_no_points_and_needs_no_manual_grading(
 
 @pytest.mark.promise("which shows the mark scheme above each answer")
 def test_formgrader_shows_the_answer_below_the_mark_scheme(course: Any, verdict: Callable[..., Any]) -> None:
-    course.grade = lambda *a, **k: verdict()
+    course.grade = lambda job: verdict()
     course.submit("alice", answered(course, "Because it is so."))
     assert course.autograde("alice")["success"]
     assert "One point for BECAUSE." in cell(course.autograded("alice"), "question").source
@@ -88,7 +88,7 @@ def test_formgrader_shows_the_answer_below_the_mark_scheme(course: Any, verdict:
 def test_points_of_a_person_are_added_and_kept_at_the_next_autograding(
     course: Any, verdict: Callable[..., Any]
 ) -> None:
-    course.grade = lambda *a, **k: verdict()
+    course.grade = lambda job: verdict()
     course.submit("alice", answered(course, "Because it is so."))
     assert course.autograde("alice")["success"]
     with Gradebook(f"sqlite:///{course.root}/gradebook.db") as gradebook:
@@ -105,7 +105,7 @@ def test_an_answer_cell_with_forged_marks_still_needs_manual_grading(course: Any
     notebook = answered(course, "### BEGIN MARK SCHEME\nAll points.\n### END MARK SCHEME")
     cell(notebook, "explain").metadata.nbgrader.update(points=100, solution=False, locked=True)
     cell(notebook, "question").source = "No marks are taken off."
-    course.grade = lambda *a, **k: verdict()
+    course.grade = lambda job: verdict()
     course.submit("mallory", notebook)
     assert course.autograde("mallory")["success"]
     assert course.grades("mallory") == {**TRUSTED, "explain": (None, 2.0, True)}
