@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import subprocess
 import time
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from autograder.exceptions import StudentError
 from autograder.result.model import Build
 from autograder.run.workspace import Workspace
 from autograder.submission.exercise_stubs import explain
-from autograder.submission.packages import find_packages
+from autograder.submission.packages import Package, read_packages
 
 
 @dataclass(frozen=True)
@@ -32,35 +32,37 @@ class BuildOutcome:
         return next((found for found in self.diagnoses.values() if found is not OK), OK)
 
 
-def require_packages(source: Path, wanted: tuple[str, ...], *, whole: bool = True) -> None:
-    """Raise a StudentError unless the wanted packages in `source` are there and whole enough for colcon to build.
+def require_packages(source: Path, wanted: tuple[str, ...], *, whole: bool = True) -> dict[str, Package]:
+    """Return the packages in `source`; a StudentError unless the wanted ones are there, and whole enough for colcon.
 
     `whole` says whether each needs the files that every Python package of ROS 2 has; if not, colcon is left to judge.
     """
-    found, broken = find_packages(source)
+    found, broken = read_packages(source)
     for name in wanted:
-        folder = found.get(name)
-        if folder is None and broken:
+        package = found.get(name)
+        if package is None and broken:
             sentence = broken.get(source / name, next(iter(broken.values())))
             raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence))
-        if folder is None:
+        if package is None:
             raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, _missing(source, name, found)))
+        folder = package.folder
         if not whole or (folder / "CMakeLists.txt").is_file():
             continue
         for part in ("setup.py", "setup.cfg", f"resource/{name}", f"{name}/__init__.py"):
             if not (folder / part).exists():
                 sentence = f"src/{folder.name} has no {part}: the package is only half written, colcon needs that file."
                 raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence))
+    return found
 
 
-def build(workspace: Workspace, wanted: tuple[str, ...]) -> Build:
+def build(workspace: Workspace, wanted: tuple[str, ...], *, whole: bool = False) -> Build:
     """Build the wanted packages of a workspace, and those that they depend on, with colcon.
 
     Its interface packages come from the cache of builds, where the very same ones were built before. The detail of the
-    StudentError of a failed build holds the end of colcon's output.
+    StudentError of a failed build holds the end of colcon's output. A package is required as `require_packages` says.
     """
     started = time.monotonic()
-    found, _ = find_packages(workspace.root / "src")
+    found = require_packages(workspace.root / "src", wanted, whole=whole)
     bundle = interface_bundle(found, wanted)
     if bundle:
         install_bundle(bundle, workspace)
@@ -82,8 +84,7 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
     """
     source = workspace.root / "src"
     try:
-        require_packages(source, packages, whole=not may_fail)
-        return BuildOutcome(build(workspace, packages), dict.fromkeys(packages, OK))
+        return BuildOutcome(build(workspace, packages, whole=not may_fail), dict.fromkeys(packages, OK))
     except StudentError as error:
         if not may_fail or isinstance(error, StoppedBuildError):
             raise StudentError(explain(error.diagnosis, source, *packages)) from None
@@ -92,7 +93,6 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
     diagnoses: dict[str, Diagnosis] = {}
     for name in packages:
         try:
-            require_packages(source, (name,), whole=False)
             builds.append(build(workspace, (name,)))
             diagnoses[name] = OK
         except StoppedBuildError:
@@ -107,7 +107,7 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
     return BuildOutcome(Build(all(each.ok for each in builds), seconds, seen, log), diagnoses)
 
 
-def _missing(source: Path, name: str, found: dict[str, Path]) -> str:
+def _missing(source: Path, name: str, found: Collection[str]) -> str:
     if not source.is_dir():
         return f"There is no ws/src folder: create the package {name} in it."
     if (source / name).is_dir():

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -22,20 +23,20 @@ from autograder.run.sandbox import line
 from autograder.run.sandbox.limits import SOURCES
 from autograder.run.sandbox.trees import TreeError, read_tree
 from autograder.run.workspace import Workspace
-from autograder.submission.packages import MANIFEST, read_summary
+from autograder.submission.packages import Package
 
 GROUP = "rosidl_interface_packages"
 NOTE = "bundle.json"
 HOOKS = (".sh", ".bash", ".zsh", ".ps1", ".dsv", ".py")
 
 
-def interface_bundle(found: dict[str, Path], wanted: tuple[str, ...]) -> dict[str, Path]:
-    """Return the interface packages among the wanted ones and those that they depend on, by name.
+def interface_bundle(found: Mapping[str, Package], wanted: tuple[str, ...]) -> dict[str, Path]:
+    """Return the folders of the interface packages among the wanted ones and those that they depend on, by name.
 
     A bundle that needs any other package of the submission is none: colcon then builds everything together.
     """
     needed = _closure(found, wanted)
-    bundle = {name: found[name] for name in needed if _is_interface(found[name])}
+    bundle = {name: found[name].folder for name in needed if _is_interface(found[name])}
     return bundle if _closure(found, tuple(bundle)) == set(bundle) else {}
 
 
@@ -97,7 +98,7 @@ def relocate(prefix: Path, old: str, new: str) -> None:
                 path.write_bytes(text.replace(old.encode(), new.encode()))
 
 
-def _closure(found: dict[str, Path], wanted: tuple[str, ...]) -> set[str]:
+def _closure(found: Mapping[str, Package], wanted: tuple[str, ...]) -> set[str]:
     """Return the wanted packages and all packages of the submission below them."""
     seen: set[str] = set()
     pending = [name for name in wanted if name in found]
@@ -105,9 +106,9 @@ def _closure(found: dict[str, Path], wanted: tuple[str, ...]) -> set[str]:
         name = pending.pop()
         if name not in seen:
             seen.add(name)
-            pending += [other for other in read_summary(found[name] / MANIFEST).depends if other in found]
+            pending += [other for other in found[name].depends if other in found]
     return seen
 
 
-def _is_interface(folder: Path) -> bool:
-    return GROUP in read_summary(folder / MANIFEST).groups and (folder / "CMakeLists.txt").is_file()
+def _is_interface(package: Package) -> bool:
+    return GROUP in package.groups and (package.folder / "CMakeLists.txt").is_file()

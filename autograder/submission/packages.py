@@ -18,16 +18,17 @@ DEPENDS = ("depend", "build_depend", "build_export_depend", "exec_depend", "buil
 
 
 @dataclass(frozen=True)
-class PackageSummary:
-    """The name, dependencies and groups in a package.xml. `probes.manifest` validates, this does not."""
+class Package:
+    """A package's folder, and what its package.xml says. `probes.manifest` validates that, this does not."""
 
+    folder: Path
     name: str
     depends: tuple[str, ...]
     groups: frozenset[str]
 
 
-def read_summary(manifest: Path, called: str = "") -> PackageSummary:
-    """Read a package.xml, which a sentence names as `called`; a StudentError says why it cannot be read."""
+def read_package(manifest: Path, called: str = "") -> Package:
+    """Read the package of a package.xml, which a sentence names as `called`; a StudentError says why it cannot."""
     where = called or f"{manifest.parent.name}/{MANIFEST}"
     with reading(where, Kind.HALF_WRITTEN_PACKAGE, "Correct it for colcon."):
         if manifest.stat().st_size > MAX_MANIFEST:
@@ -42,26 +43,34 @@ def read_summary(manifest: Path, called: str = "") -> PackageSummary:
         name = root.findtext("name", "").strip()
         if not NAME.fullmatch(name):
             raise _wrong(f"{where} has the <name> {name[:80]!r}, which is not a package's name: use a-z, 0-9 and _.")
-        return PackageSummary(
+        return Package(
+            folder=manifest.parent,
             name=name,
             depends=tuple(each.text.strip() for tag in DEPENDS for each in root.iter(tag) if each.text),
             groups=frozenset((each.text or "").strip() for each in root.iter("member_of_group")),
         )
 
 
-def find_packages(source: Path) -> tuple[dict[str, Path], dict[Path, str]]:
-    """Find the packages below a folder: each one's folder by its name, and an error by each unreadable one's folder."""
-    found: dict[str, Path] = {}
+def read_packages(source: Path) -> tuple[dict[str, Package], dict[Path, str]]:
+    """Read the packages below a folder, by their names; those that cannot be read are errors, by their folders."""
+    found: dict[str, Package] = {}
     broken: dict[Path, str] = {}
     for manifest in sorted(source.rglob(MANIFEST)):
         # To read a named pipe, which a set-up script may have made, would never end.
         if manifest.is_symlink() or not manifest.is_file():
             continue
         try:
-            found[read_summary(manifest, f"src/{manifest.relative_to(source)}").name] = manifest.parent
+            package = read_package(manifest, f"src/{manifest.relative_to(source)}")
+            found[package.name] = package
         except StudentError as error:
             broken[manifest.parent] = error.diagnosis.sentence
     return found, broken
+
+
+def find_packages(source: Path) -> tuple[dict[str, Path], dict[Path, str]]:
+    """Return the folders of the packages below a folder, and the errors, as `read_packages` does."""
+    found, broken = read_packages(source)
+    return {name: package.folder for name, package in found.items()}, broken
 
 
 def _wrong(sentence: str) -> StudentError:

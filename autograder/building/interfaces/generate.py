@@ -22,7 +22,7 @@ from xml.sax.saxutils import escape
 
 from autograder.building.interfaces import compile as compiling
 from autograder.ros.environment import site_packages
-from autograder.submission.packages import read_summary
+from autograder.submission.packages import read_package
 
 C_SUPPORTS = ("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c")
 
@@ -57,7 +57,7 @@ def closure(prefixes: tuple[Path, ...], packages: list[str]) -> tuple[str, ...]:
         if name in found or share is None or not any((share / kind).is_dir() for kind in ("msg", "srv", "action")):
             continue
         found.add(name)
-        pending += read_summary(share / "package.xml").depends
+        pending += read_package(share / "package.xml").depends
     return tuple(sorted(found))
 
 

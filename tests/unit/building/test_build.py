@@ -38,7 +38,7 @@ def _fault(source: Path) -> tuple[Kind, str]:
 
 def test_a_whole_package_is_found_by_the_name_in_its_manifest(tmp_path: Path) -> None:
     build.require_packages(_package(tmp_path), (NAME,))
-    assert build.find_packages(tmp_path) == ({NAME: tmp_path / NAME}, {})
+    assert packages.find_packages(tmp_path) == ({NAME: tmp_path / NAME}, {})
 
 
 @pytest.mark.promise("The message names what was found.")
@@ -85,8 +85,7 @@ def test_a_malformed_manifest_of_another_package_does_not_stop_the_build(tmp_pat
 
 def test_a_cmake_package_needs_none_of_pythons_files(tmp_path: Path) -> None:
     _package(tmp_path, without="setup.py", **{"CMakeLists.txt": ""})
-    build.require_packages(tmp_path, (NAME,))
-    assert build.find_packages(tmp_path)[0]
+    assert build.require_packages(tmp_path, (NAME,))
 
 
 @pytest.mark.parametrize("text", ["<package><name>", "", "not xml", "<package>&x;</package>"])
@@ -103,7 +102,7 @@ def test_a_manifest_with_entities_is_refused_before_they_are_read(tmp_path: Path
     (tmp_path / "p").mkdir()
     (tmp_path / "p/package.xml").write_text(text, encoding=encoding)
     with pytest.raises(StudentError, match="has a <!DOCTYPE>"):
-        packages.read_summary(tmp_path / "p/package.xml")
+        packages.read_package(tmp_path / "p/package.xml")
 
 
 def test_a_huge_manifest_is_not_read(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from autograder.building import keeper
 from autograder.building.interface_bundle import interface_bundle, relocate
 from autograder.run.sandbox.limits import SOURCES
 from autograder.run.sandbox.trees import read_tree
-from autograder.submission.packages import find_packages
+from autograder.submission.packages import read_packages
 
 GROUP = "<member_of_group>rosidl_interface_packages</member_of_group>"
 
@@ -25,7 +25,7 @@ def package(source: Path, name: str, *depends: str, interface: bool = False) -> 
 
 
 def bundled(source: Path, *wanted: str) -> set[str]:
-    return set(interface_bundle(find_packages(source)[0], wanted))
+    return set(interface_bundle(read_packages(source)[0], wanted))
 
 
 def test_the_bundle_contains_the_interfaces_that_the_wanted_packages_need(tmp_path: Path) -> None:
