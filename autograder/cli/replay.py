@@ -17,7 +17,7 @@ from autograder.exceptions import UsageError
 from autograder.grade.job import Job, Scope
 from autograder.grade.pipeline import grade_submission
 from autograder.report import feedback
-from autograder.report.export.stored import Stored, load
+from autograder.report.export.stored import load
 from autograder.result.model import Result, Status
 from autograder.run.sandbox import Tier
 from autograder.suite import suites
@@ -48,15 +48,15 @@ def replay(stored: Path, check: str, submission: Path | None, mcap: bool, show: 
     if mcap and submission is None:
         raise UsageError("--mcap needs --submission PATH: the kept run has no messages, they come from a new grading")
     found = _one(stored)
-    if check not in {result.id for result in found.result.checks}:
-        known = ", ".join(result.id for result in found.result.checks)
+    if check not in {each.id for each in found.checks}:
+        known = ", ".join(each.id for each in found.checks)
         raise UsageError(f"{stored}: the result has no check {check!r}; it has: {known}")
     folder = found.folder / "replay" / check
     with tempfile.TemporaryDirectory(prefix="replay-") as scratch:
         if submission is not None:
-            found = _grade_again(found.result, check, submission, Path(scratch), Tier(isolation), mcap)
-        result = found.result.only(check) if found.result.status is Status.GRADED else found.result
-        page = feedback.write(result, folder, artifacts=found.folder)
+            found = _grade_again(found, check, submission, Path(scratch), Tier(isolation), mcap)
+        result = found.only(check) if found.status is Status.GRADED else found
+        page = feedback.write(result, folder, artifacts=result.folder)
         echo(f"The run of {check!r}: {page}")
         for bag in _bags(Path(scratch), folder):
             echo(f"Its messages: {bag}")
@@ -64,20 +64,20 @@ def replay(stored: Path, check: str, submission: Path | None, mcap: bool, show: 
         webbrowser.open(page.resolve().as_uri())
 
 
-def _one(path: Path) -> Stored:
+def _one(path: Path) -> Result:
     found = load(path)
     if len(found) != 1:
         raise UsageError(f"{path}: holds {len(found)} results; give the folder of one student")
     return found[0]
 
 
-def _grade_again(result: Result, check: str, submission: Path, out: Path, tier: Tier, recordings: bool) -> Stored:
+def _grade_again(result: Result, check: str, submission: Path, out: Path, tier: Tier, recordings: bool) -> Result:
     """Grade a check, and those that it needs, once more with the seed of its result."""
     scope = Scope(only=suites.hidden(result.assignment).with_dependencies(check), recordings=recordings)
     graded = grade_submission(Job(submission, result.assignment, result.student, result.seed, out, tier, scope))
     if graded.status is Status.GRADED and graded.submission_sha256 != result.submission_sha256:
         echo(f"Note: {submission} is not what was graded then; the run may differ.", err=True)
-    return Stored(graded, out)
+    return graded
 
 
 def _bags(recordings: Path, out: Path) -> Iterator[Path]:

@@ -22,7 +22,8 @@ def write_result(job: Job, result: Result, files: Mapping[str, bytes]) -> Result
     Until all are written, its folder has the old result, also if the process is killed. The mark changes in one step,
     as `result.json` is replaced last. Files of the old result that the new one lacks are removed.
     """
-    result, out = replace(result, student=job.student), job.out
+    out = job.out
+    result = replace(result, student=job.student, folder=out)
     remove_unfinished(out)
     folder = out / UNFINISHED
     folder.mkdir(parents=True)

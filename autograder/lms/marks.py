@@ -15,7 +15,6 @@ from pathlib import Path
 
 from autograder.exceptions import UsageError
 from autograder.lms.roster import Roster, normalized
-from autograder.report.export import Stored
 from autograder.result.model import Result, Status
 
 Rows = list[list[str]]
@@ -24,7 +23,7 @@ CANVAS_POINTS = "points possible"
 
 
 def write_marks(
-    stored: Sequence[Stored],
+    results: Sequence[Result],
     system: str,
     roster: Roster,
     out: Path,
@@ -41,8 +40,8 @@ def write_marks(
     Returns:
         The students who have a result and are not in the table.
     """
-    results = {item.result.student: item.result for item in stored if item.result.status is Status.GRADED}
-    assignments = {item.result.assignment for item in stored}
+    marks = {result.student: result for result in results if result.status is Status.GRADED}
+    assignments = {result.assignment for result in results}
     if len(assignments) != 1:
         raise UsageError(
             f"a table takes the marks of one assignment, and these are of {', '.join(sorted(assignments))}"
@@ -51,12 +50,12 @@ def write_marks(
     def share(result: Result) -> float:
         return result.percent / 100 * (1 - late_penalty / 100 * (result.student in late))
 
-    rows = SYSTEMS[system](roster, results, share, assignments.pop())
+    rows = SYSTEMS[system](roster, marks, share, assignments.pop())
     out.parent.mkdir(parents=True, exist_ok=True)
     with out.open("w", encoding="utf-8", newline="") as file:
         csv.writer(file).writerows(rows)
     known = {student.id for student in roster.students}
-    return sorted(item.result.student for item in stored if item.result.student not in known)
+    return sorted(result.student for result in results if result.student not in known)
 
 
 def _moodle(roster: Roster, results: dict[str, Result], share: Callable[[Result], float], assignment: str) -> Rows:

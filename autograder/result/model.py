@@ -153,6 +153,8 @@ class Result:
     unused: tuple[str, ...] = ()  # what was handed in and plays no part, by its path
     held_up: float = 0.0  # the longest time, in seconds, for which a busy machine held up that program or the grader
     files_digest: str = ""  # digest of every file that the grading read; `suite_version` changes only when marks can
+    # The folder of its artifacts. It is no part of the JSON form, and who reads that says which it is.
+    folder: Path = dataclasses.field(default=Path(), compare=False)
 
     @property
     def score(self) -> float:
@@ -183,6 +185,7 @@ class Result:
     def to_json(self) -> dict[str, Any]:
         """Return the JSON form."""
         plain = {"schema": SCHEMA, **dataclasses.asdict(self), "score": self.score}
+        del plain["folder"]
         return json.loads(json.dumps(plain, default=_enum_value))  # type: ignore[no-any-return]
 
 
@@ -209,7 +212,7 @@ def _validator() -> Validator:
     return validator_for(schema())(schema())
 
 
-def from_json(data: Any, *, source: str = "result") -> Result:
+def from_json(data: Any, *, source: str = "result", folder: Path = Path()) -> Result:
     """Return the result that a JSON form describes; `source` is the name of its file, for the error.
 
     Raises:
@@ -224,7 +227,7 @@ def from_json(data: Any, *, source: str = "result") -> Result:
         field = ".".join(str(part) for part in error.absolute_path) or "the top level"
         raise UsageError(f"{source}: not a grading result: {field}: {error.message}")
     try:
-        result: Result = structure(Result, data)
+        result: Result = dataclasses.replace(structure(Result, data), folder=folder)
     except ValueError as error:
         raise UsageError(f"{source}: not a grading result of this version: {error}") from None
     if not result.score <= result.max_score < math.inf:

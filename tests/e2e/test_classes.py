@@ -95,8 +95,8 @@ def graded(assignment: str, tmp_path_factory: pytest.TempPathFactory) -> Graded:
     return Graded(
         room,
         everybody,
-        {item.result.student: item.result for item in load(room.course / ".build" / "nbgrader" / assignment)},
-        {item.result.student: item.result for item in load(parallel)},
+        {result.student: result for result in load(room.course / ".build" / "nbgrader" / assignment)},
+        {result.student: result for result in load(parallel)},
     )
 
 

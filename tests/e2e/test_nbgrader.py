@@ -82,7 +82,7 @@ def results(graded: Classroom) -> dict[str, Result]:
     for name in ("reference", "empty", "odd"):
         stored = graded.course / ".build" / "nbgrader" / ASSIGNMENT / name
         shutil.copytree(stored, graded.place / "results" / ASSIGNMENT / name)
-    return {item.result.student: item.result for item in load(graded.grade("--resume"))}
+    return {result.student: result for result in load(graded.grade("--resume"))}
 
 
 @pytest.mark.promise(
@@ -138,11 +138,11 @@ def test_the_feedback_explains_and_shows_no_source_of_the_suite(student: str, gr
     html = unescape(path.read_text(encoding="utf-8"))
     suite = suites.hidden(ASSIGNMENT)
     (stored,) = load(graded.course / ".build" / "nbgrader" / ASSIGNMENT / student)
-    for check in stored.result.checks:
+    for check in stored.checks:
         assert check.title in html
         if check.outcome is Outcome.FAILED:  # what was not checked is folded under what failed
             assert check.message in html
-    assert html.count("data:image/png;base64,") >= len(stored.result.artifacts)
+    assert html.count("data:image/png;base64,") >= len(stored.artifacts)
     assert [line for file in suite.files for line in code_lines(file) if line in html] == []
     assert "def test_" not in html
 

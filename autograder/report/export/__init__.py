@@ -4,6 +4,6 @@
 """
 
 from autograder.report.export.formats import FORMATS, write
-from autograder.report.export.stored import Stored, load
+from autograder.report.export.stored import load
 
-__all__ = ["FORMATS", "Stored", "load", "write"]
+__all__ = ["FORMATS", "load", "write"]

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from autograder.exceptions import UsageError
-from autograder.report.export.stored import Stored
 from autograder.result.model import Result, Status
 
 
@@ -38,7 +37,7 @@ class Change:
     checks: tuple[CheckChange, ...]
 
 
-def changes(old: Sequence[Stored], new: Sequence[Stored]) -> tuple[Change, ...]:
+def changes(old: Sequence[Result], new: Sequence[Result]) -> tuple[Change, ...]:
     """Return the students whose marks, or points of a check, differ, in the order of the old grading and then the new.
 
     Raises:
@@ -55,14 +54,14 @@ def changes(old: Sequence[Stored], new: Sequence[Stored]) -> tuple[Change, ...]:
     return tuple(found)
 
 
-def _by_student(stored: Sequence[Stored], which: str) -> dict[tuple[str, str], Result]:
-    results: dict[tuple[str, str], Result] = {}
-    for item in stored:
-        key = (item.result.assignment, item.result.student)
-        if key in results:
+def _by_student(results: Sequence[Result], which: str) -> dict[tuple[str, str], Result]:
+    found: dict[tuple[str, str], Result] = {}
+    for result in results:
+        key = (result.assignment, result.student)
+        if key in found:
             raise UsageError(f"the {which} results hold {key[1]!r} twice for {key[0]}; give the folder of one grading")
-        results[key] = item.result
-    return results
+        found[key] = result
+    return found
 
 
 def _mark(result: Result | None) -> float | None:

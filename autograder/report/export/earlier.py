@@ -12,7 +12,7 @@ from pathlib import Path
 
 from autograder.exceptions import UsageError
 from autograder.report.export.changes import Change, changes
-from autograder.report.export.stored import ONE, Stored, load
+from autograder.report.export.stored import ONE, load
 from autograder.result.model import Result, Status, write_json
 
 FILE = "earlier-marks.json"  # a list of results; `autograder compare` reads it, too
@@ -30,17 +30,17 @@ class EarlierMarks:
     """
 
     def __init__(self, out: Path, students: Iterable[str]) -> None:
-        self._out, self._file = out, out / FILE
+        self._file = out / FILE
         # The marks before the interrupted grading count, not those that it came to.
-        noted = {} if not self._file.is_file() else {_key(item.result): item for item in load(self._file)}
+        noted = {} if not self._file.is_file() else {_key(result): result for result in load(self._file)}
         self._marks = _stored(out, students) | noted
         if self._marks.keys() > noted.keys():
             self._write()
 
     def changed(self, results: Sequence[Result]) -> tuple[Change, ...]:
         """Return the results of the grading whose marks, or points of a check, differ from the earlier ones."""
-        again = [Stored(result, self._out) for result in results if _key(result) in self._marks]
-        return changes([self._marks[_key(item.result)] for item in again], again)
+        again = [result for result in results if _key(result) in self._marks]
+        return changes([self._marks[_key(result)] for result in again], again)
 
     def forget(self, results: Iterable[Result]) -> None:
         """Drop the marks of what was graded again. Where the grader failed, the next grading compares with them."""
@@ -51,7 +51,7 @@ class EarlierMarks:
 
     def _write(self) -> None:
         if self._marks:
-            write_json(self._file, [item.result.to_json() for item in self._marks.values()])
+            write_json(self._file, [result.to_json() for result in self._marks.values()])
         else:
             self._file.unlink(missing_ok=True)
 
@@ -60,10 +60,10 @@ def _key(result: Result) -> tuple[str, str]:
     return result.assignment, result.student
 
 
-def _stored(out: Path, students: Iterable[str]) -> dict[tuple[str, str], Stored]:
+def _stored(out: Path, students: Iterable[str]) -> dict[tuple[str, str], Result]:
     """Return the results in the folders of students that have a mark; what cannot be read is graded again."""
-    found: list[Stored] = []
+    found: list[Result] = []
     for path in (out / student / ONE for student in students):
         with suppress(UsageError):
             found += load(path) if path.is_file() else ()
-    return {_key(item.result): item for item in found if item.result.status is Status.GRADED}
+    return {_key(result): result for result in found if result.status is Status.GRADED}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 
 from autograder.exceptions import UsageError
@@ -14,15 +14,7 @@ ONE = "result.json"
 MANY = "results.json"
 
 
-@dataclass(frozen=True)
-class Stored:
-    """A result and the folder of its artifacts."""
-
-    result: Result
-    folder: Path
-
-
-def load(path: Path) -> tuple[Stored, ...]:
+def load(path: Path) -> tuple[Result, ...]:
     """Read the results at `path`.
 
     Args:
@@ -41,35 +33,35 @@ def load(path: Path) -> tuple[Stored, ...]:
     files = sorted(complete) or sorted(path.glob(MANY))
     if not files:
         raise UsageError(f"{path}: holds no {ONE}; give the folder that `autograder grade --out` wrote")
-    return tuple(stored for file in files for stored in _read(file))
+    return tuple(result for file in files for result in _read(file))
 
 
-def per_student(stored: Sequence[Stored], out: Path) -> list[tuple[Stored, Path]]:
+def per_student(results: Sequence[Result], out: Path) -> list[tuple[Result, Path]]:
     """Pair each result with `out/<student>`.
 
     Raises:
         UsageError: a student has two results, or a student's name cannot be the name of a folder.
     """
-    pairs: dict[str, tuple[Stored, Path]] = {}
-    for item in stored:
-        student = item.result.student
+    pairs: dict[str, tuple[Result, Path]] = {}
+    for result in results:
+        student = result.student
         if student in ("", ".", "..") or "/" in student or "\0" in student:
             raise UsageError(f"the student {student!r} cannot be the name of a folder; use a format without folders")
         if student in pairs:
             raise UsageError(f"the student {student!r} has two results; export one assignment at a time")
-        pairs[student] = (item, out / student)
+        pairs[student] = (result, out / student)
     return list(pairs.values())
 
 
-def _read(file: Path) -> tuple[Stored, ...]:
+def _read(file: Path) -> tuple[Result, ...]:
     try:
         data = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise UsageError(f"{file}: cannot be read as JSON: {error}") from None
     if not isinstance(data, list):
-        return (Stored(from_json(data, source=str(file)), file.parent),)
+        return (from_json(data, source=str(file), folder=file.parent),)
     found = (from_json(item, source=f"{file}, entry {index}") for index, item in enumerate(data))
-    return tuple(Stored(result, _folder(result, file.parent)) for result in found)
+    return tuple(replace(result, folder=_folder(result, file.parent)) for result in found)
 
 
 def _folder(result: Result, beside: Path) -> Path:

@@ -90,12 +90,12 @@ def test_the_list_of_changes_is_whole_after_a_kill_at_any_instant(
     folder, kill_at = copy(graded, tmp_path), instant * changes // INSTANTS
     first = ("--resume",) if instant % 4 else ()
     assert run(folder, AFTER, NEW, *first, kill_at=kill_at) == -signal.SIGKILL
-    marks = {item.result.student: item.result.score for item in load(folder / "results")}
+    marks = {result.student: result.score for result in load(folder / "results")}
     assert marks.keys() == {*BEFORE, "erin"}
     run(folder, AFTER, NEW, "--resume", kill_at=kill_at // 2)
     assert run(folder, AFTER, NEW, "--resume") == 0
     assert set(listed(folder)) == {LIST}
-    assert {item.result.suite_version for item in load(folder / "results")} == {NEW}
+    assert {result.suite_version for result in load(folder / "results")} == {NEW}
     left = {path.name for path in (folder / "results").rglob("*")}
     assert left.isdisjoint({".unfinished", "earlier-marks.json"})
 

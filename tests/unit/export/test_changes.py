@@ -12,14 +12,9 @@ from click.testing import CliRunner
 
 from autograder.cli import group
 from autograder.report.export.changes import CheckChange, changes
-from autograder.report.export.stored import Stored
 from autograder.result.model import Result, write_json
 
 MakeResult = Callable[..., Result]
-
-
-def stored(*results: Result) -> list[Stored]:
-    return [Stored(result, Path()) for result in results]
 
 
 def regraded(result: Result, points: float) -> Result:
@@ -30,12 +25,12 @@ def regraded(result: Result, points: float) -> Result:
 
 
 def test_a_student_with_the_same_points_is_not_listed(make_result: MakeResult) -> None:
-    assert changes(stored(make_result("alice")), stored(make_result("alice"))) == ()
+    assert changes([make_result("alice")], [make_result("alice")]) == ()
 
 
 def test_a_corrected_check_is_listed_with_its_points(make_result: MakeResult) -> None:
     alice = make_result("alice")
-    (change,) = changes(stored(alice, make_result("bob")), stored(regraded(alice, 4.0), make_result("bob")))
+    (change,) = changes([alice, make_result("bob")], [regraded(alice, 4.0), make_result("bob")])
     assert (change.student, change.before, change.after, change.same_submission) == ("alice", 4.0, 7.0, True)
     assert change.checks == (CheckChange("turns", 1.0, 4.0),)
 
@@ -43,7 +38,7 @@ def test_a_corrected_check_is_listed_with_its_points(make_result: MakeResult) ->
 def test_checks_whose_points_changed_are_listed_even_if_the_mark_is_the_same(make_result: MakeResult) -> None:
     alice = make_result("alice")
     moved = replace(alice, checks=(replace(alice.checks[0], points=0.0), *regraded(alice, 2.0).checks[1:]))
-    (change,) = changes(stored(alice), stored(moved))
+    (change,) = changes([alice], [moved])
     assert change.before == change.after
     assert [check.id for check in change.checks] == ["starts", "turns"]
 
@@ -51,7 +46,7 @@ def test_checks_whose_points_changed_are_listed_even_if_the_mark_is_the_same(mak
 def test_new_and_removed_checks_and_new_students_are_listed(make_result: MakeResult, ungraded_result: Result) -> None:
     alice = make_result("alice")
     fewer = replace(alice, checks=alice.checks[1:])
-    found = changes(stored(fewer), stored(alice, make_result("dora"), ungraded_result))
+    found = changes([fewer], [alice, make_result("dora"), ungraded_result])
     assert found[0].checks == (CheckChange("starts", None, 1.0),)
     assert [(change.student, change.before, change.after) for change in found[1:]] == [("dora", None, 4.0)]
 
@@ -60,7 +55,7 @@ def test_a_student_with_two_results_is_refused(make_result: MakeResult) -> None:
     from autograder.exceptions import UsageError
 
     with pytest.raises(UsageError, match="the new results hold 'alice' twice for 02_nodes; give the folder of one"):
-        changes(stored(), stored(make_result("alice"), make_result("alice")))
+        changes([], [make_result("alice"), make_result("alice")])
 
 
 @pytest.mark.promise("autograder compare results regraded")

@@ -6,6 +6,7 @@ import csv
 import json
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,18 +15,18 @@ from nbconvert.filters.markdown import markdown2html
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
-from autograder.report.export import FORMATS, Stored, formats, write
+from autograder.report.export import FORMATS, formats, write
 from autograder.report.feedback.text import NOT_GRADED
 from autograder.result.model import Artifact, CheckResult, Result
 from autograder.suite import Check, Outcome
 
 MakeResult = Callable[..., Result]
-Class = list[Stored]
+Class = list[Result]
 
 
 @pytest.fixture
 def a_class(make_result: MakeResult, broken_result: Result, ungraded_result: Result, tmp_path: Path) -> Class:
-    return [Stored(result, tmp_path) for result in (make_result(), broken_result, ungraded_result)]
+    return [replace(result, folder=tmp_path) for result in (make_result(), broken_result, ungraded_result)]
 
 
 @pytest.fixture
@@ -33,7 +34,7 @@ def hostile(make_result: MakeResult, make_check: Callable[..., Check], tmp_path:
     text = "=1+1|<script>`x`[a](b)\x00\udcff\n# head"
     check = CheckResult.of(make_check("c", text, 1, "g"), Outcome.FAILED, text)
     diagnosis = Diagnosis(Kind.CRASHED_LATER, text, text)
-    return [Stored(make_result("=cmd", checks=(check,), diagnosis=diagnosis), tmp_path)]
+    return [make_result("=cmd", checks=(check,), diagnosis=diagnosis)]
 
 
 def rows(path: Path) -> list[dict[str, str]]:
@@ -84,7 +85,7 @@ def test_junit_is_well_formed_for_any_text_of_a_student(hostile: Class, tmp_path
 
 def gradescope(stored: Class, out: Path) -> list[dict[str, Any]]:
     assert write(stored, "gradescope", out) == out
-    return [json.loads((out / item.result.student / "results.json").read_text(encoding="utf-8")) for item in stored]
+    return [json.loads((out / item.student / "results.json").read_text(encoding="utf-8")) for item in stored]
 
 
 @pytest.mark.promise("`--format gradescope`: a `results.json` each")
@@ -127,7 +128,7 @@ def test_gradescope_gets_no_zero_for_an_ungraded_submission(a_class: Class, tmp_
 def test_html_has_a_page_for_each_student_with_its_pictures_and_a_table(
     make_result: MakeResult, track: Callable[..., Artifact], tmp_path: Path
 ) -> None:
-    stored = [Stored(make_result(artifacts=(track(tmp_path / "in"),)), tmp_path / "in")]
+    stored = [make_result(artifacts=(track(tmp_path / "in"),), folder=tmp_path / "in")]
     index = write(stored, "html", tmp_path / "out")
     assert index == tmp_path / "out" / "index.html"
     assert 'href="alice/feedback.html"' in index.read_text(encoding="utf-8")
@@ -173,7 +174,7 @@ def test_a_file_and_a_folder_are_not_mixed_up(format: str, tmp_path: Path) -> No
 def test_two_results_of_one_student_do_not_overwrite_each_other(
     format: str, make_result: MakeResult, tmp_path: Path
 ) -> None:
-    twice = [Stored(make_result(), tmp_path)] * 2
+    twice = [make_result()] * 2
     with pytest.raises(UsageError, match="the student 'alice' has two results; export one assignment at a time"):
         write(twice, format, tmp_path / "out")
 
@@ -181,4 +182,4 @@ def test_two_results_of_one_student_do_not_overwrite_each_other(
 @pytest.mark.parametrize("student", ["..", "a/b", "", "."])
 def test_a_student_whose_name_is_a_path_gets_no_folder(student: str, make_result: MakeResult, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="cannot be the name of a folder"):
-        write([Stored(make_result(student), tmp_path)], "html", tmp_path / "out")
+        write([make_result(student)], "html", tmp_path / "out")

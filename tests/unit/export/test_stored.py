@@ -19,7 +19,7 @@ def test_a_folder_of_results_is_read_in_the_order_of_its_paths(make_result: Make
     for student in ("bob", "alice"):
         write_json(tmp_path / student / "result.json", make_result(student).to_json())
     stored = load(tmp_path)
-    assert [item.result for item in stored] == [make_result("alice"), make_result("bob")]
+    assert list(stored) == [make_result("alice"), make_result("bob")]
     assert [item.folder for item in stored] == [tmp_path / "alice", tmp_path / "bob"]
 
 

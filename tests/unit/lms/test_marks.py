@@ -13,7 +13,6 @@ from autograder.cli import group
 from autograder.exceptions import UsageError
 from autograder.lms.marks import write_marks
 from autograder.lms.roster import read_roster
-from autograder.report.export import Stored
 from autograder.result.model import Result, Status, write_json
 from tests.unit.lms.test_collect import CANVAS, MOODLE
 
@@ -42,9 +41,9 @@ def test_moodle_gets_marks_scaled_to_its_own_maximum(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
 ) -> None:
     stored = [
-        Stored(make_result("zoe@example.edu"), tmp_path),
-        Stored(make_result("jane@example.edu", status=Status.NOT_GRADED), tmp_path),
-        Stored(make_result("eve@example.edu"), tmp_path),
+        make_result("zoe@example.edu"),
+        make_result("jane@example.edu", status=Status.NOT_GRADED),
+        make_result("eve@example.edu"),
     ]
     roster = read_roster(table(MOODLE))
     assert write_marks(stored, "moodle", roster, tmp_path / "out.csv") == ["eve@example.edu"]
@@ -60,7 +59,7 @@ def test_moodle_gets_marks_scaled_to_its_own_maximum(
 def test_canvas_gets_the_column_of_the_assignment_and_late_submissions_lose_points(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
 ) -> None:
-    stored = [Stored(make_result(name), tmp_path) for name in ("jdoe", "zoe")]
+    stored = [make_result(name) for name in ("jdoe", "zoe")]
     roster = read_roster(table(CANVAS))
     write_marks(stored, "canvas", roster, tmp_path / "out.csv", late=("jdoe",), late_penalty=25)
     assert [(row["ID"], row["02 Nodes (55)"]) for row in rows(tmp_path / "out.csv")] == [
@@ -75,7 +74,7 @@ def test_canvas_gets_a_new_column_if_no_column_is_that_of_the_assignment(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
 ) -> None:
     roster = read_roster(table(CANVAS.replace("02 Nodes (55)", "Essay (9)")))
-    write_marks([Stored(make_result("zoe"), tmp_path)], "canvas", roster, tmp_path / "out.csv")
+    write_marks([make_result("zoe")], "canvas", roster, tmp_path / "out.csv")
     assert list(rows(tmp_path / "out.csv")[0]) == [
         "Student",
         "ID",
@@ -100,7 +99,7 @@ def test_a_table_of_another_shape_is_a_usage_error(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult, system: str, text: str, why: str
 ) -> None:
     roster = read_roster(table(text))
-    stored = [Stored(make_result(student.id), tmp_path) for student in roster.students]
+    stored = [make_result(student.id) for student in roster.students]
     with pytest.raises(UsageError, match=why):
         write_marks(stored, system, roster, tmp_path / "out.csv")
 

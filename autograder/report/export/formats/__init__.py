@@ -1,7 +1,7 @@
 """The export formats. Each module of this folder is a format of the same name.
 
 Such a module has `FOLDER`, which is True if the format is written to a folder and False if it is written to one file.
-Its `write(stored, out)` writes results to the file or folder `out` and returns the file to open first.
+Its `write(results, out)` writes results to the file or folder `out` and returns the file to open first.
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ from pathlib import Path
 from types import ModuleType
 
 from autograder.exceptions import UsageError
-from autograder.report.export.stored import Stored
+from autograder.result.model import Result
 
 FORMATS: Mapping[str, ModuleType] = {
     found.name: import_module(f"{__name__}.{found.name}") for found in pkgutil.iter_modules(__path__)
 }
 
 
-def write(stored: Sequence[Stored], name: str, out: Path) -> Path:
+def write(results: Sequence[Result], name: str, out: Path) -> Path:
     """Write results in a format and return the file to open first.
 
     Args:
-        stored: the results, from `load`.
+        results: from `load`.
         name: name of the format, a key of `FORMATS`.
         out: the file or folder to write.
 
@@ -36,5 +36,5 @@ def write(stored: Sequence[Stored], name: str, out: Path) -> Path:
         kind = "folder" if format.FOLDER else "file"
         raise UsageError(f"{out}: {name} is written to a {kind}; give the path of a {kind}")
     out.parent.mkdir(parents=True, exist_ok=True)
-    first: Path = format.write(stored, out)
+    first: Path = format.write(results, out)
     return first

@@ -6,19 +6,18 @@ import csv
 from collections.abc import Sequence
 from pathlib import Path
 
-from autograder.report.export.stored import Stored
 from autograder.report.feedback.text import one_line
 from autograder.result.model import Result, Status
 
 FOLDER = False
 
 
-def write(stored: Sequence[Stored], out: Path) -> Path:
+def write(results: Sequence[Result], out: Path) -> Path:
     """Write a row for each result, with a column for each check and the points that it earned.
 
     The file is UTF-8 with commas, quoted as in RFC 4180. A submission that was not graded has no score.
     """
-    rows = [_row(item.result) for item in stored]
+    rows = [_row(result) for result in results]
     with out.open("w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, list(dict.fromkeys(name for row in rows for name in row)), restval="")
         writer.writeheader()

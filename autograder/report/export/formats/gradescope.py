@@ -11,7 +11,7 @@ from typing import Any
 
 from autograder.diagnosis import Kind
 from autograder.plain_text import clean
-from autograder.report.export.stored import Stored, per_student
+from autograder.report.export.stored import per_student
 from autograder.report.feedback.text import no_mark
 from autograder.result.causes import causes
 from autograder.result.model import CheckResult, Result, Status, write_json
@@ -23,10 +23,10 @@ FOLDER = True
 VISIBILITY = {Visibility.VISIBLE: "visible", Visibility.HIDDEN: "after_published"}
 
 
-def write(stored: Sequence[Stored], out: Path) -> Path:
+def write(results: Sequence[Result], out: Path) -> Path:
     """Write `out/<student>/results.json` for each submission and return `out`."""
-    for item, folder in per_student(stored, out):
-        write_json(folder / "results.json", report(item.result))
+    for result, folder in per_student(results, out):
+        write_json(folder / "results.json", report(result))
     return out
 
 

@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from autograder.report import feedback
-from autograder.report.export.stored import Stored, per_student
+from autograder.report.export.stored import per_student
+from autograder.result.model import Result
 
 FOLDER = True
 
 
-def write(stored: Sequence[Stored], out: Path) -> Path:
+def write(results: Sequence[Result], out: Path) -> Path:
     """Write `out/<student>/feedback.html` for each submission and `out/index.html`; return the latter."""
-    for item, folder in per_student(stored, out):
-        feedback.write(item.result, folder, artifacts=item.folder)
-    return feedback.write_summary([item.result for item in stored], out)
+    for result, folder in per_student(results, out):
+        feedback.write(result, folder, artifacts=result.folder)
+    return feedback.write_summary(results, out)

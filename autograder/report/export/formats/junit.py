@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from autograder.plain_text import clean
-from autograder.report.export.stored import Stored
 from autograder.report.feedback.text import no_mark, number, one_line
 from autograder.result.model import CheckResult, Result, Status
 from autograder.suite import Outcome
@@ -15,9 +14,9 @@ from autograder.suite import Outcome
 FOLDER = False
 
 
-def write(stored: Sequence[Stored], out: Path) -> Path:
+def write(results: Sequence[Result], out: Path) -> Path:
     """Write the report. `failed` is a failure, `not_checked` is skipped, and a missing mark is an error."""
-    suites = [_suite(item.result) for item in stored]
+    suites = [_suite(result) for result in results]
     root = ET.Element("testsuites", _totals(suites))
     root.extend(suites)
     ET.indent(root)

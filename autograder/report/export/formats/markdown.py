@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from autograder.diagnosis import Kind
-from autograder.report.export.stored import Stored
 from autograder.report.feedback.text import no_mark, number, one_line
 from autograder.result.causes import causes
 from autograder.result.model import CheckResult, Result, Status
@@ -18,9 +17,8 @@ FOLDER = False
 MARKS = {Outcome.PASSED: "✓", Outcome.FAILED: "✗", Outcome.NOT_CHECKED: "-"}
 
 
-def write(stored: Sequence[Stored], out: Path) -> Path:
+def write(results: Sequence[Result], out: Path) -> Path:
     """Write the report."""
-    results = [item.result for item in stored]
     lines = ["| Submission | Assignment | Score | Diagnosis |", "|---|---|--:|---|"]
     lines += [
         f"| {_plain(r.student)} | {_plain(r.assignment)} | {_score(r)} | {_plain(_diagnosis(r))} |" for r in results
