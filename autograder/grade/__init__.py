@@ -1,4 +1,4 @@
-"""Grades a submission and returns its result.
+"""Grades a submission: a `Job` says what is asked for, and a `Result` what came of it.
 
     submission -> intake -> notebook (restored, then executed) -> build -> checks -> result
 

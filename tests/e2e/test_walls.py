@@ -251,7 +251,7 @@ def test_root_is_given_up_without_namespaces_too(classroom: Path, monkeypatch: p
     before = stored.read_bytes()
     taken_over(monkeypatch, WHO, STORED=str(stored))
     out = classroom / "results" / "alice"
-    grade_submission(classroom / "alice", ASSIGNMENT, student="alice", seed=1, out=out, isolation=Tier.PROCESS)
+    grade_submission(Job(classroom / "alice", ASSIGNMENT, "alice", 1, out, Tier.PROCESS))
     log = (out / "grader.log").read_text()
     assert "OUT is True True []" in log
     assert "OUT rights 0" in log
