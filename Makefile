@@ -37,7 +37,7 @@ SIDE_BY_SIDE = $(MAKE) --no-print-directory -j $(words $(LINTERS)) --output-sync
 help:           ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 
-setup:          ## make .venv from the pinned packages; does nothing when it stands
+setup:          ## make .venv from the pinned packages; does nothing when it stands (ROS2_STANDINS=1: without the real launch)
 	@$(BOOTSTRAP)
 
 demo:           ## set up, grade the reference and flawed submissions, write .build/demo/
@@ -134,9 +134,8 @@ capstones:      ## grade the reference capstone again and again, half of them un
 	@$(BOOTSTRAP) --dev
 	@$(BIN)/python -m tests.benchmarks.repeat_capstone -n $(TIMES)
 
-real-launch:    ## install the real launch, launch_ros and ros2cli from GitHub (ROS2_LAUNCH_SOURCE=... for a clone)
-	@$(BOOTSTRAP) --dev
-	@$(BIN)/python -m autograder.ros.real_launch
+real-launch:    ## install the real launch, launch_ros and ros2cli, as setup tries, and test them (ROS2_LAUNCH_SOURCE=... for a clone)
+	@$(BOOTSTRAP) --dev --real-launch
 	@$(BIN)/python -m pytest -q tests/e2e/launch_cases tests/e2e/launch_standin tests/e2e/launch_test_cases \
 		tests/e2e/ros2_records tests/e2e/test_created_packages.py \
 		-m "not nightly" $(PYTEST_ARGS)

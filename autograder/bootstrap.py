@@ -122,7 +122,8 @@ def child_environment(environ: Mapping[str, str]) -> dict[str, str]:
     pip takes what lies on PYTHONPATH for installed, and the wheels' start-up hook, once it has run for one
     environment, has to run again for the next.
     """
-    child = {name: value for name, value in environ.items() if name not in ("PYTHONPATH", "PYTHONHOME")}
+    unwanted = ("PYTHONPATH", "PYTHONHOME", "PYTHONSAFEPATH")  # the last one hides the project from `python -m`
+    child = {name: value for name, value in environ.items() if name not in unwanted}
     if child.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None):
         child.pop("LD_LIBRARY_PATH", None)
     return {**child, "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
@@ -144,6 +145,7 @@ class SetUp:
     interpreter: Interpreter
     sourced: str | None
     run: Run
+    standins: bool = False  # the user wants the stand-ins for launch and ros2
 
     @property
     def venv(self) -> Path:
@@ -161,7 +163,8 @@ class SetUp:
         project = (self.root / "pyproject.toml", self.root / "autograder/building/interfaces/tutorials.yaml")
         # A virtual environment knows its own path: a moved clone needs a new one.
         about = (str(self.root), self.interpreter.executable, self.interpreter.build, str(self.sourced))
-        base = {"base": digest(Path(__file__), lock, patches, *about), "project": digest(*project)}
+        launch = digest(json.dumps(ROS["commits"]), str(self.standins))
+        base = {"base": digest(Path(__file__), lock, patches, *about), "project": digest(*project), "launch": launch}
         return {**base, "dev": digest(self.root / "requirements-dev.lock")} if dev else base
 
     def stamp(self) -> dict[str, str]:
@@ -173,13 +176,16 @@ class SetUp:
         return stamp if isinstance(stamp, dict) and Path(self.python).exists() else {}
 
     def missing_parts(self, *, dev: bool) -> list[str]:
-        """Return which parts have to be made: of `base`, `project` and `dev`."""
+        """Return which parts have to be made: of `base`, `project`, `launch` and `dev`."""
         return [name for name, key in self.expected_stamp(dev=dev).items() if self.stamp().get(name) != key]
 
-    def make(self, *, dev: bool) -> None:
-        """Make the whole environment, or its missing parts. The stamp is written only if every step succeeded."""
+    def make(self, *, dev: bool, real_launch: bool = False) -> None:
+        """Make the whole environment, or its missing parts. The stamp is written only if every step succeeded.
+
+        Where the real launch is not installed, the stand-ins do; with `real_launch`, the end is then a `SetUpError`.
+        """
         missing, have = self.missing_parts(dev=dev), self.stamp()
-        if not missing:
+        if not missing and not real_launch:
             return
         (self.venv / STAMP).unlink(missing_ok=True)
         if "base" in missing:
@@ -189,9 +195,12 @@ class SetUp:
             self._new_environment()
         if "base" in missing or "dev" in missing:
             self._install("requirements-dev.lock" if dev else "requirements.lock")
+        self._step("the ROS wheels could not be patched", self.python, "-m", "autograder.ros.patch_wheels")
+        # Before the project, whose commands of the same names, `ros2` and `launch_test`, switch ROS on first.
+        launch = (self.python, "-m", "autograder.ros.real_launch", *(() if real_launch else ("--set-up",)))
+        launch_failed = not self.sourced and self.run(*launch) != 0  # a sourced ROS has it
         project = ("--no-build-isolation", "--no-deps", "-e", str(self.root))
         self._step("the project could not be installed", self.python, "-m", "pip", "install", "-qq", *project)
-        self._step("the ROS wheels could not be patched", self.python, "-m", "autograder.ros.patch_wheels")
         if not self.sourced:  # an installed ROS 2 has them
             tutorials = "autograder.building.interfaces.tutorials"
             self._step("the tutorials' interfaces were not built", self.python, "-m", tutorials)
@@ -199,6 +208,8 @@ class SetUp:
         fresh.write_text(json.dumps({**have, **self.expected_stamp(dev=dev)}, indent=1))
         fresh.replace(self.venv / STAMP)
         print_progress("done")
+        if real_launch and launch_failed:
+            raise SetUpError("the real launch could not be installed: the lines above say why; the rest is set up")
 
     def _step(self, failed: str, *command: str) -> None:
         if status := self.run(*command):
@@ -266,6 +277,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Make .venv from the pinned packages and patch the ROS 2 wheels.")
     parser.add_argument("--dev", action="store_true", help="also what the tests and benchmarks need")
     parser.add_argument("--browser", action="store_true", help="also Chromium, by apt, when no browser is there")
+    parser.add_argument("--real-launch", action="store_true", help="install the real launch again, or fail")
     options = parser.parse_args(arguments)
     root = Path(__file__).resolve().parent.parent
     environment = child_environment(os.environ)
@@ -277,16 +289,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         interpreter = Interpreter.running()
         check_machine(interpreter.version, platform.system(), platform.machine())
-        set_up = SetUp(root, interpreter, sourced_ros(os.environ, root / ".venv", interpreter), run)
+        sourced, standins = sourced_ros(os.environ, root / ".venv", interpreter), os.environ.get("ROS2_STANDINS")
+        set_up = SetUp(root, interpreter, sourced, run, standins == "1")
         asked = [tool for tool in TOOLS if options.browser or tool != "chromium"]
         missing = [tool for tool in asked if not any(map(shutil.which, TOOLS[tool]))]
         if not Path(sysconfig.get_path("include"), "Python.h").is_file():
             missing.append("python{}.{}-dev".format(*interpreter.version))
         if missing:
             install_tools(missing, root / ".build" / "apt-tried", os.geteuid(), run)
-        if set_up.missing_parts(dev=options.dev):
+        if set_up.missing_parts(dev=options.dev) or options.real_launch:
             with exclusive_set_up(root / ".build" / "set-up.lock"):
-                set_up.make(dev=options.dev)
+                set_up.make(dev=options.dev, real_launch=options.real_launch)
     except SetUpError as error:
         print(f"set-up: {error}.", file=sys.stderr)
         return 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import yaml
@@ -14,6 +15,7 @@ from autograder.author.course.markdown_table import table
 from autograder.layout import ROOT
 from autograder.ros.distribution import DISTRIBUTION as ROS
 from autograder.ros.distribution import PlatformPackage
+from autograder.ros.launch_packages import SOURCES, Source
 from autograder.ros.ros2.exceptions import NotCoveredError
 from autograder.ros.ros2.main import COMMANDS
 
@@ -58,13 +60,33 @@ say one sees. `make tutorials PYTEST_ARGS="-k NAME"` does one of them. turtlesim
 and have no wheels. The tests use packages in Python that have the same names, topics, services and parameters.
 """
 TUTORIAL_COLUMNS = ("tutorial", "runs as printed", "NAME of its test", "what is left out, or why it does not run")
+REAL_LAUNCH = """
+## `launch`, `launch_ros` and `ros2cli`
+
+They are not on the package index. Set-up clones their repositories from GitHub, builds them with pip and installs them:
+
+| repository | tag | commit | packages |
+| --- | --- | --- | --- |
+{sources}
+
+A clone that is at another commit is refused. The id of a commit is a digest of all its files, so it does what a hash
+does for an archive; the archives that GitHub makes of a tag are not promised to keep their bytes. `osrf-pycommon`,
+which `launch` imports, comes from the package index and is pinned by its hash.
+
+Where a repository does not answer within ten seconds, or a step fails, set-up installs none of them, says so in one
+line, and the course's stand-ins are used. `ROS2_STANDINS=1 make setup` uses the stand-ins at once; keep the variable
+set, since the next set-up without it tries again. So does `make real-launch`, which fails if it cannot install them. A
+variable names another place to clone from, such as `ROS2_LAUNCH_SOURCE=/clones/launch`, and `/clones/launch@TAG` takes
+another tag as it is. A student release does the same. `autograder doctor` and the field `launch` of each result say
+what is installed.
+"""
 STAND_INS = """## What the stand-ins do not cover
 
-`launch`, `launch_ros`, `launch_testing` and `ros2` are not on the package index, so the course has stand-ins for them.
-Tests hold them to records of the real packages: launch files in Python, XML and YAML, launch tests, and the commands of
-`ros2`. Where a stand-in does something else, `tests/e2e/launch_cases/differences.yaml` and
-`tests/e2e/ros2_records/differences.yaml` have it, each with its reason. What is not covered raises an error that says
-so. After `make real-launch`, or with a sourced ROS 2, the real packages run instead.
+They are used only where the real packages are not importable. Tests hold them to records of the real packages: launch
+files in Python, XML and YAML, launch tests, and the commands of `ros2`. Where a stand-in does something else,
+`tests/e2e/launch_cases/differences.yaml` and `tests/e2e/ros2_records/differences.yaml` have it, each with its reason.
+What is not covered raises an error that says so. After `make real-launch`, or with a sourced ROS 2, the real packages
+run instead.
 """
 OTHERWISE = """
 `tests/e2e/launch_standin` tests the stand-ins more closely. With the real packages installed, it tests those. They do
@@ -140,7 +162,14 @@ def platform_page(lock: str, tutorials: str) -> str:
     versions = table(COLUMNS, (_row(package, by_python) for package in ROS.packages))
     pages = table(TUTORIAL_COLUMNS, map(_tutorial, yaml.safe_load(tutorials)))
     stand_ins = [STAND_INS, *table(UNCOVERED, _uncovered()), OTHERWISE, *table(OTHERWISE_COLUMNS, _otherwise())]
-    return "\n".join([HEAD, *versions, TAIL, TUTORIAL_HEAD, *pages, *stand_ins])
+    real_launch = REAL_LAUNCH.format(sources="\n".join(map(_source, SOURCES)))
+    return "\n".join([HEAD, *versions, TAIL, TUTORIAL_HEAD, *pages, real_launch, *stand_ins])
+
+
+def _source(source: Source) -> str:
+    name = Path(source.url).stem
+    packages = ", ".join(f"`{name if package == '.' else package}`" for package in source.packages)
+    return f"| [{name}]({source.url.removesuffix('.git')}) | {source.tag} | `{source.commit}` | {packages} |"
 
 
 def current() -> str:

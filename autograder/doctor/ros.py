@@ -10,6 +10,7 @@ from autograder.doctor.finding import Finding, Status
 from autograder.doctor.system import System
 from autograder.ros import RosEnvironment, RosNotFoundError, WrongDistroError
 from autograder.ros.distribution import DISTRIBUTION
+from autograder.ros.launch_packages import STANDINS
 
 CLEAN_SHELL = 'env -i HOME="$HOME" PATH="$PATH" TERM="$TERM" bash --norc'
 
@@ -46,6 +47,7 @@ def examine(system: System) -> list[Finding]:
     return [
         installation(system, ros),
         *([cmake_files(system, ros)] if ros.kind == "wheels" else []),
+        launch(system),
         log_folder(system, ros),
         start(system, ros),
         variables(system),
@@ -66,6 +68,14 @@ def installation(system: System, ros: RosEnvironment) -> Finding:
         both = f"{version_text}; the wheels are installed as well, and the two mix their libraries"
         return Finding("ROS 2", Status.WEAK, both, "make setup")
     return Finding("ROS 2", Status.OK, version_text)
+
+
+def launch(system: System) -> Finding:
+    """Look at which `launch` and `ros2` these are: the real ones, or the course's stand-ins."""
+    told = system.describe_launch()
+    if told == STANDINS:
+        told = "the course's stand-ins; `make real-launch` installs the real ones where GitHub can be reached"
+    return Finding("launch, ros2", Status.OK, told)
 
 
 def _manifest(prefix: Path) -> Path:

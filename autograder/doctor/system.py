@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from autograder.ros import find
+from autograder.ros.launch_packages import describe_launch
 from autograder.ros.patch_wheels import baked_files
 from autograder.run.sandbox import cgroup
 from autograder.run.sandbox.tiers import namespaces_failure
@@ -50,6 +51,7 @@ class System:
         self.tmp = Path(os.environ.get("TMPDIR") or tempfile.gettempdir())
         self.disk_usage = shutil.disk_usage
         self.find_ros = find
+        self.describe_launch = describe_launch
         self.unpatched_cmake_files = baked_files
         self.namespaces_failure = namespaces_failure
         self.bounds = cgroup.bounds

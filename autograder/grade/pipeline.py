@@ -19,6 +19,7 @@ from autograder.grade.machine_lock import MachineLock
 from autograder.grade.own_cell import in_own_cell
 from autograder.grade.store import LOG, write_result
 from autograder.result.model import Build, CheckResult, Result, Status
+from autograder.ros.launch_packages import describe_launch
 from autograder.run.sandbox import require
 from autograder.run.sandbox.cell import CellReport
 from autograder.run.sandbox.process import Ending
@@ -125,6 +126,7 @@ def refused(job: Job, diagnosis: Diagnosis) -> Result:
         submission_sha256="0" * 64,
         suite_version=suite.version,
         files_digest=suite.files_digest,
+        launch=describe_launch(),
         seed=job.seed,
         isolation=job.tier.value,
         checks=tuple(CheckResult.not_checked(check, diagnosis.sentence) for check in suite.checks),

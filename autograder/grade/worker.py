@@ -28,6 +28,7 @@ from autograder.result.artifacts import Gallery
 from autograder.result.model import Build, CheckResult, Result, Status, write_json
 from autograder.ros import activate
 from autograder.ros.domains import Domain
+from autograder.ros.launch_packages import describe_launch
 from autograder.run import patience
 from autograder.run.sandbox import line
 from autograder.run.sandbox.launcher import restore_sigint
@@ -86,6 +87,7 @@ class Grading:
             submission_sha256=self._sha256,
             suite_version=self._suite.version,
             files_digest=self._suite.files_digest,
+            launch=describe_launch(),
             seed=self._job.seed,
             isolation=self._job.tier.value,
             checks=tuple(

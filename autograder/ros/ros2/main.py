@@ -52,9 +52,19 @@ def main(argv: Sequence[str] | None = None) -> ExitCode:
         activate()
     except RosError as error:
         return str(error)
-    if importlib.util.find_spec("ros2cli") is not None:
-        outcome: ExitCode = importlib.import_module("ros2cli.cli").main(argv=arguments)
-        return outcome
+    try:
+        if importlib.util.find_spec("ros2cli") is not None:
+            outcome: ExitCode = importlib.import_module("ros2cli.cli").main(argv=arguments)
+            return outcome
+        return stand_in(arguments)
+    except BrokenPipeError:
+        # `ros2 topic echo /scan | head`: nobody reads on. Python would complain once more when it closes stdout.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+
+
+def stand_in(arguments: Sequence[str]) -> ExitCode:
+    """Run the stand-in for `ros2` once ROS is switched on; return its exit code, or the text of an error."""
     if str(STAND_INS) not in sys.path:
         sys.path.append(str(STAND_INS))
     if "--use-python-default-buffering" not in arguments:
@@ -67,10 +77,6 @@ def main(argv: Sequence[str] | None = None) -> ExitCode:
         return str(error)
     except KeyboardInterrupt:
         return int(signal.SIGINT)
-    except BrokenPipeError:
-        # `ros2 topic echo /scan | head`: nobody reads on. Python would complain once more when it closes stdout.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
     finally:
         signal.signal(signal.SIGTERM, before)
 

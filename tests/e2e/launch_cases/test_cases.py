@@ -39,7 +39,7 @@ def test_each_case_has_a_record() -> None:
     assert set(DIFFERENCES) <= set(EXPECTED)
 
 
-@pytest.mark.promise("Tests hold them to records of the real packages:")
+@pytest.mark.promise("Tests hold them to records of the real packages")
 @pytest.mark.parametrize("name", EXPECTED)
 def test_a_case_does_what_it_does_with_the_real_packages(name: str, records: dict[str, dict[str, Any]]) -> None:
     expected = dict(EXPECTED[name])

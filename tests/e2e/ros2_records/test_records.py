@@ -44,7 +44,7 @@ def test_a_difference_is_one_and_has_its_reason() -> None:
         assert any(difference[name] != calls[command][name] for name in difference if name != "reason")
 
 
-@pytest.mark.promise("Tests hold them to records of the real packages:")
+@pytest.mark.promise("Tests hold them to records of the real packages")
 @pytest.mark.parametrize(
     ("group", "number"), CALLS, ids=[f"{group}: {EXPECTED[group][number]['command']}" for group, number in CALLS]
 )

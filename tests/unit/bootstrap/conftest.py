@@ -49,6 +49,7 @@ class Commands:
             "requirements-dev.lock": "dev",
             "-e ": "project",
             "ros.patch_wheels": "patch",
+            "ros.real_launch --set-up": "launch",
             "interfaces.tutorials": "tutorials",
             "--target": "pip",
         }

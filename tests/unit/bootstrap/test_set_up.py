@@ -23,7 +23,7 @@ def set_up(clone: Path, commands: Any) -> SetUp:
 @pytest.mark.promise("make setup")
 def test_a_set_up_is_made_once(set_up: SetUp, commands: Any, capsys: pytest.CaptureFixture[str]) -> None:
     set_up.make(dev=False)
-    assert commands.take() == ["venv", "base", "project", "patch", "tutorials"]
+    assert commands.take() == ["venv", "base", "patch", "launch", "project", "tutorials"]
     shown = capsys.readouterr().out
     assert shown.startswith("set-up: making .venv with Python 3.12.1 and ROS 2 Jazzy from wheels\n")
     set_up.make(dev=False)
@@ -35,7 +35,7 @@ def test_packages_of_the_tests_are_added_to_a_finished_set_up_and_kept(set_up: S
     set_up.make(dev=False)
     commands.take()
     set_up.make(dev=True)
-    assert commands.take() == ["dev", "project", "patch", "tutorials"]
+    assert commands.take() == ["dev", "patch", "launch", "project", "tutorials"]
     set_up.make(dev=False)
     set_up.make(dev=True)
     assert commands.take() == []
@@ -43,17 +43,17 @@ def test_packages_of_the_tests_are_added_to_a_finished_set_up_and_kept(set_up: S
 
 def test_packages_of_the_tests_are_installed_at_once_if_there_is_no_set_up(set_up: SetUp, commands: Any) -> None:
     set_up.make(dev=True)
-    assert commands.take() == ["venv", "dev", "project", "patch", "tutorials"]
+    assert commands.take() == ["venv", "dev", "patch", "launch", "project", "tutorials"]
     assert set_up.missing_parts(dev=False) == []
 
 
 @pytest.mark.parametrize(
     ("changed", "again"),
     [
-        ("requirements.lock", ["venv", "base", "project", "patch", "tutorials"]),
-        ("autograder/ros/patch_wheels.py", ["venv", "base", "project", "patch", "tutorials"]),
-        ("pyproject.toml", ["project", "patch", "tutorials"]),
-        ("autograder/building/interfaces/tutorials.yaml", ["project", "patch", "tutorials"]),
+        ("requirements.lock", ["venv", "base", "patch", "launch", "project", "tutorials"]),
+        ("autograder/ros/patch_wheels.py", ["venv", "base", "patch", "launch", "project", "tutorials"]),
+        ("pyproject.toml", ["patch", "launch", "project", "tutorials"]),
+        ("autograder/building/interfaces/tutorials.yaml", ["patch", "launch", "project", "tutorials"]),
         ("requirements-dev.lock", []),
     ],
 )
@@ -86,18 +86,20 @@ def test_a_moved_clone_repeats_the_whole_set_up(set_up: SetUp, commands: Any, tm
 def test_an_environment_whose_interpreter_is_gone_is_made_again(set_up: SetUp) -> None:
     set_up.make(dev=False)
     (set_up.venv / "bin/python").unlink()
-    assert set_up.missing_parts(dev=False) == ["base", "project"]
+    assert set_up.missing_parts(dev=False) == ["base", "project", "launch"]
 
 
 @pytest.mark.parametrize("stamp", ["", "half a {", "[]"])
 def test_an_unreadable_stamp_counts_as_a_missing_stamp(set_up: SetUp, stamp: str) -> None:
     set_up.make(dev=False)
     (set_up.venv / bootstrap.STAMP).write_text(stamp)
-    assert set_up.missing_parts(dev=False) == ["base", "project"]
+    assert set_up.missing_parts(dev=False) == ["base", "project", "launch"]
 
 
 @pytest.mark.promise("Run the same `make` command again. It begins from the start.")
-@pytest.mark.parametrize("step", ["-m venv", "requirements.lock", "-e ", "ros.patch_wheels", "interfaces.tutorials"])
+@pytest.mark.parametrize(
+    "step", ["-m venv", "requirements.lock", "-e ", "ros.patch_wheels", "ros.real_launch", "interfaces.tutorials"]
+)
 def test_an_interrupted_set_up_is_made_again_from_the_start(set_up: SetUp, commands: Any, step: str) -> None:
     commands.interrupting = step
     with pytest.raises(KeyboardInterrupt):
@@ -105,7 +107,7 @@ def test_an_interrupted_set_up_is_made_again_from_the_start(set_up: SetUp, comma
     commands.interrupting = ""
     commands.take()
     set_up.make(dev=False)
-    assert commands.take() == ["venv", "base", "project", "patch", "tutorials"]
+    assert commands.take() == ["venv", "base", "patch", "launch", "project", "tutorials"]
 
 
 def test_an_interrupted_addition_of_test_packages_is_repeated_from_the_start(set_up: SetUp, commands: Any) -> None:
@@ -116,7 +118,7 @@ def test_an_interrupted_addition_of_test_packages_is_repeated_from_the_start(set
     commands.interrupting = ""
     commands.take()
     set_up.make(dev=False)
-    assert commands.take() == ["venv", "base", "project", "patch", "tutorials"]
+    assert commands.take() == ["venv", "base", "patch", "launch", "project", "tutorials"]
 
 
 @pytest.mark.parametrize(
@@ -134,7 +136,47 @@ def test_a_failed_step_is_named_with_its_command(set_up: SetUp, commands: Any, s
         set_up.make(dev=False)
     assert str(error.value).startswith(told)
     assert "exit status 3 of `" in str(error.value)
-    assert set_up.missing_parts(dev=False) == ["base", "project"]
+    assert set_up.missing_parts(dev=False) == ["base", "project", "launch"]
+
+
+def test_a_failure_of_the_real_launch_ends_no_set_up(set_up: SetUp, commands: Any) -> None:
+    commands.failing = "ros.real_launch"
+    set_up.make(dev=False)
+    assert commands.take() == ["venv", "base", "patch", "launch", "project", "tutorials"]
+    assert set_up.missing_parts(dev=False) == []
+
+
+def test_another_commit_of_the_real_launch_repeats_the_steps_that_depend_on_it(
+    set_up: SetUp, commands: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    set_up.make(dev=False)
+    commands.take()
+    monkeypatch.setitem(bootstrap.ROS, "commits", {"launch": "c0de"})
+    set_up.make(dev=False)
+    assert commands.take() == ["patch", "launch", "project", "tutorials"]
+
+
+@pytest.mark.parametrize("standins", [True, False])
+def test_the_choice_of_the_stand_ins_repeats_the_steps_that_depend_on_it(
+    set_up: SetUp, commands: Any, standins: bool
+) -> None:
+    replace(set_up, standins=not standins).make(dev=False)
+    commands.take()
+    replace(set_up, standins=standins).make(dev=False)
+    assert commands.take() == ["patch", "launch", "project", "tutorials"]
+
+
+@pytest.mark.promise(
+    "`make real-launch` tries again.", "So does `make real-launch`, which fails if it cannot install them."
+)
+def test_a_real_launch_that_is_asked_for_is_installed_again_and_a_failure_is_told(set_up: SetUp, commands: Any) -> None:
+    set_up.make(dev=False)
+    commands.take()
+    commands.failing = "ros.real_launch"
+    with pytest.raises(SetUpError, match="the real launch could not be installed: the lines above say why"):
+        set_up.make(dev=False, real_launch=True)
+    assert f"{set_up.python} -m autograder.ros.real_launch" in commands.ran  # without --set-up, which hides failures
+    assert set_up.missing_parts(dev=False) == []
 
 
 def test_a_python_without_ensurepip_gets_pip_from_the_systems_pip(set_up: SetUp, commands: Any) -> None:
@@ -159,7 +201,7 @@ def test_with_a_sourced_ros_the_wheels_of_ros_are_not_installed(set_up: SetUp, c
     lock = (set_up.root / "requirements.lock").read_text()
     assert (set_up.venv / "requirements.lock").read_text() == bootstrap.without_ros(lock) != lock
     assert f"-r {set_up.venv}/requirements.lock" in " ".join(commands.ran)
-    assert commands.take() == ["venv", "base", "project", "patch"]
+    assert commands.take() == ["venv", "base", "patch", "project"]
     set_up.make(dev=False)
     assert (set_up.venv / "requirements.lock").read_text() == lock
 

@@ -58,7 +58,7 @@ def test_a_certificate_works_for_server_and_client_and_only_its_owner_can_read_i
     assert key.read_text() == before
 
 
-HERE = "autograder 02_nodes 5ca1ab1e0000 10cc10cc10cc 3.12 bubblewrap"
+HERE = "autograder 02_nodes 5ca1ab1e0000 10cc10cc10cc 3.12 stand-ins bubblewrap"
 
 
 @pytest.mark.promise("It gets no submission, and the client says in a sentence what differs.")
@@ -71,6 +71,7 @@ HERE = "autograder 02_nodes 5ca1ab1e0000 10cc10cc10cc 3.12 bubblewrap"
         ([HERE.replace("02_nodes", "03_interfaces")], "its suite of 02_nodes is missing"),
         ([HERE.replace("10cc10cc10cc", "0")], "its requirements.lock is 0"),
         ([HERE.replace("3.12", "3.10")], "its Python is 3.10, and here it is 3.12"),
+        ([HERE.replace("stand-ins", "launch-3.4.3")], "its launch is launch-3.4.3, and here it is stand-ins"),
         ([HERE.replace("bubblewrap", "process")], "it cannot isolate submissions by bubblewrap: `autograder doctor`"),
         (["GPU"], "it does not say what it grades with: start it with `--preload autograder.grade.cluster`"),
     ],

@@ -63,6 +63,7 @@ GOOD: dict[str, Any] = dict(
     writable=lambda path: True,
     package=lambda name: VERSIONS.get(name, "1.2"),
     find_ros=lambda: WHEELS,
+    describe_launch=lambda: "launch 3.4.3, launch_ros 0.26.6, ros2cli 0.32.2",
     unpatched_cmake_files=lambda prefix: [],
     namespaces_failure=lambda: None,
     bounds=lambda: frozenset({"pids", "memory"}),
@@ -93,6 +94,19 @@ def test_a_complete_machine_is_healthy_and_has_nothing_to_fix() -> None:
     assert {found.status for found in findings} == {Status.OK}, findings
     assert [found.fix for found in findings if found.fix] == []
     assert healthy(findings)
+
+
+@pytest.mark.promise("`autograder doctor` and the field `launch` of each result say what is installed.")
+@pytest.mark.parametrize(
+    ("installed", "told"),
+    [
+        ("launch 3.4.3, launch_ros 0.26.6, ros2cli 0.32.2", "launch 3.4.3, launch_ros 0.26.6, ros2cli 0.32.2"),
+        ("stand-ins", "the course's stand-ins; `make real-launch` installs the real ones where GitHub can be reached"),
+    ],
+)
+def test_the_doctor_says_which_launch_is_installed_and_both_are_fine(installed: str, told: str) -> None:
+    found = finding("launch, ros2", describe_launch=lambda: installed)
+    assert (found.status, found.found) == (Status.OK, told)
 
 
 def test_the_nearest_version_for_this_python_needs_no_fix() -> None:

@@ -97,7 +97,7 @@ def test_the_schema_names_every_outcome_and_visibility() -> None:
 def test_every_field_of_a_result_is_published(make_result: MakeResult, broken_result: Result) -> None:
     plain, properties = broken_result.to_json(), schema()["properties"]
     # Results that were stored before have none of these.
-    added = {"time", "time_note", "unjudged", "held_up", "files_digest", "notices", "unused"}
+    added = {"time", "time_note", "unjudged", "held_up", "files_digest", "notices", "unused", "launch"}
     assert set(plain) == set(properties) == {*schema()["required"], *added}
     assert set(plain["checks"][0]) == set(properties["checks"]["items"]["properties"])
     assert set(plain["build"]) == set(properties["build"]["properties"])

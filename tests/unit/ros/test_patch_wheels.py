@@ -68,7 +68,8 @@ def test_the_environment_of_the_tests_has_no_foreign_paths() -> None:
 
 
 @pytest.mark.promise(
-    "They are used only where the real ones are not importable.", "After `make real-launch`, or with a sourced ROS 2,"
+    "They are used only where the real packages are not importable.",
+    "After `make real-launch`, or with a sourced ROS 2,",
 )
 def test_the_stand_ins_come_last_on_the_path(tmp_path: Path) -> None:
     pth = patch_wheels.link_standins(tmp_path)

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from autograder.ros.ros2 import main
 from autograder.ros.ros2.exceptions import NotCoveredError
 from autograder.ros.ros2.main import COMMANDS
+from autograder.ros.ros2.main import stand_in as main
 from autograder.ros.ros2.parsing import Verb, parse, positive_float, positive_int, unsigned_int
 
 COVERED = {name: command for name, command in COMMANDS.items() if command.module}
@@ -95,7 +95,8 @@ def test_numbers_are_checked(kind: type, good: dict[str, float], bad: tuple[str,
 
 
 @pytest.mark.promise(
-    "They are used only where the real ones are not importable.", "After `make real-launch`, or with a sourced ROS 2,"
+    "They are used only where the real packages are not importable.",
+    "After `make real-launch`, or with a sourced ROS 2,",
 )
 def test_the_real_ros2cli_takes_over_when_it_is_there(tmp_path: Path) -> None:
     package = tmp_path / "ros2cli"
@@ -110,8 +111,8 @@ def test_the_real_ros2cli_takes_over_when_it_is_there(tmp_path: Path) -> None:
 
 def test_verbs_without_a_graph_do_not_import_rclpy() -> None:
     code = (
-        "import sys; from autograder.ros.ros2 import main; main(['pkg', 'prefix', 'rclpy']); "
-        "main(['interface', 'show', 'std_msgs/msg/String']); print('rclpy' in sys.modules)"
+        "import sys; from autograder.ros.ros2.main import stand_in; stand_in(['pkg', 'prefix', 'rclpy']); "
+        "stand_in(['interface', 'show', 'std_msgs/msg/String']); print('rclpy' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.endswith("\nFalse\n"), done.stderr

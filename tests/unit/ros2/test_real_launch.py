@@ -1,18 +1,21 @@
-"""`make real-launch` against local git repositories that stand for the sources."""
+"""The installation of the real launch, against local git repositories that stand for the sources."""
 
 from __future__ import annotations
 
 import re
+import socket
 import subprocess
 import sysconfig
 import venv
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from autograder.layout import ROOT
-from autograder.ros import RosEnvironment, find
-from autograder.ros.real_launch import SOURCES, RealLaunchError, Source, install, main
+from autograder.ros import RosEnvironment, find, real_launch
+from autograder.ros.launch_packages import SOURCES, Place, Source, describe_launch, python_packages
+from autograder.ros.real_launch import RealLaunchError, install, main, remove, set_up
 
 MANIFEST = """<package format="3"><name>{name}</name><version>1.0.0</version><description>Test</description>
 <maintainer email="test@example.com">Test</maintainer><license>MIT</license>
@@ -44,6 +47,12 @@ def repository(folder: Path, files: dict[str, str], tag: str = "") -> Path:
     return folder
 
 
+def commit_of(folder: Path) -> str:
+    """Return the commit that is checked out."""
+    done = subprocess.run(["git", "-C", str(folder), "rev-parse", "HEAD"], capture_output=True, text=True, check=True)
+    return done.stdout.strip()
+
+
 def python_package(name: str, content: str) -> dict[str, str]:
     return {
         f"{name}/package.xml": MANIFEST.format(name=name, kind="ament_python"),
@@ -65,6 +74,9 @@ def machine(tmp_path: Path) -> tuple[RosEnvironment, str]:
     return RosEnvironment("wheels", (prefix, *ros.prefixes), ros.rclpy), python
 
 
+NO_GIT = "https://example.invalid/x.git"
+
+
 @pytest.mark.promise("`make real-launch` installs the real ones")
 @pytest.mark.slow
 def test_packages_are_installed_from_the_places_that_the_variables_name(
@@ -75,34 +87,106 @@ def test_packages_are_installed_from_the_places_that_the_variables_name(
         "made_interfaces/package.xml": MANIFEST.format(name="made_interfaces", kind="ament_cmake"),
         "made_interfaces/CMakeLists.txt": CMAKE,
     }
-    launch = repository(tmp_path / "launch", python_package("made_launch", "VERSION = 'tagged'"), tag="9.9")
+    interfaces_clone = repository(tmp_path / "interfaces", interfaces, tag="1.0.0")
+    launch = repository(tmp_path / "launch", python_package("made_launch", "VERSION = 'tagged'"), tag="1.0.0")
     (launch / "made_launch" / "made_launch" / "__init__.py").write_text("VERSION = 'not committed'")
     sources = (
-        Source("INTERFACES", "https://example.invalid/i.git", "1", ("made_interfaces",), built=True),
-        Source("LAUNCH", "https://example.invalid/l.git", "1", ("made_launch",)),
+        Source("INTERFACES", NO_GIT, "1.0.0", commit_of(interfaces_clone), ("made_interfaces",), built=True),
+        Source("LAUNCH", NO_GIT, "1.0.0", commit_of(launch), ("made_launch",)),
     )
-    environ = {"INTERFACES": str(repository(tmp_path / "interfaces", interfaces)), "LAUNCH": f"{launch}@9.9"}
-    names = install(ros, environ, python=python, sources=sources, requirements=())
+    environ = {"INTERFACES": str(interfaces_clone), "LAUNCH": str(launch)}
+    names = install(ros, environ, python=python, sources=sources, requirement="")
     assert names == ["made_interfaces", "made_launch"]
     prefix = ros.prefixes[0]
     assert (prefix / "share/made_interfaces/package.xml").is_file()
-    assert (prefix / "share/ament_index/resource_index/packages/made_launch").is_file()
+    index = prefix / "share/ament_index/resource_index/packages/made_launch"
+    assert index.is_file()
     code = "import made_launch; print(made_launch.VERSION)"
     found = subprocess.run([python, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout == "tagged\n"
+    remove([*names, "never_installed"], python=python)
+    assert not index.exists()
 
 
-def test_a_source_that_cannot_be_cloned_names_the_variable_that_helps(tmp_path: Path) -> None:
-    source = Source("LAUNCH_SOURCE", str(tmp_path / "nowhere"), "1.2", ("launch",))
-    with pytest.raises(RealLaunchError, match=r"(?s)could not clone .*nowhere at 1.2 .*point LAUNCH_SOURCE at a local"):
-        install(find(), {}, sources=(source,), requirements=())
+@pytest.mark.slow
+def test_packages_that_cannot_all_be_installed_are_not_installed(
+    tmp_path: Path, machine: tuple[RosEnvironment, str]
+) -> None:
+    ros, python = machine
+    clone = repository(tmp_path / "clone", python_package("made_launch", "") | python_package("made_ros", ""), tag="1")
+    (ros.prefixes[0] / "share/ament_index/resource_index/packages").mkdir(parents=True)
+    in_the_way = ros.prefixes[0] / "share/ament_index/resource_index/packages/made_ros"
+    in_the_way.mkdir()
+    source = Source("LAUNCH", NO_GIT, "1", commit_of(clone), ("made_launch", "made_ros"))
+    with pytest.raises(RealLaunchError, match="could not install what was built: "):
+        install(ros, {"LAUNCH": str(clone)}, python=python, sources=(source,), requirement="")
+    listed = subprocess.run([python, "-m", "pip", "list"], capture_output=True, text=True, check=True).stdout
+    assert "made" not in listed
+
+
+def test_another_commit_than_the_pinned_one_is_refused_unless_the_user_names_its_tag(tmp_path: Path) -> None:
+    place = repository(tmp_path / "launch", {"launch/setup.py": "raise SystemExit('it was run')"}, tag="1.0")
+    url, environ = place.as_uri(), {"LAUNCH": f"{place.as_uri()}@1.0"}
+    source = Source("LAUNCH", url, "1.0", "0" * 40, ("launch",))
+    refused = f"refuses tag 1.0 of {url}: it is commit {commit_of(place)}, not {'0' * 40}; LAUNCH={url}@1.0 takes it"
+    with pytest.raises(RealLaunchError, match=re.escape(refused)):
+        install(find(), {}, sources=(source,), requirement="")
+    with pytest.raises(RealLaunchError, match="found no ROS package launch in LAUNCH: "):  # the next step
+        install(find(), environ, sources=(source,), requirement="")
+
+
+@pytest.fixture
+def silent_server() -> Iterator[str]:
+    """The address of a server that takes connections and says nothing."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        yield f"http://127.0.0.1:{server.getsockname()[1]}/launch.git"
+
+
+def test_sources_that_do_not_answer_are_given_up_after_ten_seconds(
+    silent_server: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert real_launch.REACH_SECONDS == 10.0
+    monkeypatch.setattr(real_launch, "REACH_SECONDS", 1.0)
+    sources = tuple(Source(f"SOURCE_{number}", silent_server, "1", "0" * 40, ("launch",)) for number in range(3))
+    told = f"could not reach {silent_server} within 1 s; point SOURCE_0 at"
+    with pytest.raises(RealLaunchError, match=re.escape(told)):
+        install(find(), {}, sources=sources, requirement="")
+
+
+def test_set_up_uses_the_stand_ins_where_a_source_is_not_reached_and_says_so_in_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    nowhere = tmp_path / "nowhere"
+    monkeypatch.setattr(real_launch, "installed_packages", lambda names: {})
+    line = set_up({source.variable: str(nowhere) for source in SOURCES})
+    assert line.startswith(f"launch and ros2: {describe_launch()} (could not reach {nowhere}: ")
+    assert line.endswith(
+        "; point ROS2_INTERFACES_SOURCE at a clone that this machine reaches); `make real-launch` tries again"
+    )
+    assert "\n" not in line
+
+
+def test_set_up_installs_nothing_where_the_stand_ins_are_chosen_and_removes_the_real_packages(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    removed: list[list[str]] = []
+    monkeypatch.setattr(real_launch, "remove", removed.append)
+    monkeypatch.setattr(real_launch, "installed_packages", lambda names: {"launch": "3.4.3"})
+    assert set_up({"ROS2_STANDINS": "1"}).endswith(", as ROS2_STANDINS=1 asks")
+    assert removed == [["launch"]]
+
+
+def test_set_up_does_nothing_if_the_pinned_versions_are_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(real_launch, "installed_packages", dict)
+    monkeypatch.setattr(real_launch, "install", None)
+    assert set_up({}).startswith("launch and ros2: ")
 
 
 def test_a_repository_without_the_package_is_refused(tmp_path: Path) -> None:
-    place = repository(tmp_path / "r", {"README": "nothing"})
-    source = Source("LAUNCH_SOURCE", "unused", "1.2", ("launch",))
-    with pytest.raises(RealLaunchError, match="LAUNCH_SOURCE: launch is no ROS package"):
-        install(find(), {"LAUNCH_SOURCE": str(place)}, sources=(source,), requirements=())
+    place = repository(tmp_path / "r", {"README": "nothing"}, tag="1.2")
+    source = Source("LAUNCH_SOURCE", "unused", "1.2", commit_of(place), ("launch",))
+    with pytest.raises(RealLaunchError, match="found no ROS package launch in LAUNCH_SOURCE: "):
+        install(find(), {"LAUNCH_SOURCE": str(place)}, sources=(source,), requirement="")
 
 
 def test_a_sourced_installation_is_left_alone() -> None:
@@ -114,23 +198,24 @@ def test_a_sourced_installation_is_left_alone() -> None:
 @pytest.mark.parametrize(
     ("given", "place"),
     [
-        (None, ("https://example.com/x.git", "1.0")),
-        ("/clones/x", ("/clones/x", "")),
-        ("/clones/x@2.0", ("/clones/x", "2.0")),
-        ("git@example.com:team/x.git", ("git@example.com:team/x.git", "")),
-        ("git@example.com:team/x.git@2.0", ("git@example.com:team/x.git", "2.0")),
+        (None, Place("https://example.com/x.git", "1.0", "c0de")),
+        ("/clones/x", Place("/clones/x", "1.0", "c0de")),
+        ("/clones/x@2.0", Place("/clones/x", "2.0", "")),
+        ("git@example.com:team/x.git", Place("git@example.com:team/x.git", "1.0", "c0de")),
+        ("git@example.com:team/x.git@2.0", Place("git@example.com:team/x.git", "2.0", "")),
     ],
 )
-def test_a_source_is_an_address_with_an_optional_tag(given: str | None, place: tuple[str, str]) -> None:
-    source = Source("X_SOURCE", "https://example.com/x.git", "1.0", ("x",))
+def test_a_source_is_an_address_with_an_optional_tag_that_is_not_pinned(given: str | None, place: Place) -> None:
+    source = Source("X_SOURCE", "https://example.com/x.git", "1.0", "c0de", ("x",))
     assert source.place({"X_SOURCE": given} if given else {}) == place
 
 
-def test_every_default_source_is_pinned_to_a_release() -> None:
-    assert {"launch", "launch_ros", "ros2cli", "composition_interfaces"} <= {p for s in SOURCES for p in s.packages}
+def test_every_default_source_is_pinned_to_a_commit() -> None:
+    assert {"launch", "launch_ros", "ros2cli", "rosidl_runtime_py"} <= set(python_packages())
     for source in SOURCES:
         assert source.url.startswith(("https://github.com/ros2/", "https://github.com/ament/"))
         assert source.tag.count(".") == 2
+        assert re.fullmatch("[0-9a-f]{40}", source.commit)
 
 
 def test_help_names_the_variables(capsys: pytest.CaptureFixture[str]) -> None:
