@@ -38,8 +38,9 @@ class Syllabus:
     errata: dict[int, tuple[str, str]]
 
     @classmethod
-    def read(cls, path: Path) -> Syllabus:
-        """Read the YAML file."""
+    def read(cls, path: Path | None = None) -> Syllabus:
+        """Read a YAML file, that of the course by default."""
+        path = path or layout.course().root / layout.course().syllabus
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
         items = {key: text for part in PARTS for key, text in data.get(part, {}).items()}
         errata = data.get("errata", {}).items()

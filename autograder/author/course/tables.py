@@ -35,8 +35,7 @@ notebooks' metadata, the hidden checks and `{syllabus}`; a test holds it.
 
 def course_page() -> tuple[str, tuple[Finding, ...]]:
     """Return the instructors' page of the course, and the problems found in its notebooks and syllabus."""
-    course, have_suites = layout.course(), suites.graded_assignments()
-    syllabus = Syllabus.read(course.root / course.syllabus)
+    syllabus, have_suites = Syllabus.read(), suites.graded_assignments()
     notebooks = {chapter.assignment: chapter.read() for chapter in chapters()}
     covered = find_coverage(
         syllabus,
