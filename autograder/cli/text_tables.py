@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import shutil
 import textwrap
+from collections.abc import Sequence
 
 from autograder.plain_text import visible
 from autograder.result.causes import causes, dearest
@@ -22,19 +23,24 @@ def failure_summary(result: Result) -> str:
     return f"{first.message or first.title}{more}" if first else ""
 
 
-def table(rows: list[tuple[str, str, str]], headings: tuple[str, str, str]) -> str:
-    """Return a table of three columns; the last one is wrapped. No text of a row can begin a line of its own."""
-    rows = [(visible(name, line=True), visible(mark, line=True), visible(text)) for name, mark, text in rows]
-    first = max(len(row[0]) for row in [headings, *rows])
-    second = max(len(row[1]) for row in [headings, *rows])
-    width = max(40, shutil.get_terminal_size((120, 24)).columns - first - second - 4)
+def table(rows: Sequence[Sequence[str]], headings: Sequence[str]) -> str:
+    """Return a table as text.
+
+    The first column is on the left, those between are on the right, and the last one is wrapped. No text of a row can
+    begin a line of its own.
+    """
+    cells = [list(headings), *([*(visible(text, line=True) for text in row[:-1]), visible(row[-1])] for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*(row[:-1] for row in cells), strict=True)]
+    indent = sum(widths) + 2 * len(widths)
+    last = max(40, shutil.get_terminal_size((120, 24)).columns - indent)
     lines = []
-    for index, (name, mark, text) in enumerate([headings, *rows]):
-        wrapped = textwrap.wrap(text, width) or [""]
-        lines.append(f"{name:<{first}}  {mark:>{second}}  {wrapped[0]}".rstrip())
-        lines += [" " * (first + second + 4) + line for line in wrapped[1:]]
+    for index, (name, *between, text) in enumerate(cells):
+        wrapped = textwrap.wrap(text, last) or [""]
+        right = [each.rjust(width) for each, width in zip(between, widths[1:], strict=True)]
+        lines.append("  ".join([name.ljust(widths[0]), *right, wrapped[0]]).rstrip())
+        lines += [" " * indent + line for line in wrapped[1:]]
         if index == 0:
-            lines.append("-" * (first + second + 4 + min(width, 60)))
+            lines.append("-" * (indent + min(last, 60)))
     return "\n".join(lines)
 
 

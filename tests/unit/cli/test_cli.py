@@ -216,6 +216,11 @@ def test_a_long_reason_is_wrapped_below_its_column() -> None:
     assert lines[-1] == "bob           4/4"
 
 
+def test_a_table_has_as_many_columns_as_its_headings() -> None:
+    text = table([("alice", "3/4", "61 s", "it turns"), ("bob", "4/4", "9 s", "")], ("who", "marks", "time", "why"))
+    assert text.splitlines()[2:] == ["alice    3/4  61 s  it turns", "bob      4/4   9 s"]
+
+
 def test_the_installed_command_works_and_says_what_is_wrong() -> None:
     command = [str(Path(sys.executable).with_name("autograder")), "grade", "/no/where", "--assignment", "02_nodes"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
