@@ -30,13 +30,16 @@ from autograder.suite import suites
 
 DRIVES = frozenset({"room", "pillars", "corridor"})
 STALLS = frozenset({"forged protocol"})  # each check waits 15 s for the messages that it claims and never sends
+# The same attack as "slow in real time"; real time takes minutes on a busy machine.
+NIGHTLY = frozenset({"hasty in real time", "seldom in real time", "fixed in real time"})
 
 
 def _attacks() -> Iterator[object]:
     """Yield each attack with its assignment."""
     for assignment in suites.graded_assignments():
         for attack in attacks(assignment):
-            yield pytest.param(assignment, attack, id=f"{assignment} {attack.id}")
+            marks = [pytest.mark.nightly] if attack.id in NIGHTLY else []
+            yield pytest.param(assignment, attack, id=f"{assignment} {attack.id}", marks=marks)
 
 
 def _everything_written(out: Path) -> str:

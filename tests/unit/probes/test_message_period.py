@@ -36,8 +36,14 @@ def test_messages_with_the_right_pauses_are_paced(time: str) -> None:
         [0.2] * 20,
         [0.0] * 40,
         [0.1] + [0.5] * 7,
+        [0.11] * 40,
+        [0.09] * 40,
+        [0.1, 0.12, 0.115, 0.11, 0.105] * 8,
     ],
-    ids=["pairs", "pairs later", "threes", "a fifth longer", "a fifth shorter", "half as many", "at once", "seldom"],
+    ids=[
+        *("pairs", "pairs later", "threes", "a fifth longer", "a fifth shorter", "half as many", "at once", "seldom"),
+        *("a tenth longer", "a tenth shorter", "a tenth longer, unevenly"),
+    ],
 )
 def test_messages_with_other_pauses_are_not_paced_in_whichever_time(pauses: Sequence[float], time: str) -> None:
     assert not is_paced(_after(pauses), PERIOD, time)
