@@ -62,10 +62,11 @@ class System:
         return shutil.which(command, path=os.pathsep.join([own, os.environ.get("PATH", os.defpath)]))
 
     def run(self, command: Sequence[str], variables: Mapping[str, str]) -> CommandResult:
-        """Run a command to its end, with variables added to the environment."""
+        """Run a command to its end, with variables added to the environment, in no folder that may be a submission."""
         try:
             done = subprocess.run(
                 command,
+                cwd="/",
                 env={**os.environ, **variables},
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,

@@ -51,7 +51,7 @@ def formatted(text: str) -> str:
     """Return a module's text in the style of black, as ruff formats it; the quotes stay, because ROS has its own."""
     command = [sys.executable, "-m", "ruff", "format", "--isolated", f"--line-length={LONGEST_LINE}"]
     command += ["--config", "format.quote-style='preserve'", "-"]
-    return subprocess.run(command, input=text, stdout=subprocess.PIPE, text=True, check=True).stdout
+    return subprocess.run(command, cwd="/", input=text, stdout=subprocess.PIPE, text=True, check=True).stdout
 
 
 def rewrites() -> Mapping[str, Callable[[str], str]]:

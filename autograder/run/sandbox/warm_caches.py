@@ -26,8 +26,11 @@ def compile_grader() -> None:
 @cache
 def fonts() -> Path | None:
     """Return matplotlib's list of this machine's fonts, which takes a second to make; None where none can be made."""
-    folder = os.environ.get("XDG_CACHE_HOME") or Path(os.environ.get("HOME", "/nonexistent"), ".cache")
+    folder = Path(os.environ.get("XDG_CACHE_HOME") or Path(os.environ.get("HOME", "/nonexistent"), ".cache")).absolute()
     pattern = "matplotlib/fontlist-*.json"
-    if not any(Path(folder).glob(pattern)):
-        subprocess.run([sys.executable, "-c", "import matplotlib.font_manager"], capture_output=True, check=False)
-    return max(Path(folder).glob(pattern), default=None)
+    if not any(folder.glob(pattern)):
+        # `python -c` imports from the folder it is started in, and that may be a submission.
+        command = [sys.executable, "-c", "import matplotlib.font_manager"]
+        variables = {**os.environ, "XDG_CACHE_HOME": str(folder)}
+        subprocess.run(command, cwd="/", env=variables, capture_output=True, check=False)
+    return max(folder.glob(pattern), default=None)
