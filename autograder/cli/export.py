@@ -10,10 +10,10 @@ import click
 from autograder.cli.options import json_option
 from autograder.cli.terminal import echo, on_line
 from autograder.exceptions import UsageError
-from autograder.lms.collect import COLLECTION_REPORT
 from autograder.lms.marks import SYSTEMS, write_marks
 from autograder.lms.roster import read_roster
 from autograder.report import export as exporters
+from autograder.result.class_folder import COLLECTION_REPORT
 from autograder.result.model import write_json
 
 _FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if format.FOLDER)

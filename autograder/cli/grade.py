@@ -24,10 +24,11 @@ from autograder.exceptions import StudentError, UsageError
 from autograder.grade.apart import read_preview
 from autograder.grade.batch import GradeEach, discover, grade_all
 from autograder.grade.store import LOG
-from autograder.lms.collect import COLLECTION_REPORT, collect, unpacked
+from autograder.lms.collect import collect, unpacked
 from autograder.lms.roster import read_roster
 from autograder.report import feedback
 from autograder.report.export.earlier import EarlierMarks
+from autograder.result.class_folder import COLLECTION_REPORT
 from autograder.result.model import Result, Status, write_json
 from autograder.run.sandbox import Tier
 from autograder.suite import suites

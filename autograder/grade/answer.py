@@ -34,10 +34,15 @@ def checked(files: Mapping[str, bytes], job: Job, sha256: str = "") -> Result:
     `sha256` is the digest of the submission, where it is known. Raises AnswerError if they are no answer to the job.
     """
     others = {name: data for name, data in files.items() if name not in (RESULT, NOTEBOOK, LOG)}
-    result = _result(files.get(RESULT, b""), job, sha256)
-    _require_artifacts(others, result)
-    if NOTEBOOK in files:
-        _require_notebook(files[NOTEBOOK])
+    try:
+        result = _result(files.get(RESULT, b""), job, sha256)
+        _require_artifacts(others, result)
+        if NOTEBOOK in files:
+            _require_notebook(files[NOTEBOOK])
+    except AnswerError:
+        raise
+    except Exception as error:  # whatever one answer causes, the class goes on
+        raise AnswerError(f"a worker's answer cannot be checked: {type(error).__name__}: {str(error)[:1000]}") from None
     return result
 
 

@@ -13,6 +13,7 @@ from autograder.grade.job import Job
 from autograder.grade.parallel import map_parallel
 from autograder.grade.pipeline import grade_submission
 from autograder.grade.store import LOG, NOTEBOOK, RESULT, remove_unfinished, write_result
+from autograder.result.class_folder import why_not_a_folder
 from autograder.result.model import Result, Status, from_json
 from autograder.run.sandbox import Tier
 from autograder.submission.intake.exercises import exercises_of
@@ -63,13 +64,15 @@ def discover(paths: tuple[Path, ...], assignment: str) -> Discovered:
             inside, beside = _of_folder(path, assignment)
             found += inside
             others += beside
+    refused = [(path.name, why) for student, path in found if (why := why_not_a_folder(student))]
+    found = [(student, path) for student, path in found if not why_not_a_folder(student)]
     names = [student for student, _ in found]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise UsageError(
             f"two submissions are called {', '.join(twice)}: rename one, results would overwrite each other"
         )
-    return Discovered(dict(found), tuple(others))
+    return Discovered(dict(found), (*others, *refused))
 
 
 def student_of(path: Path) -> str:

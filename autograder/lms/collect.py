@@ -18,10 +18,9 @@ from autograder.grade.batch import submission_in
 from autograder.lms.clones import FOLDER, account_in, assignment_of, beginnings
 from autograder.lms.roster import Roster
 from autograder.lms.submission_names import METADATA, DownloadedItem, read_metadata, read_names, resubmitted
+from autograder.result.class_folder import why_not_a_folder
 from autograder.submission.intake.ignored import is_ignored
 from autograder.submission.intake.names import is_archive, is_notebook
-
-COLLECTION_REPORT = "handed_in.json"  # beside the results: the late students, and what fits no student
 
 
 @dataclass(frozen=True)
@@ -77,6 +76,8 @@ def collect(folder: Path, roster: Roster, assignment: str, scratch: Path) -> Col
         student = roster.find(item.keys)
         if student is None:
             unmatched.append((item.listed_name, item.doubt or f"no student of {roster.path.name} fits"))
+        elif why := why_not_a_folder(student.id):
+            unmatched.append((item.listed_name, f"{why} in {roster.path.name}"))
         elif not item.is_submission:
             texts.append((student.id, item))
         else:

@@ -70,9 +70,10 @@ class Roster:
     rows: tuple[tuple[str, ...], ...]
 
     def find(self, keys: tuple[tuple[str, str], ...]) -> Student | None:
-        """Return the student whom the first key that fits exactly one student means."""
-        for kind, value in keys:
-            fitting = [student for student in self.students if (kind, normalized(value)) in student.keys]
+        """Return the student whom keys of one kind mean: the first kind whose keys fit exactly one student."""
+        for kind in dict.fromkeys(kind for kind, _ in keys):
+            wanted = {(kind, normalized(value)) for other, value in keys if other == kind}
+            fitting = [student for student in self.students if wanted & student.keys]
             if len(fitting) == 1:
                 return fitting[0]
         return None
@@ -124,7 +125,8 @@ def _student(kinds: list[str], row: tuple[str, ...], place: int) -> Student | No
     keys = {(kind, normalized(value)) for kind, value in cells.items()}
     participant = normalized(cells.get("identifier", ""))
     if participant.startswith(PARTICIPANT):
-        keys.add(("identifier", participant.removeprefix(PARTICIPANT)))
+        number = participant.removeprefix(PARTICIPANT)
+        keys |= {("identifier", number), ("identifier and name", normalized(f"{number} {cells.get('name', '')}"))}
     name = next(cells[kind] for kind in NAMES_A_STUDENT if kind in cells) if set(cells) & set(NAMES_A_STUDENT) else ""
     late = LATE.search(cells.get("status", "")) is not None
     return Student(name.replace("/", "-").replace("\0", ""), frozenset(keys), place, late) if name else None

@@ -20,7 +20,8 @@ from copydetect.detector import CodeFingerprint, compare_files
 from copydetect.utils import get_token_coverage, highlight_overlap
 from markupsafe import Markup
 
-from autograder.report.feedback.pages import SUMMARY, environment
+from autograder.report.feedback.pages import environment
+from autograder.result.class_folder import SUMMARY
 from autograder.result.model import write_atomically
 
 MIN_MATCH_TOKENS = 50  # a shorter passage does not count; these are about three lines

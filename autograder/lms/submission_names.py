@@ -39,15 +39,16 @@ ADDED = {
     "sakai": frozenset(("grades.csv", "grades.xls", "grades.xlsx")),
 }
 
-MOODLE = re.compile(r"(?P<name>.+?)_(?P<id>\d+)_assignsubmission_(?P<kind>[a-z]+)(?:_(?P<file>.*))?", re.DOTALL)
+# What follows a name in Moodle. A student can put one into their own name, or into that of a file.
+MOODLE = re.compile(r"_(?P<id>\d+)_assignsubmission_(?P<kind>[a-z]+)(?=_|\Z)")
 CANVAS = re.compile(r"(?P<name>[^_/]+)(?P<late>_LATE)?_(?P<id>\d+)_(?P<file_id>\d+)_(?P<file>.+)", re.DOTALL)
 BLACKBOARD = re.compile(
     r"(?P<head>.+?)_attempt_(?P<time>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)", re.DOTALL
 )  # a receipt has no file
-BRIGHTSPACE = re.compile(
-    r"\d+-\d+ - (?P<who>.+?) - (?P<month>[A-Z][a-z]{2}) (?P<day>\d\d?), (?P<year>\d{4}) "
-    r"(?P<hour>\d\d?)(?P<minute>\d\d)(?: (?P<half>[AP]M))?(?: - (?P<file>.+))?",
-    re.DOTALL,
+BRIGHTSPACE = re.compile(r"\d+-\d+ - ")
+DATE = re.compile(
+    r" - (?P<month>[A-Z][a-z]{2}) (?P<day>\d\d?), (?P<year>\d{4}) "
+    r"(?P<hour>\d\d?)(?P<minute>\d\d)(?: (?P<half>[AP]M))?(?= - |\Z)"
 )
 MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 ATTACHMENTS, FEEDBACK = "Submission attachment(s)", "Feedback Attachment(s)"  # of Sakai
@@ -100,22 +101,20 @@ class DownloadedItem:
 def read_names(folder: Path) -> list[DownloadedItem]:
     """Return what the names in a folder say: an item for each member of a group, and none for what the system added."""
     children = [child for child in sorted(folder.iterdir()) if not is_ignored(child.name)]
-    items = [item for child in children for item in _read_name(child)]
+    items = _without_doubtful_groups([item for child in children for item in _read_name(child)])
     added = frozenset[str]().union(*(ADDED.get(item.system, ()) for item in items))
     return [item for item in items if item.path.name not in added]
 
 
 def _read_name(path: Path) -> list[DownloadedItem]:
     """Return what the name of a file or folder says; nothing if it is a student's folder without a submission."""
-    if found := MOODLE.fullmatch(path.name):
-        keys: IdentityKeys = (("identifier", found["id"]), ("name", found["name"]))
-        return [DownloadedItem(path, keys, is_submission=found["kind"] == "file", name=found["file"] or "")]
+    if places := _cuts(path, MOODLE):
+        return [_read_moodle(path, places)]
     if found := BLACKBOARD.fullmatch(path.name):
         return [_read_blackboard(path, found)]
-    if (found := BRIGHTSPACE.fullmatch(path.name)) and found["month"] in MONTHS:
-        return [
-            DownloadedItem(path, _people(found["who"]), (_time(found),), name=found["file"] or "", system="brightspace")
-        ]
+    begin = BRIGHTSPACE.match(path.name)
+    if begin and (places := _cuts(path, DATE, begin.end())) and all(place["month"] in MONTHS for place in places):
+        return [_read_brightspace(path, begin.end(), places)]
     if found := CANVAS.fullmatch(path.name):
         late = bool(found["late"])
         order = ("late",) if late else ("",)
@@ -125,6 +124,34 @@ def _read_name(path: Path) -> list[DownloadedItem]:
     stem = student_of(path)
     kinds = ("login", "number", "sis id", "email", "identifier", "id", "github", "name")
     return [DownloadedItem(path, tuple((kind, stem) for kind in kinds))]
+
+
+def _cuts(path: Path, pattern: re.Pattern[str], start: int = 0) -> list[re.Match[str]]:
+    """Return where a name may end and that of a file begin; one place, if the name of a file is missing.
+
+    Students choose what stands before and after it. Of several places, the roster says which one is right.
+    """
+    places = [place for place in pattern.finditer(path.name, start) if place.start() > start]
+    return places[-1:] if places and path.name[places[-1].end() :] in ("", "_") else places
+
+
+def _read_moodle(path: Path, places: list[re.Match[str]]) -> DownloadedItem:
+    """Return what a name of Moodle says: of several readings, one whose number and name are those of one student."""
+    first, names = places[0], [path.name[: place.start()] for place in places]
+    keys: IdentityKeys = (("identifier", first["id"]), ("name", names[0]))
+    if len(places) > 1:
+        keys = tuple(
+            ("identifier and name", f"{place['id']} {name}") for place, name in zip(places, names, strict=True)
+        )
+    return DownloadedItem(path, keys, is_submission=first["kind"] == "file", name=path.name[first.end() + 1 :])
+
+
+def _read_brightspace(path: Path, start: int, places: list[re.Match[str]]) -> DownloadedItem:
+    """Return what a name of Brightspace says; of several readings, one whose name is that of one student."""
+    who = [path.name[start : place.start()] for place in places]
+    keys = _people(who[0]) if len(who) == 1 else tuple(("name", name) for name in who)
+    name = path.name[places[0].end() :].removeprefix(" - ")
+    return DownloadedItem(path, keys, (_time(places[0]),), name=name, system="brightspace")
 
 
 def _read_blackboard(path: Path, found: re.Match[str]) -> DownloadedItem:
@@ -169,6 +196,8 @@ def _people(who: str) -> IdentityKeys:
 def _members(path: Path) -> list[IdentityKeys]:
     """Return the keys of each member whom a name of Sakai holds: `Doe, Jane(jdoe3); Roe, Bob(broe)`."""
     whole = path.name if path.is_dir() else path.name.partition(f"_{ATTACHMENTS}_")[0].removesuffix(f"_{TEXT}")
+    if not path.is_dir() and path.name.count(f"_{ATTACHMENTS}_") > 1:  # one is in the name of a student or of a file
+        return []
     found: list[IdentityKeys] = []
     for member in whole.split("; "):
         name, bracket, account = member.rpartition("(")
@@ -177,6 +206,19 @@ def _members(path: Path) -> list[IdentityKeys]:
         kinds = ("id", "login", "number", "email")
         found.append((*((kind, account[:-1]) for kind in kinds), ("name", name)))
     return found if whole != path.name or path.is_dir() else []
+
+
+def _without_doubtful_groups(items: list[DownloadedItem]) -> list[DownloadedItem]:
+    """Return the items, but those of Sakai's groups as nobody's of whom a member has a submission of their own.
+
+    Sakai writes a group as it writes a student whose own name holds that of another one.
+    """
+    paths = [item.path for item in items]
+    groups = [item for item in items if item.system == "sakai" and paths.count(item.path) > 1]
+    alone = {item.keys[:1] for item in items if item not in groups}
+    doubtful = {item.path for item in groups if item.keys[:1] in alone}
+    doubt = "unclear: a member of this group has a submission of their own, too"
+    return [replace(item, keys=(), doubt=doubt) if item.path in doubtful else item for item in items]
 
 
 def _read_sakai(path: Path) -> list[DownloadedItem]:

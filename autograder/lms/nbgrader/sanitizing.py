@@ -22,7 +22,7 @@ EVERYWHERE = ("class", "id", "title")
 # A path below the notebook's folder. It has no scheme, host, query or `..`, and nothing that a browser would remove.
 _BESIDE = re.compile(r"(?!\.)[\w-][\w.-]*(?:/(?!\.)[\w-][\w.-]*)*", re.ASCII)
 # TeX by which MathJax loads extensions, styles and links, and `\csname`, which can spell any of it.
-_TEX = re.compile(r"\\(?=\s*(?:style|href|require|class|cssId|csname|unicode|includegraphics|url|data|html))")
+_TEX = re.compile(r"\\(?=\s*(?:style|href|require|class|cssId|csname|unicode|includegraphics|url|data|html|mml))")
 
 
 def _image(tag: str, name: str, value: str) -> bool:

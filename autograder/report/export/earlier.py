@@ -12,10 +12,9 @@ from pathlib import Path
 
 from autograder.exceptions import UsageError
 from autograder.report.export.changes import Change, changes
-from autograder.report.export.stored import ONE, load
+from autograder.report.export.stored import load
+from autograder.result.class_folder import EARLIER_MARKS, ONE
 from autograder.result.model import Result, Status, write_json
-
-FILE = "earlier-marks.json"  # a list of results; `autograder compare` reads it, too
 
 
 class EarlierMarks:
@@ -30,7 +29,7 @@ class EarlierMarks:
     """
 
     def __init__(self, out: Path, students: Iterable[str]) -> None:
-        self._file = out / FILE
+        self._file = out / EARLIER_MARKS
         # The marks before the interrupted grading count, not those that it came to.
         noted = {} if not self._file.is_file() else {_key(result): result for result in load(self._file)}
         self._marks = _stored(out, students) | noted

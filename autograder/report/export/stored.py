@@ -8,10 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from autograder.exceptions import UsageError
+from autograder.result.class_folder import MANY, ONE, why_not_a_folder
 from autograder.result.model import UNFINISHED, Result, from_json
-
-ONE = "result.json"
-MANY = "results.json"
 
 
 def load(path: Path) -> tuple[Result, ...]:
@@ -45,8 +43,8 @@ def per_student(results: Sequence[Result], out: Path) -> list[tuple[Result, Path
     pairs: dict[str, tuple[Result, Path]] = {}
     for result in results:
         student = result.student
-        if student in ("", ".", "..") or "/" in student or "\0" in student:
-            raise UsageError(f"the student {student!r} cannot be the name of a folder; use a format without folders")
+        if why := why_not_a_folder(student):
+            raise UsageError(f"{why}; or use a format without folders")
         if student in pairs:
             raise UsageError(f"the student {student!r} has two results; export one assignment at a time")
         pairs[student] = (result, out / student)

@@ -4,6 +4,7 @@
 folder)` writes `folder/index.html`, which links to `<student>/feedback.html`.
 """
 
-from autograder.report.feedback.pages import PAGE, SUMMARY, write, write_summary
+from autograder.report.feedback.pages import PAGE, write, write_summary
+from autograder.result.class_folder import SUMMARY
 
 __all__ = ["PAGE", "SUMMARY", "write", "write_summary"]

@@ -25,12 +25,12 @@ from autograder.report.feedback.pictures import Picture
 from autograder.report.feedback.statistics import class_statistics
 from autograder.report.feedback.text import no_mark, number
 from autograder.result.causes import FAILED_AS_WELL
+from autograder.result.class_folder import SUMMARY
 from autograder.result.model import Result, Status, write_atomically
 from autograder.suite.contract import contract
 
 TEMPLATES = layout.ROOT / "assets" / "templates"
 PAGE = "feedback.html"
-SUMMARY = "index.html"
 
 
 @cache

@@ -59,6 +59,20 @@ def test_csv_holds_no_formula(hostile: Class, tmp_path: Path) -> None:
     assert row["reason"] == "'=1+1|<script>`x`[a](b)\ufffd\ufffd # head"
 
 
+@pytest.mark.parametrize("delimiter", [",", ";", "\t", "|"])
+@pytest.mark.parametrize("between", ["{}=1", '{}"=1', '"{}"=1"{}', "{} '=1{}", '{}""" @x', "a{}b{}-1{}"])
+def test_csv_holds_no_formula_whatever_a_spreadsheet_takes_for_its_separator(
+    make_result: Callable[..., Result], tmp_path: Path, between: str, delimiter: str
+) -> None:
+    text = between.replace("{}", delimiter)
+    sentence = Diagnosis(Kind.BUILD_FAILED, f"see {text}")
+    path = write([make_result("ada", diagnosis=sentence)], "csv", tmp_path / "marks.csv")
+    with path.open(encoding="utf-8", newline="") as file:
+        cells = [cell for row in csv.reader(file, delimiter=delimiter) for cell in row]
+    assert any("1" in cell or "x" in cell for cell in cells)
+    assert not [cell for cell in cells if cell.lstrip(" \"'")[:1] in tuple("=+-@") and cell.lstrip(' "')[:1] != "'"]
+
+
 def test_junit_counts_and_names_each_outcome(a_class: Class, tmp_path: Path) -> None:
     root = ET.parse(write(a_class, "junit", tmp_path / "junit.xml")).getroot()
     assert dict(root.attrib) == {"tests": "8", "failures": "2", "errors": "1", "skipped": "3"}

@@ -13,7 +13,7 @@ import pytest
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
-from autograder.grade import executed_notebook
+from autograder.grade import answer, executed_notebook
 from autograder.grade.answer import AnswerError, checked
 from autograder.grade.bounded_json import NOTEBOOK_VALUES, read_json
 from autograder.grade.executed_notebook import MAX_BYTES, decode, encode
@@ -36,6 +36,15 @@ def result(make_result: Callable[..., Result]) -> Result:
 
 def files(result: Result, **others: bytes) -> dict[str, bytes]:
     return {"result.json": json.dumps(result.to_json()).encode(), **others}
+
+
+def test_no_error_that_an_answer_causes_ends_a_class(result: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+    for error in (OverflowError, KeyError, AttributeError, MemoryError):
+        monkeypatch.setattr(
+            answer, "from_json", lambda data, source, error=error: (_ for _ in ()).throw(error("of data"))
+        )
+        with pytest.raises(AnswerError, match=f"cannot be checked: {error.__name__}: .*of data"):
+            checked(files(result), JOB)
 
 
 @pytest.mark.parametrize(

@@ -89,6 +89,15 @@ def test_a_path_that_does_not_exist_is_a_wrong_call(tmp_path: Path) -> None:
         discover((tmp_path / "nobody",), CHAPTER)
 
 
+@pytest.mark.parametrize("name", ["index.html", "earlier-marks.json", "handed_in.json", "results.json", "result.json"])
+def test_a_submission_with_the_name_of_a_file_beside_the_results_is_not_graded(tmp_path: Path, name: str) -> None:
+    for student in ("ada", name):
+        _submission(tmp_path / student)
+    discovered = discover((tmp_path,), CHAPTER)
+    assert discovered.submissions == {"ada": tmp_path / "ada"}
+    assert discovered.others == ((name, f"{name} is the name of a file beside the results: give it another name"),)
+
+
 def test_two_submissions_of_one_name_are_a_wrong_call(tmp_path: Path) -> None:
     _submission(tmp_path / "a" / "alice")
     (tmp_path / "alice.zip").write_bytes(b"")

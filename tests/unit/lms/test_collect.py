@@ -279,9 +279,99 @@ def test_a_sakai_download_without_folders_has_the_names_of_folders_in_those_of_f
     collected, entries = found(folder, SAKAI)
     assert entries == {
         "llate2": "report.pdf + work.zip",
-        "sspeedy2": "Speedy, Sam(sspeedy2)_Submission attachment(s)_x(nobody)_Submission attachment(s)_a.zip",
     }
-    assert collected.unmatched == (("Text, Tom(typist)__submissionText.html", "it is no file that was handed in"),)
+    assert collected.unmatched == (
+        (
+            "Speedy, Sam(sspeedy2)_Submission attachment(s)_x(nobody)_Submission attachment(s)_a.zip",
+            "no student of roster.csv fits",
+        ),
+        ("Text, Tom(typist)__submissionText.html", "it is no file that was handed in"),
+    )
+
+
+def test_who_takes_a_name_that_reads_like_a_download_takes_no_other_students_place(tmp_path: Path) -> None:
+    moodle = 'Identifier,Full name\nParticipant 1,Ada Lovelace\nParticipant 2,"{}"\n'
+    brightspace = 'OrgDefinedId,Name\n1,Ada Lovelace\n2,"{}"\n'
+    sakai = 'Display ID,Last Name,First Name\nada,Lovelace,Ada\neve,"{}",\n'
+    tries = [  # a table, Ada's item, Eve's name, Eve's item, and whether it is plainly hers
+        (
+            moodle,
+            "Ada Lovelace_1_assignsubmission_file_/",
+            "Eve_1_assignsubmission_file_",
+            "{}_2_assignsubmission_file_/",
+            True,
+        ),
+        (
+            moodle,
+            "Ada Lovelace_1_assignsubmission_file_/",
+            "Eve_1_assignsubmission_file",
+            "{}_2_assignsubmission_file/",
+            True,
+        ),
+        (
+            moodle,
+            "Ada Lovelace_1_assignsubmission_file_a.zip",
+            "Eve_1_assignsubmission_file_",
+            "{}_2_assignsubmission_file_a.zip",
+            True,
+        ),
+        (
+            moodle,
+            "Ada Lovelace_1_assignsubmission_file_a.zip",
+            "Ada Lovelace_1_assignsubmission_file_",
+            "{}_2_assignsubmission_file_a.zip",
+            False,
+        ),
+        (
+            brightspace,
+            "1-2 - Ada Lovelace - Sep 24, 2026 926 PM/",
+            "Ada Lovelace - Sep 25, 2026 926 PM",
+            "3-2 - {} - Sep 23, 2026 1000 AM/",
+            True,
+        ),
+        (
+            brightspace,
+            "1-2 - Ada Lovelace - Sep 24, 2026 926 PM - a.zip",
+            "Ada Lovelace - Sep 25, 2026 926 PM",
+            "3-2 - {} - Sep 23, 2026 1000 AM - a.zip",
+            False,
+        ),
+        (
+            sakai,
+            "Lovelace, Ada(ada)_Submission attachment(s)_a.zip",
+            "Lovelace, Ada(ada)_Submission attachment(s)_x",
+            "{}, (eve)_Submission attachment(s)_a.zip",
+            False,
+        ),
+        (
+            sakai,
+            "Lovelace, Ada(ada)/Submission attachment(s)/a.zip",
+            "Lovelace, Ada(ada); Eve",
+            "{}, (eve)/Submission attachment(s)/a.zip",
+            False,
+        ),
+    ]
+    for number, (table, theirs, name, item, is_plain) in enumerate(tries):
+        own = item.format(name)
+        folder = download(
+            tmp_path / f"{number}" / "d", *(f"{path}answer.zip" if path[-1] == "/" else path for path in (theirs, own))
+        )
+        _, entries = found(folder, table.format(name))
+        ada = entries.pop(next(student for student, path in entries.items() if path.startswith(theirs[:-1])))
+        assert ada.startswith(theirs), number
+        assert [path.startswith(own) for path in entries.values()] == [True] * is_plain, number
+
+
+@pytest.mark.parametrize(
+    "name", ["index.html", "earlier-marks.json", "handed_in.json", "results.json", "..", "x" * 256]
+)
+def test_a_student_whose_folder_would_have_the_place_of_a_file_is_named(tmp_path: Path, name: str) -> None:
+    folder = download(tmp_path / "d", "Ada_1_assignsubmission_file_a.zip", "Eve_2_assignsubmission_file_a.zip")
+    collected, entries = found(folder, f"Identifier,Username\nParticipant 1,ada\nParticipant 2,{name}\n")
+    assert list(entries) == ["ada"]
+    (why,) = collected.unmatched
+    assert why[0] == "Eve_2_assignsubmission_file_a.zip"
+    assert why[1].endswith("in roster.csv")
 
 
 def test_each_member_of_a_gradescope_group_has_the_submission(tmp_path: Path) -> None:

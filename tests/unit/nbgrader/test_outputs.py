@@ -152,6 +152,7 @@ def test_the_first_verdict_also_shows_the_diagnosis(broken_result: Result) -> No
         ("<table background=http://host.example/x><tr><td>y</td></tr></table>", "<table>", "host.example"),
         (r"$\style{background:url(http://host.example/x)}{y}$", "y", r"\style"),
         (r"$\csname style\endcsname{y}$", "y", r"\csname"),
+        (r"$\mmlToken{mi}[href=http://host.example/x]{y}$", "y", r"\mmlToken"),
         ("[x](javascript:y)", "<a>x</a>", "javascript"),
         ("<iframe src=x></iframe>", "&lt;iframe", "<iframe"),
         ("<form action=x><button>ok</button></form>", "&lt;form", "<form"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -10,16 +11,19 @@ from autograder.report.feedback.text import one_line
 from autograder.result.model import Result, Status
 
 FOLDER = False
+# What splits a text for a spreadsheet that takes the file to be separated by semicolons, tabs or bars.
+_SEPARATOR = re.compile(r"([;|\t])")
 
 
 def write(results: Sequence[Result], out: Path) -> Path:
     """Write a row for each result, with a column for each check and the points that it earned.
 
-    The file is UTF-8 with commas, quoted as in RFC 4180. A submission that was not graded has no score.
+    The file is UTF-8 with commas, each cell quoted as in RFC 4180. A submission that was not graded has no score.
     """
     rows = [_row(result) for result in results]
     with out.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(dict.fromkeys(name for row in rows for name in row)), restval="")
+        columns = list(dict.fromkeys(name for row in rows for name in row))
+        writer = csv.DictWriter(file, columns, restval="", quoting=csv.QUOTE_ALL)
         writer.writeheader()
         writer.writerows(rows)
     return out
@@ -47,6 +51,6 @@ def _row(result: Result) -> dict[str, str | float]:
 
 
 def _text(value: str) -> str:
-    """Return the text on one line. A quote before a leading =, +, - or @ keeps spreadsheets from evaluating it."""
-    line = one_line(value)
-    return f"'{line}" if line.startswith(("=", "+", "-", "@")) else line
+    """Return the text on one line. A quote before each cell that can begin with =, +, - or @ stops a formula."""
+    parts = _SEPARATOR.split(one_line(value))
+    return "".join(f"'{part}" if part.lstrip(" \"'").startswith(("=", "+", "-", "@")) else part for part in parts)
