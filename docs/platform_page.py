@@ -95,7 +95,7 @@ not pass these tests, in which the stand-in leaves no process, does not hang, or
 OTHERWISE_COLUMNS = ("test", "what the real one does")
 UNCOVERED = ("not covered", "why", "the error")
 COMPOSABLE = "they are C++ components, and `composition_interfaces` has no wheel"
-INNER = "launch files and tests do not use it"
+INNER = "neither the course nor a Python tutorial of ROS uses it"
 INNER_MODULE = "it is inside the real package"
 OF_CPP = "it is for C++"
 SINGLE = "it is for tests of one process without a launch description"
@@ -124,8 +124,7 @@ INNER_NAMES = {
         "is_valid_scalar_type"
     ),
     "launch_pytest.tools.process": "register_event_handler",
-    "launch_ros.actions": "get_composable_node_load_request",
-    "launch_ros.actions.lifecycle_transition": "match_node_name_goal match_node_name_start_goal",
+    "launch_ros.actions": "LifecycleNode LifecycleTransition ROSTimer RosTimer get_composable_node_load_request",
     "launch_ros.actions.node": "NodeActionExtension get_extensions instantiate_extension",
     "launch_ros.utilities": (
         "OptionalText PluginException add_node_name evaluate_parameter_dict get_node_name_count "

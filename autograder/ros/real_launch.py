@@ -54,7 +54,7 @@ class Step:
     command: Sequence[str]
     hint: str = ""
     seconds: float = BUILD_SECONDS
-    cwd: Path | None = None
+    cwd: Path = Path("/")  # where no module lies beside Python's own
     variables: Mapping[str, str] | None = None
 
 
@@ -149,11 +149,12 @@ def set_up(environ: Mapping[str, str]) -> str:
 
 def _clone(sources: Sequence[Source], environ: Mapping[str, str], scratch: Path) -> dict[Source, Path]:
     """Clone all sources at the same time, once all of them answer; return their folders, in order."""
+    here = Path.cwd()  # a source may be a relative path, and git imports nothing
     places = {source: source.place(environ) for source in sources}
     hints = {source: f"point {source.variable} at a clone that this machine reaches" for source in sources}
     _run(
         *(
-            Step(f"reach {place.url}", ["git", "ls-remote", place.url, "HEAD"], hints[source], REACH_SECONDS)
+            Step(f"reach {place.url}", ["git", "ls-remote", place.url, "HEAD"], hints[source], REACH_SECONDS, here)
             for source, place in places.items()
         )
     )
@@ -167,6 +168,7 @@ def _clone(sources: Sequence[Source], environ: Mapping[str, str], scratch: Path)
                 [*git, "--branch", place.tag, place.url, str(folders[source])],
                 hints[source],
                 CLONE_SECONDS,
+                here,
             )
             for source, place in places.items()
         )

@@ -100,11 +100,6 @@ def test_topic_hz_measures_the_talker() -> None:
     assert int(found[2]) > 1
 
 
-def test_topic_bw_measures_the_size_of_messages() -> None:
-    _, printed = until("topic", "bw", "/scan", seen=lambda line: "Message size" in line)
-    assert re.search(r"Message size mean: 0.8\d KB min: 0.8\d KB max: 0.8\d KB", printed)
-
-
 def test_doctor_passes_here_and_reports() -> None:
     together = [
         start(*words.split(), "--spin-time", "8") for words in ("doctor", "wtf --include-warnings", "doctor -r")

@@ -1,4 +1,4 @@
-"""`ros2 action`: list, info, type and send_goal."""
+"""`ros2 action`: list and send_goal."""
 
 from __future__ import annotations
 
@@ -10,15 +10,13 @@ from typing import Any
 from action_msgs.msg import GoalStatus
 from rclpy.action import (
     ActionClient,
-    get_action_client_names_and_types_by_node,
     get_action_names_and_types,
-    get_action_server_names_and_types_by_node,
 )
 
 from autograder.ros.ros2 import graph
 from autograder.ros.ros2.filling import add_values, filled, given_values
 from autograder.ros.ros2.parsing import ExitCode, Verb
-from autograder.ros.ros2.session import NAMED_QUIET, Session, add_session_arguments, open_session, signals_held_back
+from autograder.ros.ros2.session import Session, add_session_arguments, open_session, signals_held_back
 
 _STATUS = {
     GoalStatus.STATUS_ACCEPTED: "ACCEPTED",
@@ -48,58 +46,6 @@ def _list(args: argparse.Namespace) -> ExitCode:
     for name, types in actions:
         print(f"{name} [{', '.join(types)}]" if args.show_types else name)
     return None
-
-
-def _info_arguments(parser: argparse.ArgumentParser) -> None:
-    add_session_arguments(parser)
-    parser.add_argument("action_name", help="Name of the ROS action to get info (e.g. '/fibonacci')")
-    parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the action type")
-    parser.add_argument(
-        "-c", "--count", action="store_true", help="Only display the number of action clients and action servers"
-    )
-
-
-def _info(args: argparse.Namespace) -> ExitCode:
-    with open_session(args) as session:
-        name = graph.full_topic_name(session.node, args.action_name)
-        session.wait_for(lambda: name in dict(get_action_names_and_types(session.node)))
-        session.settle(longest=NAMED_QUIET)
-        ends = [
-            ("Action clients", _ends(session, name, get_action_client_names_and_types_by_node)),
-            ("Action servers", _ends(session, name, get_action_server_names_and_types_by_node)),
-        ]
-    print(f"Action: {args.action_name}")
-    for heading, nodes in ends:
-        print(f"{heading}: {len(nodes)}")
-        if not args.count:
-            for node_name, types in nodes:
-                print(f"    {node_name} [{', '.join(types)}]" if args.show_types else f"    {node_name}")
-    return None
-
-
-def _ends(session: Session, action: str, query: Any) -> graph.NamesAndTypes:
-    """Return the nodes that have an end of an action, each with the action's types."""
-    found = []
-    for node in graph.node_names(session, include_hidden=True):
-        types = dict(query(session.node, node.name, node.namespace)).get(action)
-        if types:
-            found.append((node.full_name, types))
-    return sorted(found)
-
-
-def _type_arguments(parser: argparse.ArgumentParser) -> None:
-    add_session_arguments(parser)
-    parser.add_argument("action_name", help="Name of the ROS action to get type (e.g. '/fibonacci')")
-
-
-def _type(args: argparse.Namespace) -> ExitCode:
-    with open_session(args) as session:
-        name = graph.full_topic_name(session.node, args.action_name)
-        session.wait_for(lambda: name in dict(get_action_names_and_types(session.node)))
-        types = dict(get_action_names_and_types(session.node)).get(name, [])
-    for line in types:
-        print(line)
-    return 0 if types else 1
 
 
 def _send_goal_arguments(parser: argparse.ArgumentParser) -> None:
@@ -156,8 +102,6 @@ def _cancel(session: Session, handle: Any) -> None:
 
 
 VERBS = (
-    Verb("info", "Print information about an action", _info_arguments, _info),
     Verb("list", "Output a list of action names", _list_arguments, _list),
     Verb("send_goal", "Send an action goal", _send_goal_arguments, _send_goal),
-    Verb("type", "Print an action's type", _type_arguments, _type),
 )

@@ -1,11 +1,10 @@
-"""`ros2 interface`: list, show, package, packages and proto."""
+"""`ros2 interface`: list, show and package."""
 
 from __future__ import annotations
 
 import argparse
 import sys
 from pathlib import Path
-from typing import Any
 
 from autograder.ros.ros2.exceptions import Ros2Error
 from autograder.ros.ros2.interface_text import unfold
@@ -40,12 +39,6 @@ def _list(args: argparse.Namespace) -> ExitCode:
         for package in sorted(by_package):
             for name in sorted(by_package[package]):
                 print(f"    {package}/{name}")
-    return None
-
-
-def _packages(args: argparse.Namespace) -> ExitCode:
-    for package in sorted({package for _, by_package in _chosen(args) for package in by_package}):
-        print(package)
     return None
 
 
@@ -92,27 +85,6 @@ def _read(name: str) -> str:
     return Path(get_interface_path(name)).read_text(encoding="utf-8")
 
 
-def _proto_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("type", help="Show an interface prototype (e.g. 'std_msgs/msg/String')")
-    parser.add_argument("--no-quotes", action="store_true", help="Omit the outer quotes")
-
-
-def _proto(args: argparse.Namespace) -> ExitCode:
-    from rosidl_runtime_py import message_to_yaml
-    from rosidl_runtime_py.utilities import get_interface
-
-    name = _name(args.type)
-    try:
-        interface: Any = get_interface(name)
-    except (AttributeError, ModuleNotFoundError, ValueError) as error:
-        raise Ros2Error(f"The passed interface type is invalid: '{name}': {error}") from None
-    # What one sends: the request of a service, the goal of an action, a message itself.
-    part = getattr(interface, "Request", getattr(interface, "Goal", interface))
-    text = message_to_yaml(part())
-    print(text if args.no_quotes else f'"{text}"')
-    return None
-
-
 def _name(text: str) -> str:
     if text != "-":
         return text
@@ -128,7 +100,5 @@ def _message(error: Exception) -> str:
 VERBS = (
     Verb("list", "List all interface types available", _kind_arguments, _list),
     Verb("package", "Output a list of available interface types within one package", _package_arguments, _package),
-    Verb("packages", "Output a list of packages that provide interfaces", _kind_arguments, _packages),
-    Verb("proto", "Output an interface prototype", _proto_arguments, _proto),
     Verb("show", "Output the interface definition", _show_arguments, _show),
 )

@@ -1,4 +1,4 @@
-"""`ros2 param`: list, get, set, describe, dump, load and delete, by a node's parameter services."""
+"""`ros2 param`: list, get, set, describe, dump and load, by a node's parameter services."""
 
 from __future__ import annotations
 
@@ -131,17 +131,6 @@ def _set(args: argparse.Namespace) -> ExitCode:
     return _report(result, "Set parameter successful", "Setting parameter failed")
 
 
-def _delete_arguments(parser: argparse.ArgumentParser) -> None:
-    _node_arguments(parser)
-    parser.add_argument("parameter_name", help="Name of the parameter")
-
-
-def _delete(args: argparse.Namespace) -> ExitCode:
-    with _parameters(args) as parameters:
-        result = parameters.delete(args.parameter_name)
-    return _report(result, "Deleted parameter successfully", "Deleting parameter failed")
-
-
 def _report(result: Any, done: str, failed: str) -> ExitCode:
     """Say how a change went. The real command exits with 0 even when the node refused, so this one does."""
     reason = f": {result.reason}" if result.reason else ""
@@ -204,7 +193,6 @@ def _load(args: argparse.Namespace) -> ExitCode:
 
 
 VERBS = (
-    Verb("delete", "Delete parameter", _delete_arguments, _delete),
     Verb("describe", "Show descriptive information about declared parameters", _describe_arguments, _describe),
     Verb("dump", "Show all of the parameters of a node in a YAML file format", _node_arguments, _dump),
     Verb("get", "Get parameter", _get_arguments, _get),

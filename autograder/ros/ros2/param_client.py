@@ -46,10 +46,6 @@ class NodeParameters:
         parameter = Parameter.from_parameter_msg(ParameterMessage(name=name, value=get_parameter_value(text)))
         return self._answer(self._client.set_parameters([parameter])).results[0]
 
-    def delete(self, name: str) -> Any:
-        """Delete a parameter; return the SetParametersResult."""
-        return self._answer(self._client.delete_parameters([name])).results[0]
-
     def load(self, path: Path, use_wildcard: bool) -> list[tuple[str, Any]]:
         """Set what a parameter file has for this node; return each name and its SetParametersResult."""
         sent = parameters_in_file(path, self._client.remote_node_name, use_wildcard)

@@ -1,4 +1,4 @@
-"""`ros2 service`: list, type, info, find and call."""
+"""`ros2 service`: list, info and call."""
 
 from __future__ import annotations
 
@@ -32,20 +32,6 @@ def _list(args: argparse.Namespace) -> ExitCode:
     return None
 
 
-def _type_arguments(parser: argparse.ArgumentParser) -> None:
-    add_session_arguments(parser)
-    parser.add_argument("service_name", help="Name of the ROS service to get type (e.g. '/talker/list_parameters')")
-    _hidden_argument(parser)
-
-
-def _type(args: argparse.Namespace) -> ExitCode:
-    with open_session(args) as session:
-        types = graph.types_of_service(session, args.service_name)
-    for name in types:
-        print(name)
-    return 0 if types else 1
-
-
 def _info_arguments(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     parser.add_argument("service_name", help="Name of the ROS service to get info (e.g. '/talker/list_parameters')")
@@ -60,25 +46,6 @@ def _info(args: argparse.Namespace) -> ExitCode:
         print(f"Type: {types[0] if len(types) == 1 else types}")
         print(f"Clients count: {session.node.count_clients(args.service_name)}")
         print(f"Services count: {session.node.count_services(args.service_name)}")
-    return None
-
-
-def _find_arguments(parser: argparse.ArgumentParser) -> None:
-    add_session_arguments(parser)
-    parser.add_argument("service_type", help="Name of the ROS service type to filter for (e.g. 'std_srvs/srv/Empty')")
-    parser.add_argument(
-        "-c", "--count-services", action="store_true", help="Only display the number of services discovered"
-    )
-    _hidden_argument(parser)
-
-
-def _find(args: argparse.Namespace) -> ExitCode:
-    with open_session(args) as session:
-        session.settle()
-        services = graph.service_names_and_types(session, include_hidden=args.include_hidden_services)
-    found = [name for name, types in services if args.service_type in types]
-    for line in [len(found)] if args.count_services else found:
-        print(line)
     return None
 
 
@@ -123,8 +90,6 @@ def _hidden_argument(parser: argparse.ArgumentParser) -> None:
 
 VERBS = (
     Verb("call", "Call a service", _call_arguments, _call),
-    Verb("find", "Output a list of services of a given type", _find_arguments, _find),
     Verb("info", "Print information about a service", _info_arguments, _info),
     Verb("list", "Output a list of available services", _list_arguments, _list),
-    Verb("type", "Output a service's type", _type_arguments, _type),
 )

@@ -1,4 +1,4 @@
-"""`ros2 topic`: list, info, type and find; echo, pub, hz and bw have modules of their own."""
+"""`ros2 topic`: list and info; echo, pub and hz have modules of their own."""
 
 from __future__ import annotations
 
@@ -82,45 +82,10 @@ def _info(args: argparse.Namespace) -> ExitCode:
     return None
 
 
-def _type_arguments(parser: argparse.ArgumentParser) -> None:
-    add_session_arguments(parser)
-    parser.add_argument("topic_name", help="Name of the ROS topic to get type (e.g. '/chatter')")
-    parser.add_argument("--include-hidden-topics", action="store_true", help="Consider hidden topics as well")
-
-
-def _type(args: argparse.Namespace) -> ExitCode:
-    with open_session(args) as session:
-        types = graph.types_of_topic(session, args.topic_name)
-        for name in types:
-            print(name)
-        return 0 if types else 1
-
-
-def _find_arguments(parser: argparse.ArgumentParser) -> None:
-    add_session_arguments(parser)
-    parser.add_argument("topic_type", help="Name of the ROS topic type to filter for (e.g. 'std_msgs/msg/String')")
-    parser.add_argument(
-        "-c", "--count-topics", action="store_true", help="Only display the number of topics discovered"
-    )
-    parser.add_argument("--include-hidden-topics", action="store_true", help="Consider hidden topics as well")
-
-
-def _find(args: argparse.Namespace) -> ExitCode:
-    with open_session(args) as session:
-        session.settle()
-        topics = graph.topic_names_and_types(session, include_hidden=args.include_hidden_topics)
-    found = [name for name, types in topics if args.topic_type in types]
-    print(*([len(found)] if args.count_topics else found), sep="\n", end="\n" if found or args.count_topics else "")
-    return None
-
-
 VERBS = (
-    Verb("bw", "Display bandwidth used by topic", topic_rate.bw_arguments, topic_rate.bw),
     Verb("echo", "Output messages from a topic", topic_echo.add_arguments, topic_echo.run),
-    Verb("find", "Output a list of available topics of a given type", _find_arguments, _find),
     Verb("hz", "Print the average receiving rate to screen", topic_rate.hz_arguments, topic_rate.hz),
     Verb("info", "Print information about a topic", _info_arguments, _info),
     Verb("list", "Output a list of available topics", _list_arguments, _list),
     Verb("pub", "Publish a message to a topic", topic_pub.add_arguments, topic_pub.run),
-    Verb("type", "Print a topic's type", _type_arguments, _type),
 )

@@ -64,8 +64,6 @@ SUBMODULES = {
         "set_parameter set_parameters_from_file set_remap set_ros_log_dir set_use_sim_time"
     ),
     "launch_ros.descriptions": "composable_node",
-    "launch_ros.event_handlers": "on_state_transition",
-    "launch_ros.events.lifecycle": "lifecycle_node_matchers",
     "launch_ros.substitutions": "executable_in_package find_package parameter",
     "launch_ros.utilities": (
         "evaluate_parameters namespace_utils normalize_parameters normalize_remap_rule plugin_support "
@@ -74,6 +72,8 @@ SUBMODULES = {
 }
 # Those that the real packages have, and the stand-ins do not.
 NOT_COVERED = {
+    "launch_ros": "event_handlers events ros_adapters",
+    "launch_ros.actions": "lifecycle_node lifecycle_transition ros_timer",
     "launch_testing": "decorator junitxml legacy parametrize parse_arguments pytest ready_to_test_action_timeout",
     "launch_testing.actions": "gtest pytest test",
     "launch_testing.tools": "output process text",

@@ -40,11 +40,7 @@ from launch.launch_description_sources import *
 from launch.substitutions import *
 from launch_ros.actions import *
 from launch_ros.descriptions import ParameterFile, ParameterValue
-from launch_ros.event_handlers import OnStateTransition
-from launch_ros.events.lifecycle import ChangeState, StateTransition
-from launch_ros.events.matchers import matches_node_name
 from launch_ros.substitutions import *
-from lifecycle_msgs.msg import Transition
 
 HERE = os.path.dirname(__file__)
 
@@ -64,7 +60,6 @@ CHANGING = (
     (re.compile(r"Traceback \(most recent call last\):\n(  .*\n)+(.*\n)\n?"), r"\2"),
 )
 OF_A_PROCESS = re.compile(r"\[[^\]]+-\d+\] ")  # launch may read it before or after it says that the process has ended
-OF_A_THREAD = "[launch_ros.actions.lifecycle_node]"  # it waits there for an answer, while events go on
 # A process's output comes in pieces; launch asks its handlers about a completion before it tells them; it uses timers.
 UNSTEADY = tuple(
     f"launch.events.{name}"
@@ -139,7 +134,7 @@ def record(case: Case, scratch: Path) -> dict[str, Any]:
     text, _, events = output.partition(MARK)
     lines = [line for line in _steady(text, scratch).splitlines() if not line.startswith(START)]
     written = [line for line in lines if OF_A_PROCESS.match(line)]
-    log = sorted((line for line in lines if line not in written), key=lambda line: OF_A_THREAD in line)
+    log = [line for line in lines if line not in written]
     return {"status": status, "log": log, "written": written, "events": json.loads(events or "[]")}
 
 

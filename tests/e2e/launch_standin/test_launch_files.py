@@ -211,13 +211,6 @@ def test_timers_fire_in_time_and_can_be_cancelled(start: Start) -> None:
     assert re.findall(r"\[launch.user\]: (.*)", launch.text) == ["first", "second", "third"]
 
 
-def test_a_ros_timer_goes_by_simulated_time(start: Start) -> None:
-    launch = start("sim_time")
-    assert launch.finish() == 0
-    assert "[launch.user]: half a minute" in launch.text
-    assert "sim=True" in launch.text
-
-
 def test_parameters_come_from_files_with_substitutions_arguments_and_for_all_nodes(start: Start) -> None:
     launch = start("parameters")
     launch.wait_for("ready: /a on /beat label='e3 of the harness' rate=9.0")

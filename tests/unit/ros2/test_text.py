@@ -18,7 +18,7 @@ from autograder.ros.ros2.param_client import nested, parameters_in_file
 from autograder.ros.ros2.pkg_create import files
 from autograder.ros.ros2.pkg_templates import PackageSpec, licence_text, setup_py
 from autograder.ros.ros2.topic_echo import message_filter
-from autograder.ros.ros2.topic_rate import Bandwidth, Rate
+from autograder.ros.ros2.topic_rate import Rate
 
 INTERFACES = {
     "a_msgs/msg/Outer": "# About it.\n\nInner inner  # one\nb_msgs/Other[3] others\n"
@@ -104,19 +104,6 @@ def test_the_mean_gap_lies_between_the_shortest_and_the_longest(arrivals: list[i
     if rate.rate:
         assert rate.shortest <= 1 / rate.rate * (1 + 1e-9)
         assert 1 / rate.rate <= rate.longest * (1 + 1e-9)
-
-
-@pytest.mark.parametrize(
-    ("sizes", "text"),
-    [
-        ((10, 20), "30 B/s from 2 messages\n\tMessage size mean: 15 B min: 10 B max: 20 B"),
-        ((1000, 2000), "3.00 KB/s from 2 messages\n\tMessage size mean: 1.50 KB min: 1.00 KB max: 2.00 KB"),
-        ((10**6, 10**6), "2.00 MB/s from 2 messages\n\tMessage size mean: 1.00 MB min: 1.00 MB max: 1.00 MB"),
-    ],
-)
-def test_bandwidth_is_printed_in_a_fitting_unit(sizes: tuple[int, int], text: str) -> None:
-    assert str(Bandwidth.of([(0, sizes[0]), (10, sizes[1])], now=1_000_000_000)) == text
-    assert Bandwidth.of([(0, 1)], now=5) is None
 
 
 def test_a_filter_is_a_python_expression_over_m() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+from pathlib import Path
 
 import launch
 import pytest
@@ -35,11 +36,8 @@ def test_a_stand_in_says_that_it_is_one_and_how_to_get_the_real_package(name: st
         ("launch.launch_description_sources", "Other", ""),
         ("launch.utilities", "other", ""),
         ("launch.descriptions", "Other", ""),
-        ("launch_ros.event_handlers", "Other", ""),
-        ("launch_ros.events", "Other", ""),
-        ("launch_ros.events.lifecycle", "Other", ""),
-        ("launch_ros.events.matchers", "Other", ""),
-        ("launch_ros.ros_adapters", "Other", ""),
+        ("launch_ros.actions", "LifecycleNode", ""),
+        ("launch_ros.actions", "ROSTimer", ""),
         ("launch_ros.actions", "ComposableNodeContainer", "Composable nodes need C++ components"),
         ("launch_ros.actions", "LoadComposableNodes", "Composable nodes need C++ components"),
         ("launch_ros.descriptions", "ComposableNode", "Composable nodes need C++ components"),
@@ -91,3 +89,14 @@ def test_private_names_are_refused_the_python_way() -> None:
     assert not hasattr(launch.actions, "__wrapped__")
     with pytest.raises(AttributeError, match=r"module 'launch.actions' has no attribute '_private'"):
         launch.actions._private  # noqa: B018
+
+
+@pytest.mark.parametrize("tag", ["ros_timer", "node_container", "load_composable_node"])
+def test_an_uncovered_element_of_a_launch_file_is_named_with_the_way_to_get_it(tag: str, tmp_path: Path) -> None:
+    file = tmp_path / "robot.launch.xml"
+    file.write_text(f"<launch><{tag}/></launch>")
+    source = launch.launch_description_sources.AnyLaunchDescriptionSource(str(file))
+    with pytest.raises(launch.InvalidLaunchFileError) as caught:
+        source.get_launch_description(launch.LaunchContext())
+    assert f"'{tag}' is not covered: this is the course's stand-in for launch_ros" in str(caught.value)
+    assert f"To use '{tag}', {ADVICE}." in str(caught.value)

@@ -2,9 +2,9 @@
 
 It is imported only where the real package is not. Names, signatures, semantics and errors are those of
 `launch_ros` in ROS 2 Jazzy (https://docs.ros.org/en/jazzy/p/launch_ros/); the code is the course's own.
-Covered are nodes with their parameters, remappings, namespaces and life cycles, in launch files of Python, XML and
-YAML. Composable nodes are not: they raise an error that says so. For the real package run
-`make real-launch`, or source an installation of ROS 2 Jazzy.
+Covered are nodes with their parameters, remappings and namespaces, in launch files of Python, XML and YAML.
+Nodes with a life cycle, composable nodes and timers by ROS's clock are not: they raise an error that says so. For the
+real package run `make real-launch`, or source an installation of ROS 2 Jazzy.
 """
 
 from __future__ import annotations
@@ -16,10 +16,7 @@ from . import (
     _frontend,
     actions,
     descriptions,
-    event_handlers,
-    events,
     parameter_descriptions,
-    ros_adapters,
     substitutions,
     utilities,
 )
@@ -28,10 +25,7 @@ __all__ = [
     "_frontend",
     "actions",
     "descriptions",
-    "event_handlers",
-    "events",
     "parameter_descriptions",
-    "ros_adapters",
     "substitutions",
     "utilities",
 ]

@@ -16,7 +16,6 @@ from standin_notice import not_covered
 from .actions import (
     Node,
     PushRosNamespace,
-    RosTimer,
     SetParameter,
     SetParametersFromFile,
     SetRemap,
@@ -33,7 +32,6 @@ NAMES: dict[str, type[Action]] = {
     "node": Node,
     "push-ros-namespace": PushRosNamespace,
     "push_ros_namespace": PushRosNamespace,
-    "ros_timer": RosTimer,
     "set_parameter": SetParameter,
     "set_parameters_from_file": SetParametersFromFile,
     "set_remap": SetRemap,
@@ -125,9 +123,9 @@ def _set_ros_log_dir(entity: Entity, parser: Parser) -> Keywords:
     return texts(entity, parser, new_log_dir="new_log_dir*")
 
 
-def _refuse(tag: str) -> Callable[[Entity, Parser], NoReturn]:
+def _refuse(tag: str, reason: str) -> Callable[[Entity, Parser], NoReturn]:
     def refuse(entity: Entity, parser: Parser) -> NoReturn:
-        raise not_covered(tag, standin="launch_ros", reason="Composable nodes need C++ components")
+        raise not_covered(tag, standin="launch_ros", reason=reason)
 
     return refuse
 
@@ -135,7 +133,8 @@ def _refuse(tag: str) -> Callable[[Entity, Parser], NoReturn]:
 for _tag, _action in NAMES.items():
     expose_action(_tag)(_action)
 for _tag in ("node_container", "load_composable_node"):
-    expose_action(_tag)(_refuse(_tag))
+    expose_action(_tag)(_refuse(_tag, "Composable nodes need C++ components"))
+expose_action("ros_timer")(_refuse("ros_timer", ""))
 
 name_substitution("exec-in-pkg", ExecutableInPackage, "executable", "package")
 name_substitution("find-pkg-prefix", FindPackagePrefix, "package")

@@ -4,22 +4,15 @@ from __future__ import annotations
 
 from standin_notice import guard
 
-from .lifecycle_node import LifecycleNode
-from .lifecycle_transition import LifecycleTransition
 from .node import Node
-from .ros_timer import ROSTimer, RosTimer
 from .scope import PushRosNamespace, SetParameter, SetParametersFromFile, SetRemap, SetROSLogDir, SetUseSimTime
 
 PushROSNamespace = PushRosNamespace  # the older spelling, which Jazzy still has
 
 __all__ = [
-    "LifecycleNode",
-    "LifecycleTransition",
     "Node",
     "PushROSNamespace",
     "PushRosNamespace",
-    "ROSTimer",
-    "RosTimer",
     "SetParameter",
     "SetParametersFromFile",
     "SetROSLogDir",

@@ -71,7 +71,7 @@ class SetParameter(Action):
 
 
 class SetUseSimTime(Action):
-    """Lets the launch itself, and with it `RosTimer`, go by the time of ``/clock``; the nodes do not follow.
+    """Lets the launch itself go by the time of ``/clock``; the nodes do not follow.
 
     Raises ValueError when it is executed and the value is not a bool: no substitution is performed.
     """

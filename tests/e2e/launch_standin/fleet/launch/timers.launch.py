@@ -2,7 +2,6 @@
 
 from launch import LaunchDescription
 from launch.actions import LogInfo, OpaqueFunction, TimerAction
-from launch_ros.actions import RosTimer
 
 
 def generate_launch_description():
@@ -11,7 +10,7 @@ def generate_launch_description():
         [
             TimerAction(period="0.2", actions=[LogInfo(msg="second")]),
             TimerAction(period=0.05, actions=[LogInfo(msg="first")]),
-            RosTimer(
+            TimerAction(
                 period=0.4, actions=[LogInfo(msg="third"), OpaqueFunction(function=lambda context: never.cancel())]
             ),
             never,
