@@ -22,6 +22,7 @@ echo {INOTIFY_INSTANCES} > /proc/sys/user/max_inotify_instances || exit 1
 echo {INOTIFY_WATCHES} > /proc/sys/user/max_inotify_watches || exit 1
 exec setpriv --inh-caps=-all --ambient-caps=-all --bounding-set=-all "$@"
 """
+_STAY = '"$@"; exit $?'  # a shell that has something left to do stays in memory
 _FONTS = "/tmp/matplotlib"
 
 
@@ -76,10 +77,11 @@ def cell(
     mounts = _cell_mounts(view, scratch, groups)
     if user is None:
         return ["bwrap", "--die-with-parent", *own_proc, *mounts, "--", *inside]
-    # Root makes the mounts, for it can reach what they show. A change of user resets the signal at a parent's death.
+    # Root makes the mounts, for it can reach what they show. The signal of a parent's death is sent with the rights of
+    # the parent, and the outer bubblewrap gives up those over another user. The shell keeps them, and stays the parent.
     within = ("bwrap", "--die-with-parent", "--dev-bind", "/", "/", *own_proc)
     made = ("bwrap", "--die-with-parent", "--bind", "/proc", "/proc", *mounts)
-    return [*made, "--", *becoming(user), *within, "--", *inside]
+    return [*made, "--", "sh", "-c", _STAY, "sh", *becoming(user), *within, "--", *inside]
 
 
 def becoming(user: int) -> list[str]:

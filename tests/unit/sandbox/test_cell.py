@@ -1,16 +1,21 @@
-"""Folders of cells that a killed grader left are removed, and no others."""
+"""A grader that is killed leaves nothing: its cells end with it, and the next one removes their folders."""
 
 from __future__ import annotations
 
 import fcntl
 import os
+import select
+import signal
+import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import pytest
 
-from autograder.run.sandbox import Tier
+from autograder import layout
+from autograder.run.sandbox import Tier, procfs
 from autograder.run.sandbox.cell import run_in_cell
 
 
@@ -49,3 +54,37 @@ def test_a_worker_imports_nothing_from_the_folder_that_the_grader_was_started_in
         assert "JSON" not in report.output
         assert "TypeError" in report.output  # it came as far as reading its job
     assert not (tmp_path / "ran").exists()
+
+
+CELL = """
+import sys
+from autograder import layout
+from autograder.run.sandbox import Tier, procfs
+from autograder.run.sandbox.cell import in_cell
+
+with in_cell(lambda scratch: ["sh", "-c", "echo up; exec sleep 600"], Tier.BUBBLEWRAP) as (process, _):
+    while "up" not in process.output:
+        process.wait(0.05)
+    print("up", flush=True)
+    sys.stdin.read()
+"""
+
+
+def test_nothing_of_a_cell_outlives_a_grader_that_is_killed() -> None:
+    """The kernel sends the signal of a parent's death with the rights of the parent, here those of root without any."""
+    command = [sys.executable, "-c", CELL]
+    with subprocess.Popen(command, cwd=layout.ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as grader:
+        assert grader.stdout is not None
+        assert grader.stdout.readline() == b"up\n"
+        below = {os.pidfd_open(pid): procfs.name(pid) for pid in procfs.measure(grader.pid).pids if pid != grader.pid}
+        assert "sleep" in below.values()
+        grader.kill()
+    until, left = time.monotonic() + 30.0, dict(below)
+    while left and time.monotonic() < until:
+        ended, _, _ = select.select(left, (), (), until - time.monotonic())
+        left = {descriptor: name for descriptor, name in left.items() if descriptor not in ended}
+    for descriptor in left:
+        signal.pidfd_send_signal(descriptor, signal.SIGKILL)
+    for descriptor in below:
+        os.close(descriptor)
+    assert not left.values()
