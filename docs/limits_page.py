@@ -94,7 +94,7 @@ def rows() -> list[tuple[str, str, str, str]]:
         ("what a build installs", _tree(limits.INSTALLED), "a look at it before it is copied", INSTALLED),
         ("kinds of files in it", "files, folders, links inside", "a look at it before it is copied", INSTALLED),
         ("sources of messages that are kept", _tree(limits.SOURCES), "who keeps them", INSTALLED),
-        (f"the cache `{CACHE}`", _mib(LIMIT), "its eviction", "test_cache"),
+        (f"the cache `{CACHE}`", f"{_mib(LIMIT)}, and what is in use", "its eviction", "test_cache"),
         (
             "a message of a program in lockstep",
             f"{MAX_LINE // 1024} KiB, and one reading more",
@@ -102,6 +102,12 @@ def rows() -> list[tuple[str, str, str, str]]:
             "test_stepper",
         ),
         ("what a launch says of its end", f"{MAX_STATUS} bytes", "the worker", "test_launch_status"),
+        (
+            "a path in it; all of them",
+            f"{limits.INSTALLED.path} bytes; {_mib(limits.INSTALLED.paths)}",
+            "a look at it before it is copied",
+            "test_bundle_worker",
+        ),
         ("a message of a worker", _mib(limits.MESSAGE), "who started it", WALLS),
         ("files of a result", _tree(limits.RESULT_FILES), "who started the worker", WALLS),
         (

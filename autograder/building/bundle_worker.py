@@ -14,10 +14,10 @@ from autograder.building.keeper import refused
 from autograder.exceptions import StudentError
 from autograder.ros import activate
 from autograder.run.sandbox.launcher import restore_sigint
-from autograder.run.sandbox.limits import INSTALLED, SOURCES
+from autograder.run.sandbox.limits import SOURCES
 from autograder.run.sandbox.parcel import receive_tree, send_message, send_tree, write_received
-from autograder.run.sandbox.trees import read_tree
 from autograder.run.workspace import Workspace
+from autograder.submission.reading import reading
 
 
 def main() -> None:
@@ -30,12 +30,13 @@ def main() -> None:
         workspace = Workspace(scratch / "ws", ros, scratch / "home")
         write_received(receive_tree(line, SOURCES), workspace.root / "src")
         try:
-            build_alone(workspace, scratch / "made")
+            with reading("What your interface packages install"):
+                built = build_alone(workspace)
         except StudentError as error:
             send_message(line, refused(error))
         else:
             send_message(line, {})
-            send_tree(line, read_tree(scratch / "made", INSTALLED))
+            send_tree(line, built)
 
 
 if __name__ == "__main__":

@@ -43,13 +43,13 @@ endif()
 
 
 def write_overlay(prefixes: tuple[Path, ...], overlay: Path) -> Path:
-    """Write the overlay for the ROS in `prefixes` to the folder `overlay`; return it."""
+    """Write the overlay for the ROS in `prefixes` to the new folder `overlay`; return it."""
     for name in (*LEFT_OUT, *COMPILED):
         real = next((folder for p in prefixes if (folder := p / "share" / name / "cmake").is_dir()), None)
         if real is None:
             continue
         folder = overlay / "share" / name / "cmake"
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(parents=True)
         config = _CONFIG.format(name=name, real=real)
         if name in LEFT_OUT:
             config += _LEAVE_OUT.format(name=name)

@@ -15,7 +15,7 @@ from autograder.run.lockstep.failures import tail
 from autograder.run.sandbox import Ending, Mount
 from autograder.run.sandbox.launcher import launch
 from autograder.run.sandbox.limits import BUILD, INSTALLED
-from autograder.run.sandbox.trees import TreeError, survey
+from autograder.run.sandbox.trees import Entry, TreeError, read_tree, survey
 from autograder.run.workspace import Workspace
 
 HOST = Path(__file__).with_name("colcon_host.py")
@@ -43,19 +43,10 @@ def colcon_build(workspace: Workspace, *choice: str) -> None:
         StudentError: it did not build, or what it left is not contained; the detail holds the end of the output. If
             a limit ended the build, it is a StoppedBuildError.
     """
-    plain = workspace.sandbox(BUILD)
-    faster = cmake_overlay.write_overlay(workspace.ros.prefixes, workspace.scratch / "cmake-overlay")
-    environment = {
-        **plain.environment,
-        "CMAKE_PREFIX_PATH": os.pathsep.join([str(faster), plain.environment["CMAKE_PREFIX_PATH"]]),
-        "COLCON_HOME": str(workspace.scratch),
-        "MAKEFLAGS": f"-j{min(3, (os.cpu_count() or 1) + 1)}",
-    }
-    mounts = (*plain.mounts, Mount(HOST), Mount(workspace.root, writable=True))
-    spec = replace(plain, workdir=workspace.root, mounts=mounts, environment=environment, network=False)
-    with launch(colcon_command(workspace, "build", *choice), spec, profile="colcon") as process:
-        process.wait(BUILD.wall_seconds + 10)
-        output, ending, status = process.output, process.ending, process.returncode
+    with workspace.apart() as folder:
+        overlay = cmake_overlay.write_overlay(workspace.ros.prefixes, folder / "cmake-overlay")
+        output, ending, status = _run(workspace, overlay, choice)
+        output = output.replace(str(folder), "~")
     if ending is not Ending.EXITED or status != 0:
         # Two gradings of one submission differ in the place of their workspace. Students know it as ws.
         output = output.replace(str(workspace.root), "ws").replace(str(workspace.scratch), "~")
@@ -64,26 +55,47 @@ def colcon_build(workspace: Workspace, *choice: str) -> None:
     require_contained(workspace.install)
 
 
+def _run(workspace: Workspace, overlay: Path, choice: tuple[str, ...]) -> tuple[str, Ending | None, int | None]:
+    plain = workspace.sandbox(BUILD)
+    environment = {
+        **plain.environment,
+        "CMAKE_PREFIX_PATH": os.pathsep.join([str(overlay), plain.environment["CMAKE_PREFIX_PATH"]]),
+        "COLCON_HOME": str(workspace.scratch),
+        "MAKEFLAGS": f"-j{min(3, (os.cpu_count() or 1) + 1)}",
+    }
+    mounts = (*plain.mounts, Mount(HOST), Mount(workspace.root, writable=True), Mount(overlay))
+    spec = replace(plain, workdir=workspace.root, mounts=mounts, environment=environment, network=False)
+    with launch(colcon_command(workspace, "build", *choice), spec, profile="colcon") as process:
+        process.wait(BUILD.wall_seconds + 10)
+        return process.output, process.ending, process.returncode
+
+
 def require_contained(install: Path) -> None:
     """Raise a StudentError if an install space is too large, or holds what is no file, folder or link inside it.
 
     It is mounted for nodes, and a mount would follow a link. It is copied, and a copy fills the holes of a file.
     """
     if install.is_symlink():
-        found = f"{install.name}, which leads out of the install space"
-    else:
-        found = _refused(install) if install.exists() else ""
-    if found:
-        sentence = f"The build left {found}: setup.py and CMakeLists.txt must install plain files of the package alone."
-        raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
+        raise _left(f"{install.name}, which leads out of the install space")
+    if install.exists():
+        try:
+            survey(install, INSTALLED)
+        except TreeError as error:
+            raise _left(str(error)) from None
 
 
-def _refused(install: Path) -> str:
+def read_installed(install: Path) -> dict[Entry, bytes]:
+    """Read an install space, or raise a StudentError as `require_contained` does, or where it cannot be read."""
+    require_contained(install)
     try:
-        survey(install, INSTALLED)
+        return read_tree(install, INSTALLED) if install.exists() else {}
     except TreeError as error:
-        return str(error)
-    return ""
+        raise _left(str(error)) from None
+
+
+def _left(found: str) -> StudentError:
+    sentence = f"The build left {found}: setup.py and CMakeLists.txt must install plain files of the package alone."
+    return StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
 
 
 def _build_failure(output: str, ending: Ending | None) -> str:

@@ -15,13 +15,14 @@ from functools import partial
 from pathlib import Path
 
 from autograder.building import keeper
-from autograder.building.colcon import colcon_build
+from autograder.building.colcon import colcon_build, read_installed, require_contained
 from autograder.building.interfaces import Cache
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.run.sandbox import line
-from autograder.run.sandbox.limits import SOURCES
-from autograder.run.sandbox.trees import TreeError, read_tree
+from autograder.run.sandbox.limits import MIB, SOURCES
+from autograder.run.sandbox.parcel import write_received
+from autograder.run.sandbox.trees import Entry, TreeError, read_tree
 from autograder.run.workspace import Workspace
 from autograder.submission.packages import Package
 
@@ -41,52 +42,69 @@ def interface_bundle(found: Mapping[str, Package], wanted: tuple[str, ...]) -> d
 
 
 def install_bundle(bundle: dict[str, Path], workspace: Workspace) -> None:
-    """Put a bundle's built packages into a workspace's install space."""
-    sources, entry = workspace.scratch / "bundle-sources", workspace.scratch / "bundle"
-    for folder in (sources, entry):
-        shutil.rmtree(folder, ignore_errors=True)  # of a build that failed, and is tried again for another package
-    for name, folder in bundle.items():
-        shutil.copytree(folder, sources / name, symlinks=True)
+    """Put a bundle's built packages into a workspace's install space.
+
+    A build that failed has run programs of the submission, and the space may be what they made of it.
+    """
+    require_contained(workspace.install)
+    tree = _sources(bundle)
+    with workspace.apart() as folder:
+        entry = folder / "bundle"
+        with line.held() as connection:
+            if connection is None:
+                made = Cache.default(keeper.CACHE).get(keeper.key(tree), partial(_make, tree, workspace, folder))
+                shutil.copytree(made, entry, symlinks=True)
+            else:
+                keeper.ask(connection, tree, entry)
+        note = json.loads((entry / NOTE).read_text())
+        for name in bundle:
+            if (workspace.install / name).is_dir():  # for another package that needs it, too
+                continue
+            shutil.copytree(entry / "install" / name, workspace.install / name, symlinks=True)
+            relocate(workspace.install / name, note["install"], str(workspace.install))
+
+
+def _sources(bundle: dict[str, Path]) -> dict[Entry, bytes]:
+    """Read a bundle's sources, a folder for each package."""
+    tree: dict[Entry, bytes] = {}
     try:
-        tree = read_tree(sources, SOURCES)
+        for name, folder in bundle.items():
+            found = read_tree(folder, SOURCES)
+            tree |= {Entry(name, "folder"): b""} | {_below(name, entry): data for entry, data in found.items()}
+        if len(tree) > SOURCES.names or sum(map(len, tree.values())) > SOURCES.size:
+            raise TreeError(f"more than {SOURCES.names} files and folders, or {SOURCES.size // MIB} MiB")
     except TreeError as error:
         sentence = f"The packages {', '.join(bundle)} hold {error}: definitions of messages are small."
         raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence)) from None
-    with line.held() as connection:
-        if connection is None:
-            entry = Cache.default(keeper.CACHE).get(keeper.key(tree), partial(_make, sources, workspace))
-        else:
-            keeper.ask(connection, tree, entry)
-    note = json.loads((entry / NOTE).read_text())
-    for name in bundle:
-        if (workspace.install / name).is_dir():  # for another package that needs it, too
-            continue
-        shutil.copytree(entry / "install" / name, workspace.install / name, symlinks=True)
-        relocate(workspace.install / name, note["install"], str(workspace.install))
+    return tree
 
 
-def _make(sources: Path, workspace: Workspace, entry: Path) -> None:
-    alone = replace(workspace, root=workspace.scratch / "alone")
-    shutil.rmtree(alone.root, ignore_errors=True)
-    shutil.copytree(sources, alone.root / "src")
-    build_alone(alone, entry)
-    shutil.rmtree(alone.root)
+def _below(folder: str, entry: Entry) -> Entry:
+    return replace(entry, path=f"{folder}/{entry.path}")
 
 
-def build_alone(workspace: Workspace, entry: Path) -> None:
-    """Build all packages of a workspace that holds a bundle's sources alone, and copy what they install to `entry`.
+def _make(tree: Mapping[Entry, bytes], workspace: Workspace, folder: Path, entry: Path) -> None:
+    alone = replace(workspace, root=folder / "alone")
+    write_received(tree, alone.root / "src")
+    write_received(build_alone(alone), entry)
+
+
+def build_alone(workspace: Workspace) -> dict[Entry, bytes]:
+    """Build all packages of a workspace that holds a bundle's sources alone; return what they install, and the note.
 
     Raises:
         StudentError: they do not build, or install nothing, or what may not be installed.
     """
     names = sorted(path.name for path in (workspace.root / "src").iterdir())
     colcon_build(workspace, "--packages-select", *names)
+    installed = read_installed(workspace.install)
     for name in names:
-        if not (workspace.install / name).is_dir():
+        if Entry(name, "folder") not in installed:
             sentence = f"colcon built {name} but installed nothing of it: look at its package.xml and CMakeLists.txt."
             raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
-        shutil.copytree(workspace.install / name, entry / "install" / name, symlinks=True)
-    (entry / NOTE).write_text(json.dumps({"install": str(workspace.install)}))
+    note = json.dumps({"install": str(workspace.install)}).encode()
+    kept = {_below("install", entry): data for entry, data in installed.items() if entry.path.split("/")[0] in names}
+    return {Entry(NOTE, "file", size=len(note)): note, Entry("install", "folder"): b"", **kept}
 
 
 def relocate(prefix: Path, old: str, new: str) -> None:

@@ -29,7 +29,7 @@ from autograder.exceptions import GraderError, StudentError
 from autograder.ros import find
 from autograder.run.sandbox import Tier
 from autograder.run.sandbox.cell import ended, in_cell
-from autograder.run.sandbox.limits import BUILD, GRADING_CELL, INSTALLED, RESULT_FILES, SOURCES
+from autograder.run.sandbox.limits import BUILD, GRADING_CELL, KEPT, RESULT_FILES, SOURCES
 from autograder.run.sandbox.parcel import (
     ParcelError,
     receive_message,
@@ -41,7 +41,7 @@ from autograder.run.sandbox.parcel import (
 from autograder.run.sandbox.trees import Entry, read_tree
 
 CACHE = "bundles"
-VERSION = 2  # of the way in which a bundle is built and kept
+VERSION = 3  # of the way in which a bundle is built and kept
 _TICK = 0.25  # s between two looks whether a silent worker still runs
 _MARGIN = 60.0  # s for the start and the end of a worker that builds
 
@@ -89,7 +89,7 @@ def ask(line: Connection, sources: Mapping[Entry, bytes], target: Path) -> None:
         raise _refusal(reply)
     if "failed" in reply:
         raise GraderError(reply["failed"])
-    write_received(receive_tree(line, INSTALLED), target)
+    write_received(receive_tree(line, KEPT), target)
 
 
 def refused(error: StudentError) -> dict[str, Any]:
@@ -106,20 +106,22 @@ def key(sources: Mapping[Entry, bytes]) -> str:
     """Return the key of built packages: all that they are made of, and what makes them."""
     digest = hashlib.sha256(json.dumps([VERSION, identity(find())], sort_keys=True).encode())
     for entry in sorted(sources, key=lambda entry: entry.path):
-        digest.update(json.dumps(astuple(entry)).encode() + sources[entry])
+        head = json.dumps(astuple(entry)).encode()
+        digest.update(b"%d %d " % (len(head), len(sources[entry])) + head + sources[entry])
     return digest.hexdigest()[:40]
 
 
 def _answer(line: Connection, sources: Mapping[Entry, bytes], tier: Tier) -> None:
     try:
-        entry = Cache.default(CACHE).get(key(sources), partial(_make_once, time.time(), sources, tier))
+        with Cache.default(CACHE).use(key(sources), partial(_make_once, time.time(), sources, tier)) as entry:
+            built = read_tree(entry, KEPT)
     except StudentError as error:
         send_message(line, refused(error))
     except GraderError as error:
         send_message(line, {"failed": str(error)})
     else:
         send_message(line, {})
-        send_tree(line, read_tree(entry, INSTALLED))
+        send_tree(line, built)
 
 
 def _make_once(asked: float, sources: Mapping[Entry, bytes], tier: Tier, entry: Path) -> None:
@@ -156,7 +158,7 @@ def _make(sources: Mapping[Entry, bytes], tier: Tier, entry: Path) -> None:
             reply = receive_message(ours)
             if "diagnosis" in reply:
                 raise _refusal(reply)
-            write_received(receive_tree(ours, INSTALLED), entry)
+            write_received(receive_tree(ours, KEPT), entry)
         except (EOFError, OSError, ParcelError, KeyError, ValueError, TypeError) as error:
             process.kill()
             raise GraderError(f"interface packages could not be built: {error!r}\n{ended(process).output}") from None

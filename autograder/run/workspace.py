@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
@@ -39,6 +42,12 @@ class Workspace:
     def prefixes(self) -> tuple[Path, ...]:
         """Return the prefix of each installed package."""
         return tuple(filter(Path.is_dir, sorted(self.install.iterdir()))) if self.install.is_dir() else ()
+
+    @contextmanager
+    def apart(self) -> Iterator[Path]:
+        """Give a new folder beside `scratch` and `root`, which none of its programs has ever been able to write to."""
+        with TemporaryDirectory(prefix="apart-", dir=self.scratch.parent) as folder:
+            yield Path(folder)
 
     def executable(self, package: str, name: str) -> Path:
         """Return the path of an installed executable; a StudentError names what the package installs instead."""

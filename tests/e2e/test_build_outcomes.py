@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,6 +27,28 @@ SETUP = """from setuptools import setup
 setup(name='{name}', version='0.1.0', packages=['{name}'], data_files=[
     ('share/ament_index/resource_index/packages', ['resource/{name}']), ('share/{name}', ['package.xml'])])
 """
+
+
+MESSAGES = """<package format="3">
+  <name>words</name><version>0.1.0</version><description>A package</description>
+  <maintainer email="a@example.com">A</maintainer><license>Apache-2.0</license>
+  <buildtool_depend>ament_cmake</buildtool_depend><member_of_group>rosidl_interface_packages</member_of_group>
+  <export><build_type>ament_cmake</build_type></export>
+</package>
+"""
+
+
+def write_messages(folder: Path, fills: str = "") -> None:
+    """Write a package that installs what `fills` puts into the folder `sys.argv[1]`, and its package.xml."""
+    folder.mkdir(parents=True)
+    python = os.path.realpath("/usr/bin/python3")
+    run = f"{python} ${{CMAKE_CURRENT_SOURCE_DIR}}/fill.py ${{CMAKE_INSTALL_PREFIX}}"
+    (folder / "package.xml").write_text(MESSAGES)
+    (folder / "fill.py").write_text(fills)
+    (folder / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.8)\nproject(words NONE)\ninstall(FILES package.xml DESTINATION share)\n"
+        f'install(CODE "execute_process(COMMAND {run})")\n'
+    )
 
 
 @pytest.fixture
@@ -116,3 +139,38 @@ def test_an_unwritten_package_is_reported_as_unwritten(workspace: Workspace, may
         found = error.diagnosis
     assert found.kind is Kind.UNFINISHED
     assert found.sentence.startswith("src/bad/setup.py is still to be written")
+
+
+TRAPS = """import os
+home = os.environ['HOME']
+for name in ('bundle', 'bundle-sources'):
+    if not os.path.lexists(f'{home}/{name}'):
+        os.symlink(home, f'{home}/{name}')
+for folder, _, names in os.walk(home + '/cmake-overlay'):
+    for name in names:
+        os.unlink(f'{folder}/{name}')
+        os.mkfifo(f'{folder}/{name}')
+raise SystemExit('broken')
+"""
+
+
+def test_a_build_uses_no_folder_that_an_earlier_build_could_write_to(workspace: Workspace) -> None:
+    (workspace.root / "src/bad/setup.py").write_text(TRAPS)
+    seen = build_workspace(workspace, ("bad", "good"), may_fail=True)
+    assert (seen.diagnoses["bad"].kind, seen.diagnoses["good"]) == (Kind.BUILD_FAILED, OK)
+    assert (workspace.scratch / "bundle").is_symlink()
+    assert not list(workspace.scratch.rglob("*.cmake"))
+
+
+def test_nothing_is_installed_through_a_link_that_a_failed_build_left(
+    workspace: Workspace, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    (tmp_path / "out").mkdir()
+    moved = "import os, shutil\nshutil.rmtree('../../install', ignore_errors=True)\n"
+    moved += "os.symlink('../out', '../../install')\nraise SystemExit('broken')\n"
+    (workspace.root / "src/bad/setup.py").write_text(moved)
+    write_messages(workspace.root / "src" / "words")
+    with pytest.raises(StudentError, match="install, which leads out of the install space"):
+        build_workspace(workspace, ("bad", "words"), may_fail=True)
+    assert not (tmp_path / "out" / "words").exists()

@@ -76,7 +76,8 @@ from autograder.run.sandbox.trees import Entry
 send_message(line, {"do": "result"})
 answer = json.loads(RESULT)
 answer["student"] = "bob"
-send_tree(line, {Entry("result.json", "file", False, 10**6): json.dumps(answer).encode()})
+data = json.dumps(answer).encode()
+send_tree(line, {Entry("result.json", "file", False, len(data)): data})
 """
 LIE = """
 line.send_bytes(b"[" * 100_000)

@@ -1,8 +1,8 @@
 """A content-addressed cache of built trees: built once, put in place whole, bounded in size.
 
-Each entry is a folder named by its key, beside a lock file that is held by whoever looks for, builds or evicts it. The
-kernel lets go of locks when a process dies, and a half-built folder is never under an entry's name. An entry that was
-asked for within `IN_USE` is not evicted.
+Each entry is a folder named by its key, beside a lock file that is held by who uses, builds or evicts it. The kernel
+lets go of locks when a process dies, and a half-built folder is never under an entry's name. What nobody uses goes as
+soon as the entries have more than the limit, so they exceed it by what is in use at most.
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ from pathlib import Path
 from autograder.run.sandbox.limits import MIB
 
 LIMIT = 512 * MIB
-IN_USE = 3600.0  # s; no grading lasts so long, so a temporary folder of this age was left by a killed build
 _KEY = re.compile(r"[0-9a-f]{16,64}")
 
 
@@ -42,31 +41,43 @@ class Cache:
         return cls(Path(tempfile.mkdtemp(prefix="autograder-cache-")))
 
     def get(self, key: str, make: Callable[[Path], None]) -> Path:
-        """Return the folder of an entry, made first if it is not there; it stays for `IN_USE`.
+        """Return the folder of an entry as `use` does; it stays until another one is made."""
+        with self.use(key, make) as entry:
+            return entry
+
+    @contextlib.contextmanager
+    def use(self, key: str, make: Callable[[Path], None]) -> Iterator[Path]:
+        """Give the folder of an entry, made first if it is not there; it stays for as long as the block lasts.
 
         Args:
             key: 16 to 64 hexadecimal digits.
             make: fills the new folder that it is given. If it raises, there is no entry.
         """
         self.root.mkdir(parents=True, exist_ok=True, mode=0o700)
-        entry = self.root / key
-        with self._alone(key):  # whoever else wants it waits here, and then finds it made
-            made = not entry.is_dir()
-            if made:
-                self._make(entry, make)
+        entry, made = self.root / key, False
+        with self._lock(key) as lock:
+            fcntl.flock(lock, fcntl.LOCK_SH)
+            while not entry.is_dir():
+                fcntl.flock(lock, fcntl.LOCK_EX)  # whoever else wants it waits here, and then finds it made
+                if not entry.is_dir():
+                    self._make(entry, make)
+                    made = True
+                fcntl.flock(lock, fcntl.LOCK_SH)  # it is let go of in between, and somebody may evict it
             os.utime(entry)
-        if made:
-            self._evict()
-        return entry
+            if made:
+                self._evict()
+            yield entry
 
     @contextlib.contextmanager
-    def _alone(self, key: str) -> Iterator[None]:
-        with (self.root / f"{key}.lock").open("w") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
-            yield
+    def _lock(self, key: str) -> Iterator[int]:
+        lock = os.open(self.root / f"{key}.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+        try:
+            yield lock
+        finally:
+            os.close(lock)
 
     def _make(self, entry: Path, make: Callable[[Path], None]) -> None:
-        fresh = Path(tempfile.mkdtemp(prefix=f".{entry.name[:16]}-", dir=self.root))
+        fresh = Path(tempfile.mkdtemp(prefix=f".{entry.name}-", dir=self.root))
         try:
             make(fresh)
             fresh.rename(entry)
@@ -78,25 +89,31 @@ class Cache:
         entries: list[tuple[float, int, Path]] = []
         for folder in self.root.iterdir():
             with contextlib.suppress(FileNotFoundError):
-                if folder.name.startswith(".") and not _in_use(folder):
-                    shutil.rmtree(folder, ignore_errors=True)
+                if folder.name.startswith("."):
+                    self._remove(folder, folder.name[1:].partition("-")[0])
                 elif _KEY.fullmatch(folder.name):
                     entries.append((folder.stat().st_mtime, _size(folder), folder))
         total = sum(size for _, size, _ in entries)
         for _, size, folder in sorted(entries):
             if total <= self._limit:
                 return
-            with self._alone(folder.name), contextlib.suppress(FileNotFoundError):
-                if not _in_use(folder):
-                    # Renamed first: a removal that is cut short leaves no half an entry.
-                    doomed = folder.with_name(f".{folder.name[:16]}-{os.getpid()}-{time.monotonic_ns()}")
-                    folder.rename(doomed)
-                    shutil.rmtree(doomed, ignore_errors=True)
-                    total -= size
+            if self._remove(folder, folder.name):
+                total -= size
 
-
-def _in_use(folder: Path) -> bool:
-    return time.time() - folder.stat().st_mtime < IN_USE
+    def _remove(self, folder: Path, key: str) -> bool:
+        """Remove a folder unless somebody uses or makes what has this key; return whether it is gone."""
+        with self._lock(key) as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                # Renamed first: a removal that is cut short leaves no half an entry.
+                doomed = folder.with_name(f".{key}-{os.getpid()}-{time.monotonic_ns()}")
+                folder.rename(doomed)
+            except FileNotFoundError:
+                return True
+            except BlockingIOError:
+                return False
+            shutil.rmtree(doomed, ignore_errors=True)
+            return True
 
 
 def _xdg() -> Path:

@@ -39,6 +39,8 @@ class TreeLimits:
     names: int = 5000  # files, folders and links
     size: int = 64 * MIB  # apparent bytes in all: holes count
     depth: int = 32  # folders in each other
+    path: int = 1024  # bytes of a name with the folders that it is in
+    paths: int = 1 * MIB  # bytes of all of these
 
 
 # The harness bounds each wait for a node; the wall time is for a node that nothing waits for.
@@ -70,6 +72,8 @@ INOTIFY_INSTANCES = 16  # of a whole cell; the kernel gives a user of the machin
 INOTIFY_WATCHES = 4096  # of a whole cell
 SIGNALS = 1024  # queued to each sandbox; the kernel counts them for the machine's user, too
 INSTALLED = TreeLimits()  # an install space after a build, which is copied for each grading, and kept
+# The same with what is noted of it, on its way from who built it to who keeps it and to who asked.
+KEPT = TreeLimits(names=5002, size=65 * MIB, depth=33, path=1088, paths=2 * MIB)
 SOURCES = TreeLimits(names=2000, size=16 * MIB)  # the interface packages of a submission
 RESULT_FILES = TreeLimits(names=200, depth=1)  # what a worker leaves: the result, its notebook, the pictures
-MESSAGE = 4 * MIB  # bytes of one message from a worker to who started it
+MESSAGE = 4 * MIB  # bytes of one message from a worker to who started it, but for a list of files

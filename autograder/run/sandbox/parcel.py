@@ -17,6 +17,8 @@ from typing import Any
 from autograder.run.sandbox.limits import MESSAGE, TreeLimits
 from autograder.run.sandbox.trees import Entry, TreeError, survey
 
+_FRESH = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
+
 
 class ParcelError(Exception):
     """A message is larger than it may be, or is none of those that are understood."""
@@ -55,43 +57,63 @@ def receive_tree(line: Connection, limits: TreeLimits) -> dict[Entry, bytes]:
     """Receive a tree: what is in each file, and where each link leads.
 
     Raises:
-        ParcelError: it breaks the limits, or has a path that leads out of it.
+        ParcelError: it breaks the limits, has a path that leads out of it, or is not what its list says.
         EOFError: the sender is gone.
     """
     try:
-        listed = json.loads(_receive(line, MESSAGE))
+        # JSON writes a byte of a path in six at most.
+        listed = json.loads(_receive(line, max(MESSAGE, 6 * limits.paths + 64 * limits.names)))
         entries = [Entry(str(p), str(kind), bool(x), int(size)) for p, kind, x, size in listed]
-    except (ValueError, TypeError, RecursionError):
+    except (ValueError, TypeError, OverflowError, RecursionError):
         raise ParcelError("a list of files is not as it has to be") from None
     if len(entries) > limits.names or sum(entry.size for entry in entries) > limits.size:
         raise ParcelError(f"a tree of {len(entries)} files is too large")
-    if len({entry.path for entry in entries}) < len(entries) or not all(map(_is_plain, entries)):
-        raise ParcelError("a tree has paths that lead out of it")
-    return {entry: b"" if entry.kind == "folder" else _receive(line, max(entry.size, 4096)) for entry in entries}
+    folders = {""}
+    for entry in entries:
+        if entry.path in folders or not _is_plain(entry, limits) or entry.path.rpartition("/")[0] not in folders:
+            raise ParcelError("a tree has paths that lead out of it")
+        if entry.kind == "folder":
+            folders.add(entry.path)
+    if len({entry.path for entry in entries}) < len(entries):
+        raise ParcelError("a tree has two files of one name")
+    return {entry: b"" if entry.kind == "folder" else _receive_file(line, entry.size) for entry in entries}
 
 
 def write_received(tree: Mapping[Entry, bytes], root: Path) -> None:
-    """Write a tree that was received below a new folder. Links come last, so that nothing is written through one."""
+    """Write a tree that was received to a new or empty folder; nothing in it is overwritten, and no link followed."""
     root.mkdir(parents=True, exist_ok=True)
     for entry in (entry for entry in tree if entry.kind != "link"):
         path = root / entry.path
         if entry.kind == "folder":
-            path.mkdir(exist_ok=True)
-        else:
-            path.write_bytes(tree[entry])
-            path.chmod(0o755 if entry.executable else 0o644)
-    for entry in (entry for entry in tree if entry.kind == "link"):
+            path.mkdir()
+            continue
+        with os.fdopen(os.open(path, _FRESH, 0o600), "wb") as file:
+            file.write(tree[entry])
+            os.fchmod(file.fileno(), 0o755 if entry.executable else 0o644)
+    for entry in (entry for entry in tree if entry.kind == "link"):  # last, so that nothing is written through one
         (root / entry.path).symlink_to(os.fsdecode(tree[entry]))
+    deepest = max((entry.path.count("/") for entry in tree), default=0)
     try:
-        survey(root, TreeLimits(names=len(tree) + 1, size=sum(map(len, tree.values())) + 1))
+        survey(root, TreeLimits(names=len(tree), size=sum(map(len, tree.values())), depth=deepest + 1))
     except TreeError as error:
         raise ParcelError(f"a tree holds {error}") from None
 
 
-def _is_plain(entry: Entry) -> bool:
+def _is_plain(entry: Entry, limits: TreeLimits) -> bool:
     parts = entry.path.split("/")
-    known = entry.kind in ("file", "folder", "link") and entry.size >= 0
-    return known and "\0" not in entry.path and not {"", ".", ".."}.intersection(parts)
+    try:
+        is_short = len(os.fsencode(entry.path)) <= limits.path and len(parts) <= limits.depth + 1
+    except UnicodeEncodeError:  # no name of a file
+        return False
+    known = entry.kind in ("file", "folder", "link") and entry.size >= 0 and "\0" not in entry.path
+    return known and is_short and not {"", ".", ".."}.intersection(parts)
+
+
+def _receive_file(line: Connection, size: int) -> bytes:
+    data = _receive(line, size)
+    if len(data) != size:
+        raise ParcelError(f"a file of {size} bytes has {len(data)}")
+    return data
 
 
 def _receive(line: Connection, most: int) -> bytes:

@@ -9,7 +9,7 @@ import os
 import stat
 from collections.abc import Callable, Container, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from autograder.run.sandbox.limits import MIB, TreeLimits
@@ -40,7 +40,7 @@ def survey(root: Path, limits: TreeLimits) -> tuple[Entry, ...]:
         TreeError: it is larger than `limits`, nested deeper, or holds a device, a FIFO, a socket, or a link that leads
             out of it or goes round in circles.
     """
-    found, total = [], 0
+    found, total, text = [], 0, 0
     for entry in _walk(root, "", limits.depth):
         found.append(entry)
         total += entry.size
@@ -48,20 +48,42 @@ def survey(root: Path, limits: TreeLimits) -> tuple[Entry, ...]:
             raise TreeError(f"more than {limits.names} files and folders")
         if total > limits.size:
             raise TreeError(f"files of more than {limits.size // MIB} MiB in all, holes in them counted")
+        length = len(os.fsencode(entry.path))
+        text += length
+        if length > limits.path or text > limits.paths:
+            most = f"{limits.path} bytes" if length > limits.path else f"{limits.paths} bytes with all others"
+            raise TreeError(f"{root.name}/{entry.path[:200]}, whose path has more than {most}")
         if entry.kind == "link" and not _leads_inside(root, root / entry.path):
             raise TreeError(f"{root.name}/{entry.path[:200]}, which leads out of the install space")
     return tuple(found)
 
 
 def read_tree(root: Path, limits: TreeLimits) -> dict[Entry, bytes]:
-    """Read all of a tree: what is in each file, and where each link leads. Raises TreeError as `survey` does."""
-    return {entry: _read(root / entry.path, entry) for entry in survey(root, limits)}
+    """Read all of a tree: what is in each file, and where each link leads, which is relative to its folder.
+
+    Raises:
+        TreeError: as `survey` does, or it holds what cannot be read.
+    """
+    try:
+        read = ((entry, _read(root / entry.path, entry)) for entry in survey(root, limits))
+        return {replace(entry, size=len(data)): data for entry, data in read}
+    except OSError as error:
+        name = f"{root.name}/{os.path.relpath(error.filename or root, root)[:200]}"
+        raise TreeError(f"{name}, which cannot be read ({error.strerror})") from None
 
 
 def _read(path: Path, entry: Entry) -> bytes:
     if entry.kind == "file":
         return _read_file(path, entry.size)
-    return os.fsencode(path.readlink()) if entry.kind == "link" else b""
+    return _relative(path) if entry.kind == "link" else b""
+
+
+def _relative(link: Path) -> bytes:
+    """Return where a link leads, from its own folder: an absolute one would lead elsewhere in a copy of the tree."""
+    target = link.readlink()
+    if target.is_absolute():
+        target = Path(os.path.relpath(os.path.realpath(target), os.path.realpath(link.parent)))
+    return os.fsencode(target)
 
 
 def _walk(root: Path, below: str, depth: int) -> Iterator[Entry]:
@@ -72,7 +94,10 @@ def _walk(root: Path, below: str, depth: int) -> Iterator[Entry]:
         raise TreeError(f"{root.name}/{below[:200]}, which cannot be read ({error.strerror})") from None
     for name in listed:
         path = f"{below}/{name.name}" if below else name.name
-        info = name.stat(follow_symlinks=False)
+        try:
+            info = name.stat(follow_symlinks=False)
+        except OSError as error:
+            raise TreeError(f"{root.name}/{path[:200]}, which cannot be read ({error.strerror})") from None
         if stat.S_ISLNK(info.st_mode):
             yield Entry(path, "link")
         elif stat.S_ISREG(info.st_mode):

@@ -6,12 +6,11 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
-from autograder.building.interfaces.cache import IN_USE, Cache
+from autograder.building.interfaces.cache import Cache
 
 A, B, C = "a" * 40, "b" * 40, "c" * 40
 
@@ -110,13 +109,19 @@ def test_the_entry_unused_for_longest_goes_first(tmp_path: Path) -> None:
     assert [(tmp_path / key).is_dir() for key in (A, B, C)] == [True, False, True]
 
 
-def test_a_recently_used_entry_is_not_evicted(tmp_path: Path) -> None:
+def test_the_entries_have_the_limit_however_many_are_made_at_once(tmp_path: Path) -> None:
+    cache = Cache(tmp_path, limit=2500)
+    for number in range(20):
+        cache.get(f"{number:040x}", fill)
+    assert len(list(tmp_path.rglob("file"))) == 2
+
+
+def test_an_entry_that_is_in_use_is_not_evicted_and_one_that_was_is(tmp_path: Path) -> None:
     cache = Cache(tmp_path, limit=1)
-    os.utime(cache.get(A, fill), (1, 1))
-    cache.get(A, fill)  # asked for again
-    cache.get(B, fill)
-    assert (tmp_path / A / "file").is_file()
-    os.utime(tmp_path / A, (1, time.time() - IN_USE - 1))
+    with cache.use(A, fill) as entry, cache.use(A, fill) as again:
+        cache.get(B, fill)
+        assert (entry / "file").is_file()
+        assert again == entry
     cache.get(C, fill)
     assert not (tmp_path / A).exists()
 
