@@ -132,7 +132,6 @@ INNER_NAMES = {
         "normalize_remap_rule normalize_remap_rules satisfies_version to_parameters_list"
     ),
     "launch_testing.actions": "PyTest",
-    "launch_testing.launch_test": "add_arguments parse_arguments",
     "launch_testing.loader": (
         "LoadTestsFromPythonModule PostShutdownTestLoader PreShutdownTestLoader slim_formatwarning"
     ),

@@ -1,4 +1,4 @@
-"""The command `launch_test FILE`: of the real `launch_testing` if there is one, else of its stand-in."""
+"""The command `launch_test FILE` of the real `launch_testing`; the stand-in has none, and its error says so."""
 
 from __future__ import annotations
 
@@ -15,4 +15,8 @@ def main() -> None:
         activate()
     except RosError as error:
         sys.exit(str(error))
-    importlib.import_module("launch_testing.launch_test").main()
+    try:
+        command = importlib.import_module("launch_testing.launch_test")
+    except ImportError as error:
+        sys.exit(str(error))
+    command.main()

@@ -74,7 +74,9 @@ SUBMODULES = {
 NOT_COVERED = {
     "launch_ros": "event_handlers events ros_adapters",
     "launch_ros.actions": "lifecycle_node lifecycle_transition ros_timer",
-    "launch_testing": "decorator junitxml legacy parametrize parse_arguments pytest ready_to_test_action_timeout",
+    "launch_testing": (
+        "decorator junitxml launch_test legacy parametrize parse_arguments pytest ready_to_test_action_timeout"
+    ),
     "launch_testing.actions": "gtest pytest test",
     "launch_testing.tools": "output process text",
     "launch_pytest": "fixture",

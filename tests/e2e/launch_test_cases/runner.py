@@ -18,7 +18,6 @@ from collections.abc import Iterator
 from importlib.metadata import distributions
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 import yaml
 
@@ -29,20 +28,7 @@ TOGETHER = 4
 CASES = {path.stem: path.read_text() for path in sorted((HERE / "cases").glob("*.py"))}
 CASES = {"broken": "def generate_test_description(:\n", **CASES}
 CALLS = (
-    *(f"launch_test test_{name}.py" for name in CASES),
-    "launch_test test_parametrized.py more:=much",
-    "launch_test test_parametrized.py more:=much more:=most",
-    "launch_test test_parametrized.py more",
-    "launch_test --show-args test_parametrized.py",
-    "launch_test -s test_good.py",
-    "launch_test --junit-xml report.xml test_parametrized.py",
-    "launch_test --junit-xml report.xml test_good.py --package-name my_package",
-    "launch_test --junit-xml report.xml test_early.py",
-    "launch_test --junit-xml report.xml test_skipped.py",
-    "launch_test test_nothing.py",
-    "launch_test",
-    "launch_test test_listener.launch.py",
-    *(f"pytest test_{name}.py" for name in CASES if name != "failing"),
+    *(f"pytest test_{name}.py" for name in CASES),
     "pytest good_launch_test.py",
     "pytest test_listener.launch.py",
     "pytest test_parametrized.py --launch-args more:=much",
@@ -68,7 +54,6 @@ CHANGING = (
     (re.compile(r"^([=-])\1{9,}$", re.MULTILINE), r"\1\1\1"),
     (re.compile(r"Unknown child process pid .*\n"), ""),
 )
-UNSTEADY = ("time", "message")  # of a report
 # What the launch logs, in another thread than the tests'; a command may have several lines.
 LOG = re.compile(r"^\[\w+\] \[.*process has died(?s:.*?)'\]\.\n|^(\[\w+\] \[|\[[^\]]+-\d+\] ).*\n", re.MULTILINE)
 
@@ -93,17 +78,9 @@ def record(call: str, folder: Path) -> dict[str, Any]:
 
 
 def _run(words: list[str]) -> int:
-    program, *arguments = words
-    if program == "pytest":
-        import pytest
+    import pytest
 
-        return int(pytest.main([*PYTEST, *arguments]))
-    sys.argv = words
-    try:
-        importlib.import_module("launch_testing.launch_test").main()
-    except SystemExit as ended:
-        return int(ended.code or 0)
-    return 0
+    return int(pytest.main([*PYTEST, *words[1:]]))
 
 
 def finished(started: dict[str, Any]) -> dict[str, Any] | None:
@@ -118,20 +95,12 @@ def finished(started: dict[str, Any]) -> dict[str, Any] | None:
         for pattern, steady in CHANGING:
             text = pattern.sub(steady, text)
         found[stream] = text
-    if (report := folder / "report.xml").is_file():
-        found["report"] = [
-            {
-                "tag": element.tag,
-                **{name: text for name, text in element.attrib.items() if name not in UNSTEADY},
-            }
-            for element in ElementTree.parse(report).iter()
-        ]
     return found
 
 
 def records() -> Iterator[dict[str, Any]]:
     """Run all calls, some at a time; yield their records in order."""
-    for name in ("pytest", "launch_testing.launch_test", "launch_testing.asserts", "launch_testing.event_handlers"):
+    for name in ("pytest", "launch_testing.test_runner", "launch_testing.asserts", "launch_testing.event_handlers"):
         importlib.import_module(name)
     with tempfile.TemporaryDirectory() as scratch:
         os.environ["ROS_LOG_DIR"] = f"{scratch}/log"

@@ -1,4 +1,4 @@
-"""The stand-in for launch_testing runs launch tests as the real package does, by `launch_test` and by pytest.
+"""The stand-in for launch_testing runs launch tests as the real package does, by pytest.
 
 `records.yaml` was written with the real packages by `runner.py`. With them installed, this test compares them, too.
 """

@@ -3,9 +3,9 @@
 It is imported only where the real package is not; names and semantics are those of `launch_testing` in ROS 2 Jazzy
 (https://docs.ros.org/en/jazzy/p/launch_testing/), the code is the course's own. A file has a function
 ``generate_test_description`` that returns a launch description with a `ReadyToTest` in it, and test cases of
-`unittest`. They run beside the launch, or with `post_shutdown_test` after its end. The command ``launch_test FILE``
-runs it, and pytest if the function is marked ``pytest.mark.launch_test``. What is not covered raises an error that
-names it. For the real package run `make real-launch`, or source an installation of ROS 2 Jazzy.
+`unittest`. They run beside the launch, or with `post_shutdown_test` after its end. Pytest runs the file if the
+function is marked ``pytest.mark.launch_test``. What is not covered, such as the command ``launch_test``, raises an
+error that names it. For the real package run `make real-launch`, or source an installation of ROS 2 Jazzy.
 """
 
 from __future__ import annotations

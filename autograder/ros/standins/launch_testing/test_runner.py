@@ -127,7 +127,7 @@ class _Launch:
 
 
 def _run_tests(suite: unittest.TestSuite) -> TestResult:
-    return cast(TestResult, unittest.TextTestRunner(verbosity=2, resultclass=TestResult).run(suite))
+    return cast(TestResult, unittest.TextTestRunner(verbosity=2, resultclass=TestResult).run(suite))  # type: ignore[arg-type]
 
 
 __getattr__ = guard(__name__)
