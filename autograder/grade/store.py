@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from autograder.grade.job import Job
+from autograder.plain_text import visible
 from autograder.result.model import UNFINISHED, Result, write_json
 
 RESULT = "result.json"
@@ -29,12 +30,17 @@ def write_result(job: Job, result: Result, files: Mapping[str, bytes]) -> Result
     folder.mkdir(parents=True)
     try:
         for name in files.keys() - {RESULT}:
-            (folder / name).write_bytes(files[name])
+            (folder / name).write_bytes(_shown(files[name]) if name == LOG else files[name])
         write_json(folder / RESULT, result.to_json())
         _replace(folder, out)
     finally:
         remove_unfinished(out)
     return result
+
+
+def _shown(log: bytes) -> bytes:
+    """Return a log for a terminal, where an instructor reads it: it quotes names and texts of a student's."""
+    return visible(log.decode("utf-8", "replace")).encode("utf-8", "backslashreplace")
 
 
 def remove_unfinished(out: Path) -> None:

@@ -12,6 +12,7 @@ import pytest
 
 from autograder.grade import grade_submission, pipeline
 from autograder.grade.job import Job
+from autograder.grade.store import LOG, write_result
 from autograder.result.model import Artifact, CheckResult, Result, Status
 from autograder.run.sandbox import Tier
 from autograder.run.sandbox.cell import CellReport
@@ -99,6 +100,13 @@ def test_a_grader_that_fails_in_the_second_grading_gives_no_mark_and_keeps_its_l
     result = grade(tmp_path, Worker(lost, None, None))
     assert result.status is Status.NOT_GRADED
     assert "Traceback: of the grader" in (tmp_path / "out" / "grader.log").read_text()
+
+
+def test_a_log_holds_nothing_that_steers_a_terminal(tmp_path: Path, lost: Result) -> None:
+    job = Job(tmp_path, lost.assignment, "alice", 1, tmp_path / "out")
+    write_result(job, lost, {LOG: b"Traceback:\n\tin \x1b]0;title\x07 \xe2\x80\xae \x9b2J \xff\n"})
+    written = (tmp_path / "out" / LOG).read_text(encoding="utf-8")
+    assert written == "Traceback:\n\tin \\x1b]0;title\\x07 \\u202e \ufffd2J \ufffd\n"
 
 
 class SlowWorker(Worker):
