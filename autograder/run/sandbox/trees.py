@@ -5,10 +5,11 @@ Sizes are apparent ones. A sparse file costs nothing where it is written, and al
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from collections.abc import Callable, Container, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from autograder.run.sandbox.limits import MIB, TreeLimits
 
 Ignored = Callable[[Sequence[str]], Container[str]]
 _CHUNK = 1 << 20
+_CHANGED = (errno.ENOENT, errno.ENOTDIR, errno.ELOOP, errno.ENXIO)  # something else than what was seen is there now
 _UNFOLLOWED = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
 
 
@@ -142,8 +144,9 @@ def copy_unread(source: Path, target: Path, limits: TreeLimits, ignored: Ignored
     The copy is refused for the same reasons as the original. Links stay links, devices and pipes become pipes. Of what
     is larger than `limits`, the size is kept and not the content: the reader sees that it is too large. `ignored` says
     which names of a folder are left out. A folder is reached from the one above it, so a path may have any length.
+    What changes meanwhile is left out: no folder of the path `source` was a link, and none may have become one.
     """
-    with _opened(source.parent) as old, _opened(target.parent) as new:
+    with _unless_changed(), _opened_unfollowed(source.parent) as old, _opened(target.parent) as new:
         _copy(_Pair(old, source.name, new, target.name), _Left(limits), ignored, limits.depth)
 
 
@@ -171,7 +174,7 @@ def _copy(pair: _Pair, left: _Left, ignored: Ignored, depth: int) -> None:
     if stat.S_ISLNK(info.st_mode):
         os.symlink(os.readlink(pair.name, dir_fd=pair.old), pair.copy, dir_fd=pair.new)
     elif stat.S_ISREG(info.st_mode):
-        _copy_file(pair, info, left)
+        _copy_file(pair, left)
     elif stat.S_ISDIR(info.st_mode):
         os.mkdir(pair.copy, 0o755, dir_fd=pair.new)
         with _opened(pair.name, pair.old) as old, _opened(pair.copy, pair.new) as new:
@@ -179,17 +182,30 @@ def _copy(pair: _Pair, left: _Left, ignored: Ignored, depth: int) -> None:
             skipped = ignored(names)
             for name in names:
                 if name not in skipped and left.names > 0:
-                    _copy(_Pair(old, name, new, name), left, ignored, depth - 1)
+                    with _unless_changed():
+                        _copy(_Pair(old, name, new, name), left, ignored, depth - 1)
     else:
         os.mkfifo(pair.copy, dir_fd=pair.new)
 
 
-def _copy_file(pair: _Pair, info: os.stat_result, left: _Left) -> None:
+@contextmanager
+def _unless_changed() -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        if error.errno not in _CHANGED:
+            raise
+
+
+def _copy_file(pair: _Pair, left: _Left) -> None:
     fresh = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
     with (
         os.fdopen(os.open(pair.name, _UNFOLLOWED, dir_fd=pair.old), "rb") as old,
         os.fdopen(os.open(pair.copy, fresh, 0o644, dir_fd=pair.new), "wb") as new,
     ):
+        info = os.fstat(old.fileno())
+        if not stat.S_ISREG(info.st_mode):
+            return
         os.fchmod(new.fileno(), 0o644 | info.st_mode & 0o111)
         if info.st_size > left.size:
             new.truncate(info.st_size)
@@ -200,6 +216,16 @@ def _copy_file(pair: _Pair, info: os.stat_result, left: _Left) -> None:
         while rest and (chunk := old.read(min(rest, _CHUNK))):
             new.write(chunk)
             rest -= len(chunk)
+
+
+@contextmanager
+def _opened_unfollowed(folder: Path) -> Iterator[int]:
+    """Open a folder by an absolute path, no part of which is followed if it is a link."""
+    with ExitStack() as stack:
+        descriptor = stack.enter_context(_opened(folder.anchor or "."))
+        for part in folder.relative_to(folder.anchor).parts:
+            descriptor = stack.enter_context(_opened(part, descriptor))
+        yield descriptor
 
 
 @contextmanager

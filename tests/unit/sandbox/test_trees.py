@@ -1,0 +1,59 @@
+"""Root's copy of what was handed in holds nothing that a student puts in its place meanwhile."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from autograder.run.sandbox.cell import copy_submission
+
+
+@pytest.fixture
+def submission(tmp_path: Path) -> Path:
+    """Return a submission with a folder `own`, beside a folder `others` with a secret."""
+    (tmp_path / "others").mkdir()
+    (tmp_path / "others" / "secret").write_text("secret")
+    (tmp_path / "home" / "sub" / "own").mkdir(parents=True)
+    (tmp_path / "home" / "sub" / "own" / "mine").write_text("mine")
+    (tmp_path / "home" / "sub" / "zzz").write_text("last")
+    return tmp_path / "home" / "sub"
+
+
+def meanwhile(monkeypatch: pytest.MonkeyPatch, seen: str, change: Callable[[], object]) -> None:
+    """Make a change right after a name of the submission was looked at."""
+    real = os.stat
+
+    def stat(path: str, *arguments: object, **given: object) -> os.stat_result:
+        info: os.stat_result = real(path, *arguments, **given)  # type: ignore[call-overload]
+        if path == seen and "dir_fd" in given:
+            change()
+        return info
+
+    monkeypatch.setattr(os, "stat", stat)
+
+
+@pytest.mark.parametrize("name", ["own", "own/mine"])
+def test_a_link_in_the_place_of_what_was_seen_is_not_followed(
+    submission: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    place = submission / name
+    target = tmp_path / "others" / ("secret" if place.is_file() else "")
+
+    def swap() -> None:
+        place.rename(tmp_path / "away")
+        place.symlink_to(target)
+
+    meanwhile(monkeypatch, place.name, swap)
+    copy_submission(submission, tmp_path / "copy")
+    assert (tmp_path / "copy" / "zzz").read_text() == "last"
+    assert not [path for path in (tmp_path / "copy").rglob("*") if path.is_file() and "secret" in path.read_text()]
+
+
+def test_a_folder_above_that_has_become_a_link_is_not_followed(submission: Path, tmp_path: Path) -> None:
+    (tmp_path / "home").rename(tmp_path / "away")
+    (tmp_path / "home").symlink_to(tmp_path / "away")
+    copy_submission(submission, tmp_path / "copy")
+    assert not (tmp_path / "copy").exists()
