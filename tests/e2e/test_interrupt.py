@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import shutil
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
+from autograder.layout import SOLUTIONS
+
 STUDENTS = ("alice", "bob", "carol")
 
 
-def resume(folder: Path) -> subprocess.Popen[str]:
-    """Begin to grade what is not graded of the class in `folder`, one at a time."""
-    command = [sys.executable, "-u", "-m", "autograder", "grade", "class", "--assignment", "01_package_structure"]
-    return subprocess.Popen(
+SLEEPS = "import time\n\ntime.sleep(10.0)\n"
+
+
+@contextmanager
+def resume(folder: Path) -> Iterator[subprocess.Popen[str]]:
+    """Grade what is not graded of the class in `folder`, one at a time."""
+    command = [sys.executable, "-u", "-m", "autograder", "grade", "class", "--assignment", "02_nodes"]
+    with subprocess.Popen(
         [*command, "-j", "1", "--resume"],
         cwd=folder,
         text=True,
@@ -27,7 +34,11 @@ def resume(folder: Path) -> subprocess.Popen[str]:
         stderr=subprocess.STDOUT,
         # Whoever runs the tests in the background has it ignored.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )
+    ) as process:
+        try:
+            yield process
+        finally:
+            process.kill()  # a test that fails must not wait for it
 
 
 @pytest.mark.promise("Ctrl-C loses nothing")
@@ -37,15 +48,15 @@ def test_ctrl_c_ends_a_class_and_resume_goes_on(tmp_path: Path) -> None:
         package.mkdir(parents=True)
         (package / "package.xml").write_text(f"<package>{student}</package>")
     alice, bob, carol = (tmp_path / "results" / student / "result.json" for student in STUDENTS)
-    # Whoever reads a named pipe waits for its writer: bob has begun, and does not end before Ctrl-C.
-    bob.parent.mkdir(parents=True)
-    os.mkfifo(bob)
+    # Bob's build has begun, and does not end before Ctrl-C.
+    package = tmp_path / "class" / "bob" / "src" / "my_robot_package"
+    shutil.copytree(SOLUTIONS / "my_robot_package", package, dirs_exist_ok=True)
+    (package / "setup.py").write_text(SLEEPS)
 
     with resume(tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline().startswith("[1/3] alice")
         process.send_signal(signal.SIGINT)
-        bob.write_text("no result")
         said = process.stdout.read()
     assert process.returncode == 130
     assert said.endswith("\nStopped. What is graded is in results: the same command with --resume grades the rest.\n")
@@ -96,4 +107,4 @@ def test_a_grading_that_a_signal_ends_forgets_no_mark_that_it_changed(
 
     with resume(folder) as process:
         printed = process.communicate()[0]
-    assert re.findall(r"^(\w+) \(01_package_structure\): 1 -> 0$", printed, re.MULTILINE) == ["alice", "bob"]
+    assert re.findall(r"^(\w+) \(02_nodes\): 1 -> 0$", printed, re.MULTILINE) == ["alice", "bob"]
