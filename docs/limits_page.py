@@ -15,6 +15,7 @@ from autograder.run.patience import HELD_SECONDS
 from autograder.run.sandbox import limits
 from autograder.run.sandbox.limits import MIB, TreeLimits
 from autograder.submission.intake.files import MAX_FILES, MAX_READ_BYTES, MAX_TOTAL_BYTES
+from autograder.submission.intake.notebooks import MAX_CELLS, MAX_VALUES
 
 HEAD = """# Limits by kind
 
@@ -90,6 +91,12 @@ def rows() -> list[tuple[str, str, str, str]]:
             f"{MAX_FILES} files, {_mib(MAX_TOTAL_BYTES)}, {_mib(MAX_READ_BYTES)} unpacked",
             "intake",
             "test_intake",
+        ),
+        (
+            "a submitted notebook",
+            f"{MAX_CELLS:,} cells, {MAX_VALUES:,} commas and brackets",
+            "intake",
+            "test_costs",
         ),
         ("what a build installs", _tree(limits.INSTALLED), "a look at it before it is copied", INSTALLED),
         ("kinds of files in it", "files, folders, links inside", "a look at it before it is copied", INSTALLED),

@@ -166,17 +166,22 @@ def _inflate_in_steps(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
 def _read_tar(opened: Callable[[], IO[bytes]], prefix: PurePosixPath, contents: Contents) -> None:
     """Read a tar: its names first, as the mark of an environment may come last, then what may be the answer."""
     with tarfile.open(fileobj=opened(), mode="r|") as archive:
-        paths = []
+        paths, files = [], []
         for info in archive:
             contents.scan()
             paths.append(inside(info.name))
+            if not info.isdir():
+                files.append(len(paths) - 1)
     left_out = IgnoredPaths(paths)
+    read = [number for number in files if paths[number] not in left_out]
     for first in (True, False):
+        pending = {number for number in read if (reading_rank(paths[number]) == 0) is first}
+        if not pending:
+            continue
         with tarfile.open(fileobj=opened(), mode="r|") as archive:
-            for info in archive:
-                path = inside(info.name)
-                if not info.isdir() and path not in left_out and (reading_rank(path) == 0) is first:
-                    _add([_tar_member(archive, info, path)], prefix, contents)
+            for number, info in enumerate(archive):
+                if number in pending:
+                    _add([_tar_member(archive, info, paths[number])], prefix, contents)
 
 
 def _tar_member(archive: tarfile.TarFile, info: tarfile.TarInfo, path: PurePosixPath) -> Member:

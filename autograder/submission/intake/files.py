@@ -18,7 +18,7 @@ MAX_FILE_BYTES = 16 * 1024 * 1024
 MAX_WRAPPED_BYTES = 64 * 1024 * 1024  # of a notebook whose outputs are dropped, and of an archive in an archive
 MAX_TOTAL_BYTES = 64 * 1024 * 1024
 MAX_READ_BYTES = 256 * 1024 * 1024  # that are decompressed to find the files
-# That decompressing makes, in all archives: one is read three times, its names, then its answers, then the rest.
+# That decompressing makes, in all archives: one is read up to three times, its names, then its answers, then the rest.
 MAX_UNPACKED_BYTES = 4 * MAX_READ_BYTES
 MAX_SCANNED = 100_000  # files and folders that are looked at
 MAX_DEPTH = 16  # parts of a path

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import PurePosixPath
+
+from autograder.submission.intake.files import MAX_DEPTH, unsafe
 
 # What colcon builds, what Python, Jupyter, editors and version control keep, and what systems add to folders.
 IGNORED = frozenset(
@@ -19,6 +22,8 @@ _ENVIRONMENT_PARTS = frozenset(
     {"bin", "lib", "lib64", "include", "share", "etc", "pyvenv.cfg", "conda-meta", "Scripts", "Lib", "Include"}
 )
 _ANSWER_PARTS = ("ws", "src")
+_DEEPEST = MAX_DEPTH + 1  # parts of a path that are looked at: nothing below is read
+MAX_ENVIRONMENTS = 1000
 
 
 def is_ignored(name: str) -> bool:
@@ -31,30 +36,60 @@ def environment_parts(names: Iterable[str]) -> frozenset[str]:
     there = frozenset(names)
     if not there & _ENVIRONMENT_MARKS:
         return frozenset()
-    holds_answer = any(name in _ANSWER_PARTS or name.casefold().endswith(".ipynb") for name in there)
-    return there & _ENVIRONMENT_PARTS if holds_answer else there
+    return there & _ENVIRONMENT_PARTS if any(map(_is_answer, there)) else there
+
+
+def _is_answer(name: str) -> bool:
+    return name in _ANSWER_PARTS or name.casefold().endswith(".ipynb")
+
+
+@dataclass
+class _Folder:
+    """A folder that is, or leads to, one with the mark of an environment."""
+
+    folders: dict[str, _Folder] = field(default_factory=dict)
+    is_marked: bool = False
+    holds_answer: bool = False
 
 
 class IgnoredPaths:
-    """Says of each path of an archive whether it is part of the submission."""
+    """Says of each path of an archive whether it is part of the submission.
+
+    A path is walked once, down to where no answer lies. Raises StudentError if there are more environments than
+    anybody has.
+    """
 
     def __init__(self, paths: Iterable[PurePosixPath]) -> None:
-        marks = [path for path in paths if _ENVIRONMENT_MARKS.intersection(path.parts)]
-        self._folders = {
-            PurePosixPath(*path.parts[:index])
-            for path in marks
-            for index, part in enumerate(path.parts)
-            if part in _ENVIRONMENT_MARKS
-        }
-        entries: dict[PurePosixPath, set[str]] = {folder: set() for folder in self._folders}
-        if self._folders:
-            for path in paths:
-                for folder in self._folders.intersection(path.parents):
-                    entries[folder].add(path.relative_to(folder).parts[0])
-        self._parts = {folder: environment_parts(names) for folder, names in entries.items()}
+        paths = list(paths)
+        self._root, count = _Folder(), 0
+        for path in paths:
+            parts = path.parts[:_DEEPEST]
+            marks = [index for index, part in enumerate(parts) if part in _ENVIRONMENT_MARKS]
+            folder = self._root
+            for index in range(marks[-1] + 1 if marks else 0):
+                if parts[index] in _ENVIRONMENT_MARKS and not folder.is_marked:
+                    folder.is_marked, count = True, count + 1
+                if index < marks[-1]:
+                    folder = folder.folders.setdefault(parts[index], _Folder())
+            if count > MAX_ENVIRONMENTS:
+                raise unsafe(f"it holds more than {MAX_ENVIRONMENTS} environments of Python")
+        for path in paths:
+            for folder, name in self._above(path):
+                folder.holds_answer = folder.holds_answer or _is_answer(name)
 
     def __contains__(self, path: PurePosixPath) -> bool:
         if any(map(is_ignored, path.parts)):
             return True
-        above = self._folders.intersection(path.parents)
-        return any(path.relative_to(folder).parts[0] in self._parts[folder] for folder in above)
+        return any(
+            folder.is_marked and (not folder.holds_answer or name in _ENVIRONMENT_PARTS)
+            for folder, name in self._above(path)
+        )
+
+    def _above(self, path: PurePosixPath) -> Iterator[tuple[_Folder, str]]:
+        """Find the folders that a path goes through, as far as they are known, each with the next name in it."""
+        folder: _Folder | None = self._root
+        for name in path.parts:
+            if folder is None:
+                return
+            yield folder, name
+            folder = folder.folders.get(name)

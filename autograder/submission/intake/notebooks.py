@@ -14,6 +14,10 @@ CELL_TYPES = ("code", "markdown", "raw")
 # Of a notebook whose outputs are dropped: they say how many values a parser makes.
 MAX_STRINGS = 1_000_000
 MAX_STRUCTURE = 8 * 1024 * 1024  # bytes outside of strings
+MAX_VALUES = 2_000_000  # commas and brackets outside of strings: three bytes can take sixty in memory
+MAX_CELLS = 20_000
+MAX_METADATA = 10_000  # characters of what a cell says of itself, as JSON; it is left out where it says more
+_COUNTING = ("nbgrader", "course")
 _ID = re.compile(r"[a-zA-Z0-9_-]{1,64}")
 
 Cell = dict[str, Any]
@@ -34,6 +38,8 @@ def read_cells(data: bytes) -> list[Cell]:
     cells = notebook.get("cells")
     if not isinstance(cells, list):
         raise ValueError("it has no list of cells")
+    if len(cells) > MAX_CELLS:
+        raise ValueError(f"it has more than {MAX_CELLS:,} cells")
     ids: set[str] = set()
     return [_cell(cell, number, ids) for number, cell in enumerate(cells)]
 
@@ -59,9 +65,20 @@ def _is_simple(data: bytes) -> bool:
     return sum(map(len, plain.split(b'"')[::2])) <= MAX_STRUCTURE
 
 
+def _count_values(text: str) -> int:
+    """Count commas and brackets outside of strings, of which there are as many as values at least, but for one."""
+    plain = text.replace(r"\\", "").replace(r"\"", "")
+    if plain.count('"') > 2 * MAX_VALUES:
+        return MAX_VALUES + 1
+    outside = "".join(plain.split('"')[::2])
+    return sum(map(outside.count, ",[{"))
+
+
 def _parsed(data: bytes) -> Cell:
     try:
         text = data.decode(json.detect_encoding(data)).removeprefix("\ufeff")
+        if _count_values(text) > MAX_VALUES:
+            raise ValueError(f"it holds more than {MAX_VALUES:,} values: clear its outputs")
         notebook = json.loads(text)
     except RecursionError:
         raise ValueError("it is nested too deep") from None
@@ -87,7 +104,6 @@ def _cell(cell: object, number: int, ids: set[str]) -> Cell:
         source = "".join(source)
     if not isinstance(source, str):
         raise ValueError(f"the source of cell {number} is not text")
-    metadata = cell.get("metadata")
     id = cell.get("id")
     if not isinstance(id, str) or not _ID.fullmatch(id) or id in ids:
         id = next(name for n in range(number, number + len(ids) + 2) if (name := f"cell-{n}") not in ids)
@@ -95,6 +111,14 @@ def _cell(cell: object, number: int, ids: set[str]) -> Cell:
     return {
         "cell_type": cell["cell_type"],
         "id": id,
-        "metadata": metadata if isinstance(metadata, dict) else {},
+        "metadata": _metadata(cell.get("metadata")),
         "source": source.replace("\r\n", "\n"),
     }
+
+
+def _metadata(found: object) -> dict[str, Any]:
+    """Return what counts of a cell's metadata: other tools' would be kept in memory for nothing."""
+    if not isinstance(found, dict):
+        return {}
+    counts = {name: found[name] for name in _COUNTING if name in found}
+    return counts if len(json.dumps(counts)) <= MAX_METADATA else {}

@@ -5,11 +5,14 @@ from __future__ import annotations
 import bz2
 import io
 import struct
+import sys
 import tarfile
 import time
 import tracemalloc
 import zipfile
+from collections.abc import Callable
 from pathlib import Path, PurePosixPath
+from types import FrameType
 
 import pytest
 
@@ -19,6 +22,8 @@ from autograder.run.sandbox import Tier
 from autograder.submission import intake
 from autograder.submission.intake import SubmittedFile, detect_layout, read_submission
 from autograder.submission.intake import archives as unpacking
+from autograder.submission.intake.ignored import MAX_ENVIRONMENTS, IgnoredPaths
+from autograder.submission.intake.notebooks import MAX_CELLS, MAX_VALUES, read_cells
 
 CHAPTER = "02_nodes"
 MIB = 1024 * 1024
@@ -59,7 +64,7 @@ def test_a_zip_of_another_method_is_unpacked_in_steps(tmp_path: Path) -> None:
 
 def test_all_archives_of_a_submission_have_one_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(unpacking, "MAX_UNPACKED_BYTES", 20 * MIB)
-    for number in range(5):
+    for number in range(8):
         (tmp_path / f"{number}.tar.bz2").write_bytes(tar_of_zeros(3 * MIB))
     with pytest.raises(StudentError, match="hold too much in all"):
         read_submission(tmp_path, CHAPTER)
@@ -92,3 +97,68 @@ def test_a_submission_that_ends_its_reader_does_not_end_the_grading_of_a_class(
     with pytest.raises(StudentError, match="Your submission cannot be read: MemoryError"):
         read_submission(tmp_path, CHAPTER)
     assert apart.read_digests(tmp_path, CHAPTER, Tier.PROCESS) is None
+
+
+def steps_of(work: Callable[[], object]) -> int:
+    """Count the lines of Python that some work takes."""
+    count = 0
+
+    def trace(frame: FrameType, event: str, argument: object) -> Callable[..., object]:
+        nonlocal count
+        count += event == "line"
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        work()
+    finally:
+        sys.settrace(before)
+    return count
+
+
+def test_marks_of_environments_in_each_other_take_steps_in_proportion_to_the_names() -> None:
+    def steps(names: int, depth: int) -> int:
+        deep = "/".join(["conda-meta"] * depth)
+        paths = [PurePosixPath(f"{deep}/{number}") for number in range(names)]
+
+        def look() -> None:
+            left_out = IgnoredPaths(paths)
+            assert all(path in left_out for path in paths)
+
+        look()  # the parts of a path are found once
+        return steps_of(look)
+
+    assert steps(400, 60) < 2.2 * steps(200, 60)
+    assert steps(200, 60) < 1.2 * steps(200, 20)
+
+
+def test_an_archive_of_environments_alone_is_refused() -> None:
+    paths = [PurePosixPath(f"{number}/pyvenv.cfg") for number in range(MAX_ENVIRONMENTS + 1)]
+    with pytest.raises(StudentError, match="more than 1000 environments of Python"):
+        IgnoredPaths(paths)
+
+
+def test_metadata_of_cells_do_not_stay_in_memory() -> None:
+    values = b"[" + b",".join([b"[]"] * (MAX_VALUES // 3)) + b"]"
+    body = b'{"nbformat":4,"nbformat_minor":5,"metadata":{},"cells":[{"cell_type":"raw","source":"","metadata":%b}]}'
+    for metadata in (b'{"a":%b}' % values, b'{"nbgrader":%b}' % values):
+        tracemalloc.start()
+        try:
+            assert [cell["metadata"] for cell in read_cells(body % metadata)] == [{}]
+            assert tracemalloc.get_traced_memory()[0] < MIB
+        finally:
+            tracemalloc.stop()
+
+
+@pytest.mark.parametrize(
+    ("cells", "told"),
+    [
+        (b'{"cell_type":"raw","metadata":{"a":[' + b"[]," * MAX_VALUES + b"1]}}", "more than 2,000,000 values"),
+        (b",".join([b'{"cell_type":"raw"}'] * (MAX_CELLS + 1)), "more than 20,000 cells"),
+    ],
+    ids=["values", "cells"],
+)
+def test_a_notebook_of_more_than_any_notebook_has_is_none(cells: bytes, told: str) -> None:
+    with pytest.raises(ValueError, match=told):
+        read_cells(b'{"nbformat":4,"cells":[%b]}' % cells)
