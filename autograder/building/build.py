@@ -68,7 +68,8 @@ def build(workspace: Workspace, wanted: tuple[str, ...], *, whole: bool = False)
         install_bundle(bundle, workspace)
     if set(wanted) - set(bundle):
         skipped = ["--packages-skip", *bundle] if bundle else []
-        colcon_build(workspace, "--packages-up-to", *wanted, *skipped)
+        folders = [package.folder for package in found.values()]
+        colcon_build(workspace, folders, "--packages-up-to", *wanted, *skipped)
     return Build(True, round(time.monotonic() - started, 2), tuple(sorted(found)))
 
 

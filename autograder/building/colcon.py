@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import glob
 import os
 import sys
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,18 +28,23 @@ class StoppedBuildError(StudentError):
     """A limit ended the build. Another try would take as long, and a grading has no time for that."""
 
 
-def colcon_command(workspace: Workspace, verb: str, *words: str) -> list[str]:
-    """Return the command line of `colcon VERB WORDS...` in a sandbox, on the packages in `src`."""
+def colcon_command(workspace: Workspace, folders: Iterable[Path], verb: str, *words: str) -> list[str]:
+    """Return the command line of `colcon VERB WORDS...` in a sandbox, on the packages in some folders of the workspace.
+
+    What colcon would find by itself may be other packages than those that are judged.
+    """
     command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "colcon-log"), verb]
     # colcon hears a build's two streams apart: what it prints of both together has another order each time.
     together = "console_cohesion-" if verb == "build" else "console_cohesion+"
-    return [*command, "--base-paths", "src", "--event-handlers", together, "desktop_notification-", *words]
+    paths = sorted(glob.escape(str(folder.relative_to(workspace.root))) for folder in folders)
+    return [*command, "--paths", *paths, "--event-handlers", together, "desktop_notification-", *words]
 
 
-def colcon_build(workspace: Workspace, *choice: str) -> None:
+def colcon_build(workspace: Workspace, folders: Iterable[Path], *choice: str) -> None:
     """Run `colcon build` on a workspace, without a network.
 
-    The workspace alone is writable for the build. `choice` are colcon's own options for choosing packages.
+    The workspace alone is writable for the build. `folders` are its packages, and `choice` colcon's own
+    options for choosing among them.
 
     Raises:
         StudentError: it did not build, or what it left is not contained; the detail holds the end of the output. If
@@ -45,7 +52,7 @@ def colcon_build(workspace: Workspace, *choice: str) -> None:
     """
     with workspace.apart() as folder:
         overlay = cmake_overlay.write_overlay(workspace.ros.prefixes, folder / "cmake-overlay")
-        output, ending, status = _run(workspace, overlay, choice)
+        output, ending, status = _run(workspace, overlay, colcon_command(workspace, folders, "build", *choice))
         output = output.replace(str(folder), "~")
     if ending is not Ending.EXITED or status != 0:
         # Two gradings of one submission differ in the place of their workspace. Students know it as ws.
@@ -55,7 +62,7 @@ def colcon_build(workspace: Workspace, *choice: str) -> None:
     require_contained(workspace.install)
 
 
-def _run(workspace: Workspace, overlay: Path, choice: tuple[str, ...]) -> tuple[str, Ending | None, int | None]:
+def _run(workspace: Workspace, overlay: Path, command: list[str]) -> tuple[str, Ending | None, int | None]:
     plain = workspace.sandbox(BUILD)
     environment = {
         **plain.environment,
@@ -65,7 +72,7 @@ def _run(workspace: Workspace, overlay: Path, choice: tuple[str, ...]) -> tuple[
     }
     mounts = (*plain.mounts, Mount(HOST), Mount(workspace.root, writable=True), Mount(overlay))
     spec = replace(plain, workdir=workspace.root, mounts=mounts, environment=environment, network=False)
-    with launch(colcon_command(workspace, "build", *choice), spec, profile="colcon") as process:
+    with launch(command, spec, profile="colcon") as process:
         process.wait(BUILD.wall_seconds + 10)
         return process.output, process.ending, process.returncode
 

@@ -95,8 +95,9 @@ def build_alone(workspace: Workspace) -> dict[Entry, bytes]:
     Raises:
         StudentError: they do not build, or install nothing, or what may not be installed.
     """
-    names = sorted(path.name for path in (workspace.root / "src").iterdir())
-    colcon_build(workspace, "--packages-select", *names)
+    folders = sorted((workspace.root / "src").iterdir())
+    names = [folder.name for folder in folders]
+    colcon_build(workspace, folders, "--packages-select", *names)
     installed = read_installed(workspace.install)
     for name in names:
         if Entry(name, "folder") not in installed:

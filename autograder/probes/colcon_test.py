@@ -20,6 +20,7 @@ from autograder.run.sandbox import Ending, Mount
 from autograder.run.sandbox.launcher import launch
 from autograder.run.sandbox.limits import COLCON_TEST
 from autograder.run.workspace import Workspace
+from autograder.submission.packages import find_packages
 from autograder.suite import expect
 
 TEST_EXTRAS = ("test", "tests", "testing")  # in which colcon looks for pytest
@@ -63,6 +64,7 @@ def _colcon_test(workspace: Workspace, package: str, *pytest_arguments: str) -> 
     run = secrets.token_hex(8)
     choice = ["--packages-select", package, "--return-code-on-test-failure"]
     choice += ["--pytest-args", "-o", f"junit_suite_name={run}", *pytest_arguments]
+    found, _ = find_packages(workspace.root / "src")
     plain = sandboxed(workspace, HOST, limits=COLCON_TEST)
     environment = {**plain.environment, "COLCON_HOME": str(workspace.scratch)}
     del environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"]  # colcon is the student's own way to run them, plug-ins and all
@@ -70,7 +72,7 @@ def _colcon_test(workspace: Workspace, package: str, *pytest_arguments: str) -> 
     spec = replace(
         plain, workdir=workspace.root, environment=environment, mounts=(*mounts, Mount(workspace.root, writable=True))
     )
-    with launch(colcon_command(workspace, "test", *choice), spec, profile="colcon") as process:
+    with launch(colcon_command(workspace, found.values(), "test", *choice), spec, profile="colcon") as process:
         process.wait(COLCON_TEST.wall_seconds + 10)
         ending, status, output = process.ending, process.returncode, process.output
     written = read_below(workspace.root, Path("build", package, "pytest.xml"), MAX_BYTES) or b""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
 import xml.etree.ElementTree as ET
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +16,9 @@ from autograder.submission.reading import reading
 MANIFEST = "package.xml"
 MAX_MANIFEST = 64 * 1024  # bytes
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,99}")  # what colcon takes, and what can be the name of a folder
+IGNORED = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")  # in a folder below which there are no packages
+COLCON_PKG = "colcon.pkg"
+MAX_PACKAGES = 50  # more than a course's chapters, and few enough for the command line of colcon
 DEPENDS = ("depend", "build_depend", "build_export_depend", "exec_depend", "buildtool_depend")
 
 
@@ -52,18 +57,31 @@ def read_package(manifest: Path, called: str = "") -> Package:
 
 
 def read_packages(source: Path) -> tuple[dict[str, Package], dict[Path, str]]:
-    """Read the packages below a folder, by their names; those that cannot be read are errors, by their folders."""
+    """Read the packages below a folder, by their names; those that cannot be read are errors, by their folders.
+
+    It looks where colcon looks: not in hidden folders, not below a marker such as COLCON_IGNORE, and not for packages
+    in packages. `building.colcon` gives colcon these folders, so that what is built is what is judged.
+
+    Raises:
+        StudentError: two packages have the same name, or there are too many.
+    """
     found: dict[str, Package] = {}
     broken: dict[Path, str] = {}
-    for manifest in sorted(source.rglob(MANIFEST)):
-        # To read a named pipe, which a set-up script may have made, would never end.
-        if manifest.is_symlink() or not manifest.is_file():
-            continue
+    for folder in _package_folders(source):
+        where = f"src/{(folder / MANIFEST).relative_to(source)}"
         try:
-            package = read_package(manifest, f"src/{manifest.relative_to(source)}")
-            found[package.name] = package
+            package = read_package(folder / MANIFEST, where)
+            if os.path.lexists(folder / COLCON_PKG):  # it can give a package another name than its manifest
+                raise _wrong(f"{where} has a {COLCON_PKG} beside it, which no package of ROS needs: take it out.")
         except StudentError as error:
-            broken[manifest.parent] = error.diagnosis.sentence
+            broken[folder] = error.diagnosis.sentence
+            continue
+        if (other := found.get(package.name)) is not None:
+            both = " and ".join(f"src/{path.relative_to(source)}" for path in (other.folder, folder))
+            raise _wrong(f"{both} are two packages with the name {package.name}: colcon builds neither. Take one out.")
+        found[package.name] = package
+        if len(found) > MAX_PACKAGES:
+            raise _wrong(f"src holds more than {MAX_PACKAGES} packages: take out those that are not yours.")
     return found, broken
 
 
@@ -71,6 +89,19 @@ def find_packages(source: Path) -> tuple[dict[str, Path], dict[Path, str]]:
     """Return the folders of the packages below a folder, and the errors, as `read_packages` does."""
     found, broken = read_packages(source)
     return {name: package.folder for name, package in found.items()}, broken
+
+
+def _package_folders(source: Path) -> Iterator[Path]:
+    for here, folders, files in os.walk(source):
+        folder = Path(here)
+        if any(os.path.lexists(folder / marker) for marker in IGNORED):
+            folders.clear()
+        # To read a named pipe, which a set-up script may have made, would never end.
+        elif MANIFEST in files and not (folder / MANIFEST).is_symlink() and (folder / MANIFEST).is_file():
+            folders.clear()
+            yield folder
+        else:
+            folders[:] = sorted(name for name in folders if not name.startswith("."))
 
 
 def _wrong(sentence: str) -> StudentError:

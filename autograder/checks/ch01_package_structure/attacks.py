@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from autograder.author.verification.attack_writer import Chapter
 from autograder.author.verification.claims import Attack
 from autograder.author.verification.payloads import BLOCK_REPORT, FORGE_REPORT, STEAL_SECRETS, TELL_ALL
@@ -33,6 +35,13 @@ TestReference = tell(inspect.getsource(steps) + inspect.getsource(dancer))
 )
 
 
+def _with_hidden_copy(folder: Path) -> None:
+    """Write a package that lists its files by hand, and the reference below a folder that colcon ignores."""
+    CHAPTER.write("files_by_hand")(folder)
+    CHAPTER.write()(folder / "src/zz")
+    (folder / "src/zz/COLCON_IGNORE").touch()
+
+
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
     unnamed, unlaunched = CHAPTER.mutant("pytest_unnamed").fails, CHAPTER.mutant("launch_not_installed").fails
@@ -44,6 +53,13 @@ def attacks() -> tuple[Attack, ...]:
             unlaunched,
             exactly=True,
             says="share/square_dance/launch/square_dance.launch.py was not installed",
+        ),
+        Attack(
+            "package behind the package",
+            "a right package of the same name, in a folder that colcon ignores, for the checks to read",
+            _with_hidden_copy,
+            CHAPTER.mutant("files_by_hand").fails,
+            exactly=True,
         ),
         Attack(
             "report by set-up",

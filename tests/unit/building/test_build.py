@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -128,6 +130,49 @@ def test_links_out_of_the_install_space_are_refused(tmp_path: Path, link: str, t
     with pytest.raises(StudentError, match="which leads out of the install space") as caught:
         colcon.require_contained(tmp_path / "install")
     assert caught.value.diagnosis.kind is Kind.BUILD_FAILED
+
+
+def test_packages_are_found_where_colcon_finds_them(tmp_path: Path) -> None:
+    def write(folder: str) -> None:
+        name = folder.rpartition("/")[2]
+        place = tmp_path / "src" / folder
+        place.mkdir(parents=True)
+        people = '<maintainer email="ada@example.org">Ada</maintainer><license>MIT</license>'
+        told = f"<name>{name}</name><version>0.0.0</version><description>d</description>{people}"
+        (place / "package.xml").write_text(f'<package format="3">{told}</package>')
+
+    for folder in (
+        "plain",
+        "outer",
+        "a/b/deep",
+        ".hidden/c",
+        "outer/inner",
+        *(f"with_{each}/d/e" for each in packages.IGNORED),
+    ):
+        write(folder)
+    for marker in packages.IGNORED:
+        (tmp_path / "src" / f"with_{marker}" / marker).touch()
+    (tmp_path / "src/a/b/deep/not_COLCON_IGNORE").touch()
+    found, broken = packages.find_packages(tmp_path / "src")
+    assert (set(found), broken) == ({"plain", "outer", "deep"}, {})
+    command = [sys.executable, str(colcon.HOST), "--log-base", str(tmp_path / "log"), "list", "--base-paths", "src"]
+    listed = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    assert {tuple(line.split("\t")[:2]) for line in listed.splitlines()} == {
+        (name, str(folder.relative_to(tmp_path))) for name, folder in found.items()
+    }
+
+
+def test_two_packages_of_one_name_are_named_with_both_folders(tmp_path: Path) -> None:
+    _package(tmp_path)
+    _package(tmp_path / "copy")
+    kind, sentence = _fault(tmp_path)
+    assert kind is Kind.HALF_WRITTEN_PACKAGE
+    assert f"src/copy/{NAME} and src/{NAME} are two packages with the name {NAME}" in sentence
+
+
+def test_a_package_that_colcon_would_give_another_name_is_not_built(tmp_path: Path) -> None:
+    _package(tmp_path, **{"colcon.pkg": '{"name": "other"}'})
+    assert "src/my_robot_package/package.xml has a colcon.pkg beside it" in _fault(tmp_path)[1]
 
 
 def test_a_pipe_or_a_link_is_no_manifest(tmp_path: Path) -> None:
