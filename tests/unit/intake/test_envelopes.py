@@ -314,9 +314,9 @@ def test_a_download_holds_the_plain_answer_of_its_student(
     folder = write(tmp_path / "download", DOWNLOADS[name](answer))
     found = collect(folder, read_roster(tmp_path / "roster.csv"), CHAPTER, tmp_path / "scratch")
     assert found.unmatched == ()
-    assert found.entries[0].student == "jdoe3"
-    for entry in found.entries:
-        _is_same(read_submission(entry.path, CHAPTER), plain)
+    assert next(iter(found.submissions)) == "jdoe3"
+    for path in found.submissions.values():
+        _is_same(read_submission(path, CHAPTER), plain)
 
 
 def _package(submission: Submission) -> dict[str, bytes]:
