@@ -104,7 +104,7 @@ def test_points_given_in_formgrader_are_added_everywhere(size: int, tmp_path: Pa
     room.nbgrader("autograde")
     after = {path: path.stat().st_mtime_ns for path in graded.glob("*/result.json")}
     assert after == before, "graded again instead of recorded"
-    marks = {stored.result.student: stored.result.score for stored in load(graded)}
+    marks = {result.student: result.score for result in load(graded)}
     assert {student.name for student in everybody if marks[student.name]} == {
         student.name for student in everybody if student.points is not None
     }
