@@ -96,6 +96,14 @@ def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
         yield domain.number
 
 
+@pytest.fixture
+def entered_tmp_path(tmp_path: Path) -> Path:
+    """A temporary folder that other users can enter: root's cells become other users, who come from here."""
+    for folder in (tmp_path, *(each for each in tmp_path.parents if each.name.startswith(("pytest-", "popen-")))):
+        folder.chmod(0o711)
+    return tmp_path
+
+
 MakeCheck = Callable[..., Check]
 MakeResult = Callable[..., Result]
 

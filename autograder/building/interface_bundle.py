@@ -52,8 +52,8 @@ def install_bundle(bundle: dict[str, Path], workspace: Workspace) -> None:
         entry = folder / "bundle"
         with line.held() as connection:
             if connection is None:
-                made = Cache.default(keeper.CACHE).get(keeper.key(tree), partial(_make, tree, workspace, folder))
-                shutil.copytree(made, entry, symlinks=True)
+                with Cache.default(keeper.CACHE).use(keeper.key(tree), partial(_make, tree, workspace, folder)) as made:
+                    shutil.copytree(made, entry, symlinks=True)
             else:
                 keeper.ask(connection, tree, entry)
         note = json.loads((entry / NOTE).read_text())

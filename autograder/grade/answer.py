@@ -103,9 +103,8 @@ def _require_run(data: bytes) -> None:
 
 
 def _require_notebook(data: bytes) -> None:
-    from autograder.grade.executed_notebook import (
-        decode,
-    )  # nbformat is slow to import, and a source tree has no notebook
+    # nbformat is slow to import, and a source tree has no notebook.
+    from autograder.grade.executed_notebook import decode
 
     try:
         decode(data)

@@ -64,15 +64,16 @@ def discover(paths: tuple[Path, ...], assignment: str) -> Discovered:
             inside, beside = _of_folder(path, assignment)
             found += inside
             others += beside
-    refused = [(path.name, why) for student, path in found if (why := why_not_a_folder(student))]
-    found = [(student, path) for student, path in found if not why_not_a_folder(student)]
+    refused = {student: why for student, _ in found if (why := why_not_a_folder(student))}
+    others += [(path.name, refused[student]) for student, path in found if student in refused]
+    found = [(student, path) for student, path in found if student not in refused]
     names = [student for student, _ in found]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise UsageError(
             f"two submissions are called {', '.join(twice)}: rename one, results would overwrite each other"
         )
-    return Discovered(dict(found), (*others, *refused))
+    return Discovered(dict(found), tuple(others))
 
 
 def student_of(path: Path) -> str:

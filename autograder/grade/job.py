@@ -37,9 +37,8 @@ class Job:
     assignment: str  # which assignment it answers
     student: str  # whose it is; stands in the result only
     seed: int  # every hidden input is drawn from it; the same seed gives the same inputs
-    out: (
-        Path  # the folder that gets `result.json`, `notebook.ipynb` and the pictures; `grader.log` if the grader failed
-    )
+    # The folder that gets `result.json`, `notebook.ipynb` and the pictures; `grader.log` if the grader failed.
+    out: Path
     tier: Tier = Tier.BUBBLEWRAP  # how the submission is isolated
     scope: Scope = ALL  # how much of the suite is run
     seconds: float = GRADING_CELL.wall_seconds  # real time for all of it: a second grading has what the first has left

@@ -112,18 +112,15 @@ def test_a_failed_grading_reports_the_reason_and_does_not_change_the_next_one(
 
 
 def test_a_fork_server_that_ends_is_replaced_and_leaves_nothing(
-    half: Path, servers: Servers, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    half: Path, servers: Servers, entered_tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # Root's workers become other users, who come from here.
-    for folder in (tmp_path, *(each for each in tmp_path.parents if each.name.startswith(("pytest-", "popen-")))):
-        folder.chmod(0o711)
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(tempfile, "tempdir", str(entered_tmp_path))
     with WorkerPool(Tier.PROCESS, 1) as workers:
-        assert _grade(half, tmp_path / "one", workers, tier=Tier.PROCESS).status is Status.GRADED
-        (cell,) = tmp_path.glob("autograder-cell-*")
+        assert _grade(half, entered_tmp_path / "one", workers, tier=Tier.PROCESS).status is Status.GRADED
+        (cell,) = entered_tmp_path.glob("autograder-cell-*")
         assert list(cell.iterdir()) == []
         (server,) = servers()
         os.kill(server, signal.SIGKILL)
-        assert _grade(half, tmp_path / "two", workers, tier=Tier.PROCESS).status is Status.GRADED
+        assert _grade(half, entered_tmp_path / "two", workers, tier=Tier.PROCESS).status is Status.GRADED
         assert servers() not in ([], [server])
-    assert list(tmp_path.glob("autograder-cell-*")) == []
+    assert list(entered_tmp_path.glob("autograder-cell-*")) == []

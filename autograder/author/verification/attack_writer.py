@@ -6,7 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from autograder.author.verification.claims import Attack
 from autograder.author.verification.mutants import Mutant, mutants, write_mutant, write_reference
+from autograder.author.verification.payloads import FORCE_REAL_TIME, LOOK_FOR_NAMES
 from autograder.suite import suites
 
 TELLING = 14  # letters; a shorter id of a check may be a name that anything else has
@@ -23,11 +25,6 @@ class Chapter:
     def checks(self) -> frozenset[str]:
         """The ids of every check."""
         return frozenset(check.id for check in suites.hidden(self.assignment).checks)
-
-    @property
-    def telling_names(self) -> tuple[str, ...]:
-        """Words that stand around a program only if something tells it by which hidden checks it is judged."""
-        return (self.assignment, "hidden", *sorted(name for name in self.checks if len(name) > TELLING))
 
     def mutant(self, name: str) -> Mutant:
         """Return a mutant by its name."""
@@ -68,3 +65,31 @@ class Chapter:
                 (home / name).write_text(f"{head}\n{(home / name).read_text()}")
 
         return write
+
+    def evasions(self, manner: str, mistake: str, base: str, file: str, swap: tuple[str, str]) -> tuple[Attack, ...]:
+        """Return two attacks that make a mistake where they hope that nobody looks: in real time, and unless told.
+
+        Args:
+            manner: how the program behaves, for the names.
+            mistake: the mistake, in words.
+            base: the mutant that makes it.
+            file: where the payloads go.
+            swap: part of the reference's file, and what makes the mistake in its place unless `_is_told()`, which says
+                whether something around the program tells it by which hidden checks it is judged.
+        """
+        names = (self.assignment, "hidden", *sorted(name for name in self.checks if len(name) > TELLING))
+        fails = self.mutant(base).fails
+        return (
+            Attack(
+                f"{manner} in real time",
+                f"{mistake}, in a thread of its own, so that its time is real",
+                self.write(base, heads={file: FORCE_REAL_TIME}),
+                fails,
+            ),
+            Attack(
+                f"{manner} unless told",
+                f"{mistake}, unless something around it names the hidden checks",
+                self.write(heads={file: LOOK_FOR_NAMES.format(names=names)}, swaps={file: swap}),
+                fails,
+            ),
+        )

@@ -36,7 +36,7 @@ class GenerationError(InterfaceError):
 def build(package: str, files: Mapping[str, str], *, cache: Cache | None = None) -> Path:
     """Return a prefix with the package built from its definitions, from the cache if it was built before.
 
-    The prefix stays in the cache for an hour at least.
+    The prefix stays until the cache is full and somebody builds another one.
 
     Args:
         package: its name.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from autograder.author.verification.attack_writer import Chapter
 from autograder.author.verification.claims import Attack
-from autograder.author.verification.payloads import FORCE_REAL_TIME, LOOK_FOR_NAMES, STEAL_SECRETS
+from autograder.author.verification.payloads import STEAL_SECRETS
 
 CHAPTER = Chapter("05_parameters")
 PACKAGE = "my_robot_package"
@@ -74,21 +74,11 @@ def attacks() -> tuple[Attack, ...]:
             exactly=True,
             says="max_linear_velocity: it took",
         ),
-        Attack(
-            "slow in real time",
-            "a timer whose period is a tenth too long, in a thread of its own, so that its time is real",
-            CHAPTER.write("timer_a_tenth_slow", heads={NODE: FORCE_REAL_TIME}),
-            CHAPTER.mutant("timer_a_tenth_slow").fails,
-        ),
-        Attack(
-            "slow unless told",
-            "a timer whose period is a tenth too long, unless something around it names the hidden checks",
-            CHAPTER.write(
-                heads={NODE: LOOK_FOR_NAMES.format(names=CHAPTER.telling_names)},
-                swaps={
-                    NODE: ("round(1e9 / parameter.value)", "round((1e9 if _is_told() else 1.1e9) / parameter.value)")
-                },
-            ),
-            CHAPTER.mutant("timer_a_tenth_slow").fails,
+        *CHAPTER.evasions(
+            "slow",
+            "a timer whose period is a tenth too long",
+            "timer_a_tenth_slow",
+            NODE,
+            ("round(1e9 / parameter.value)", "round((1e9 if _is_told() else 1.1e9) / parameter.value)"),
         ),
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from autograder.author.verification.attack_writer import Chapter
 from autograder.author.verification.claims import Attack
-from autograder.author.verification.payloads import FORCE_REAL_TIME, LOOK_FOR_NAMES, STEAL_SECRETS
+from autograder.author.verification.payloads import STEAL_SECRETS
 
 CHAPTER = Chapter("07_best_practices")
 HOME = "my_robot_package/my_robot_package"
@@ -75,19 +75,11 @@ def attacks() -> tuple[Attack, ...]:
             ),
             CHAPTER.mutant("silent_when_blind").fails,
         ),
-        Attack(
-            "hasty in real time",
-            "a sensor that is read twice a second, in a thread of its own, so that its time is real",
-            CHAPTER.write("twice_a_second", heads={ROBUST: FORCE_REAL_TIME}),
-            CHAPTER.mutant("twice_a_second").fails,
-        ),
-        Attack(
-            "hasty unless told",
-            "a sensor that is read twice a second, unless something around it names the hidden checks",
-            CHAPTER.write(
-                heads={ROBUST: LOOK_FOR_NAMES.format(names=CHAPTER.telling_names)},
-                swaps={ROBUST: ("PERIOD = 1.0  # s", "PERIOD = 1.0 if _is_told() else 0.5")},
-            ),
-            CHAPTER.mutant("twice_a_second").fails,
+        *CHAPTER.evasions(
+            "hasty",
+            "a sensor that is read twice a second",
+            "twice_a_second",
+            ROBUST,
+            ("PERIOD = 1.0  # s", "PERIOD = 1.0 if _is_told() else 0.5"),
         ),
     )

@@ -5,10 +5,8 @@ from __future__ import annotations
 from autograder.author.verification.attack_writer import Chapter
 from autograder.author.verification.claims import Attack
 from autograder.author.verification.payloads import (
-    FORCE_REAL_TIME,
     FORGE_PASSES,
     FORGE_VERDICTS,
-    LOOK_FOR_NAMES,
     STEAL_SECRETS,
     TELL_ALL,
 )
@@ -84,19 +82,11 @@ def attacks() -> tuple[Attack, ...]:
             frozenset({"sector_tests_find_faults"}),
             says="Your tests are content with",
         ),
-        Attack(
-            "seldom in real time",
-            "a report once a second instead of twice, in a thread of its own, so that its time is real",
-            CHAPTER.write("reports_once_a_second", heads={MONITOR: FORCE_REAL_TIME}),
-            CHAPTER.mutant("reports_once_a_second").fails,
-        ),
-        Attack(
-            "seldom unless told",
-            "a report once a second instead of twice, unless something around it names the hidden checks",
-            CHAPTER.write(
-                heads={MONITOR: LOOK_FOR_NAMES.format(names=CHAPTER.telling_names)},
-                swaps={MONITOR: ("REPORT_PERIOD = 0.5  # s", "REPORT_PERIOD = 0.5 if _is_told() else 1.0")},
-            ),
-            CHAPTER.mutant("reports_once_a_second").fails,
+        *CHAPTER.evasions(
+            "seldom",
+            "a report once a second instead of twice",
+            "reports_once_a_second",
+            MONITOR,
+            ("REPORT_PERIOD = 0.5  # s", "REPORT_PERIOD = 0.5 if _is_told() else 1.0"),
         ),
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from autograder.author.verification.attack_writer import Chapter
 from autograder.author.verification.claims import Attack
-from autograder.author.verification.payloads import FORCE_REAL_TIME, FORGE_PASSES, LOOK_FOR_NAMES, STEAL_SECRETS
+from autograder.author.verification.payloads import FORGE_PASSES, STEAL_SECRETS
 
 CHAPTER = Chapter("09_assessment")
 SHEET = "assessment/answers.yaml"
@@ -32,19 +32,11 @@ def attacks() -> tuple[Attack, ...]:
             ),
             frozenset({"hysteresis", "thresholds", "unknown"}),
         ),
-        Attack(
-            "fixed in real time",
-            "a thermometer with a fixed period, in a thread of its own, so that its time is real",
-            CHAPTER.write("period_is_fixed", heads={THERMOMETER: FORCE_REAL_TIME}),
-            CHAPTER.mutant("period_is_fixed").fails,
-        ),
-        Attack(
-            "fixed unless told",
-            "a thermometer with a fixed period, unless something around it names the hidden checks",
-            CHAPTER.write(
-                heads={THERMOMETER: LOOK_FOR_NAMES.format(names=CHAPTER.telling_names)},
-                swaps={THERMOMETER: ("self.create_timer(period,", "self.create_timer(period if _is_told() else 0.5,")},
-            ),
-            CHAPTER.mutant("period_is_fixed").fails,
+        *CHAPTER.evasions(
+            "fixed",
+            "a thermometer with a fixed period",
+            "period_is_fixed",
+            THERMOMETER,
+            ("self.create_timer(period,", "self.create_timer(period if _is_told() else 0.5,"),
         ),
     )

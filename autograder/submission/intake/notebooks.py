@@ -10,6 +10,8 @@ import json
 import re
 from typing import Any
 
+from autograder.submission.json_size import holds_more, outside_strings
+
 CELL_TYPES = ("code", "markdown", "raw")
 # Of a notebook whose outputs are dropped: they say how many values a parser makes.
 MAX_STRINGS = 1_000_000
@@ -59,25 +61,14 @@ def without_outputs(data: bytes) -> bytes:
 
 def _is_simple(data: bytes) -> bool:
     """Return whether parsing JSON text makes few values, whatever it is."""
-    plain = data.replace(rb"\\", b"").replace(rb"\"", b"")
-    if plain.count(b'"') > 2 * MAX_STRINGS:
-        return False
-    return sum(map(len, plain.split(b'"')[::2])) <= MAX_STRUCTURE
-
-
-def _count_values(text: str) -> int:
-    """Count commas and brackets outside of strings, of which there are as many as values at least, but for one."""
-    plain = text.replace(r"\\", "").replace(r"\"", "")
-    if plain.count('"') > 2 * MAX_VALUES:
-        return MAX_VALUES + 1
-    outside = "".join(plain.split('"')[::2])
-    return sum(map(outside.count, ",[{"))
+    outside = outside_strings(data, 2 * MAX_STRINGS)
+    return outside is not None and len(outside) <= MAX_STRUCTURE
 
 
 def _parsed(data: bytes) -> Cell:
     try:
         text = data.decode(json.detect_encoding(data)).removeprefix("\ufeff")
-        if _count_values(text) > MAX_VALUES:
+        if holds_more(text.encode("utf-8", "surrogatepass"), MAX_VALUES, 2 * MAX_VALUES):
             raise ValueError(f"it holds more than {MAX_VALUES:,} values: clear its outputs")
         notebook = json.loads(text)
     except RecursionError:

@@ -19,19 +19,19 @@ from autograder.run.sandbox import Tier, procfs
 from autograder.run.sandbox.cell import run_in_cell
 
 
-def test_only_folders_of_cells_without_a_lock_are_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    # Root's cell becomes another user, who comes from here.
-    for folder in (tmp_path, *(each for each in tmp_path.parents if each.name.startswith(("pytest-", "popen-")))):
-        folder.chmod(0o711)
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+def test_only_folders_of_cells_without_a_lock_are_removed(
+    entered_tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(entered_tmp_path))
     left, held, young, other = (
-        tmp_path / f"{name}" for name in ("autograder-cell-1", "autograder-cell-2", "autograder-cell-3", "other")
+        entered_tmp_path / f"{name}"
+        for name in ("autograder-cell-1", "autograder-cell-2", "autograder-cell-3", "other")
     )
     for folder in (left, held, young, other):
         (folder / "ws").mkdir(parents=True)
         if folder != young:
             os.utime(folder, (0, 0))
-    link = tmp_path / "autograder-cell-4"
+    link = entered_tmp_path / "autograder-cell-4"
     link.symlink_to(other)
     descriptor = os.open(held, os.O_RDONLY)
     fcntl.flock(descriptor, fcntl.LOCK_EX)
@@ -39,8 +39,8 @@ def test_only_folders_of_cells_without_a_lock_are_removed(tmp_path: Path, monkey
         report = run_in_cell(lambda scratch: [sys.executable, "-c", f"print({str(scratch)!r})"], Tier.PROCESS)
     finally:
         os.close(descriptor)
-    assert Path(report.output.strip()).parent == tmp_path
-    assert {*tmp_path.iterdir()} == {held, young, other, link}
+    assert Path(report.output.strip()).parent == entered_tmp_path
+    assert {*entered_tmp_path.iterdir()} == {held, young, other, link}
     assert (other / "ws").is_dir()
 
 
