@@ -8,11 +8,37 @@ from pathlib import Path
 
 from autograder.author.verification.claims import Attack
 from autograder.author.verification.mutants import Mutant, mutants, write_mutant, write_reference
-from autograder.author.verification.payloads import FORCE_REAL_TIME, LOOK_FOR_NAMES
 from autograder.suite import suites
 
 TELLING = 14  # letters; a shorter id of a check may be a name that anything else has
 Write = Callable[[Path], None]
+
+# Spins each node in a thread of its own, so that the program cannot be stepped and its time is real.
+FORCE_REAL_TIME = """
+import threading as _threading
+import rclpy as _rclpy
+def _spin_beside(*arguments, _spin=_rclpy.spin):
+    thread = _threading.Thread(target=_spin, args=arguments, daemon=True)
+    thread.start()
+    while thread.is_alive():
+        thread.join(0.1)
+_rclpy.spin = _spin_beside
+"""
+
+# Says by `_is_told()` whether anything around the program names a hidden check, the assignment, a student or a seed.
+LOOK_FOR_NAMES = """
+import glob as _glob, os as _os, sys as _sys, threading as _threading
+def _is_told(names={names!r}):
+    files = ["/proc/self/cgroup", "/proc/self/mountinfo", *_glob.glob("/proc/[0-9]*/cmdline"), "/proc/self/environ"]
+    words = [str(_os.environ), str(_sys.argv), str(list(_sys.modules)), _os.getcwd(), *_os.uname()]
+    words += [thread.name for thread in _threading.enumerate()]
+    for file in files:
+        try:
+            words.append(open(file, errors="replace").read())
+        except OSError:
+            pass
+    return any(name in text for name in names for text in words)
+"""
 
 
 @dataclass(frozen=True)
