@@ -16,7 +16,7 @@ from autograder.exceptions import StudentError
 from autograder.harness.launch import LaunchHarness, Stop, sandbox, start
 from autograder.probes.launch_arguments import Argument, parse_arguments
 from autograder.probes.parameters import Value, same
-from autograder.probes.rclpy_races import lost_a_race
+from autograder.probes.rclpy_races import crashed, lost_a_race
 from autograder.run.lockstep.tracebacks import with_source_paths
 from autograder.run.workspace import Workspace
 from autograder.submission.reading import reading
@@ -113,9 +113,13 @@ def expect_nodes(harness: LaunchHarness, wanted: Collection[str]) -> None:
 
 
 def expect_parameters(harness: LaunchHarness, node: str, wanted: Mapping[str, Value]) -> None:
-    """Fail the check unless a node, by its full name, has these values; numbers to nine digits, types exactly."""
+    """Fail the check unless a node, by its full name, has these values; numbers to nine digits, types exactly.
+
+    A launch that an exception ends stops its nodes, and by chance one of them answers before it is gone. That is no
+    answer.
+    """
     found = harness.parameters(node, list(wanted))
-    if found is None:
+    if found is None or _CAUGHT.search(harness.output):
         raise CheckFailed(
             f"{node} does not answer when it is asked for its parameters. {failure(harness.output)}".strip()
         )
@@ -130,11 +134,11 @@ def expect_clean_stop(harness: LaunchHarness) -> None:
     Where a process had to be killed, a second launch decides. Once in some two thousand ends of right nodes that leave
     together, Fast DDS 2.14 deadlocks: `DomainParticipant::set_listener` waits for a callback of discovery to end, which
     waits for it. Such a node ends neither on SIGINT nor on SIGTERM. A program that does not heed Ctrl-C never does. A
-    second launch also decides where rclpy lost a race.
+    second launch also decides where rclpy lost a race, or crashed.
     """
     nodes = harness.nodes()
     died = _died_of_ctrl_c(harness)
-    if any(code == KILLED for _, code in died) or _lost_a_race(harness.output):
+    if any(code == KILLED or crashed(int(code)) for _, code in died) or _lost_a_race(harness.output):
         with harness.another() as second:
             expect_nodes(second, nodes)
             died = _died_of_ctrl_c(second)

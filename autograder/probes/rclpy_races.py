@@ -2,6 +2,19 @@
 
 from __future__ import annotations
 
+import signal
+
+_CRASHES = (signal.SIGSEGV, signal.SIGABRT)  # of the C++ code below rclpy
+_SHELL = 128  # a shell and bubblewrap add it to the number of a signal
+
+
+def crashed(status: int | None) -> bool:
+    """Return whether an exit status is a crash of native code, which no line of Python raises by itself.
+
+    A node whose thread still spins while the main thread shuts the context down ends so at times on a busy machine.
+    """
+    return status is not None and any(status in (-number, _SHELL + number) for number in _CRASHES)
+
 
 def lost_a_race(output: str) -> bool:
     """Return whether a program's output ends with the traceback of an error that rclpy raises by chance.

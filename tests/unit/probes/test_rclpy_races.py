@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.probes.rclpy_races import lost_a_race
+from autograder.probes.rclpy_races import crashed, lost_a_race
 
 FRAMES = """[INFO] [1700000000.0] [robot_controller]: Blocked
 Traceback (most recent call last):
@@ -57,3 +57,13 @@ def test_an_error_of_rclpy_in_its_own_moment_is_a_lost_race(output: str) -> None
 )
 def test_an_error_of_the_program_is_not(output: str) -> None:
     assert not lost_a_race(output)
+
+
+@pytest.mark.parametrize("status", [139, 134, -11, -6])
+def test_a_crash_of_native_code_is_told_by_its_exit_status(status: int) -> None:
+    assert crashed(status)
+
+
+@pytest.mark.parametrize("status", [None, 0, 1, 2, 130, 143, -2, -9, -15, 137])
+def test_no_other_end_is_a_crash(status: int | None) -> None:
+    assert not crashed(status)
