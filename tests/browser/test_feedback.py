@@ -89,9 +89,9 @@ def test_what_came_with_a_failure_unfolds_below_it(
 
 
 @pytest.mark.promise(
-    "you can play its run and jump to the instant at which it broke a rule",
-    "A failed check of a robot that drove has its run.",
-    "with its track and the instant at which it failed",
+    "you can play its run and jump to the moment at which it broke a rule",
+    "a failed check includes a recording of the run",
+    "with its track and the moment at which it failed",
     "in the same player",
 )
 def test_the_run_of_a_failed_check_plays(

@@ -119,7 +119,7 @@ def test_each_glossary_term_is_linked_at_most_once_in_a_chapter(site: Path) -> N
 
 @pytest.mark.promise(
     "`make docs` writes this page from",
-    "`make docs` builds the site: guides, chapters with their outputs, and the reference of the simulator.",
+    "`make docs` builds the site: guides, chapters with their outputs, and the simulator's API reference.",
 )
 def test_each_internal_link_of_the_site_has_a_target(site: Path) -> None:
     """Sphinx checks links from page to page. It does not check those of raw HTML and of notebook outputs."""

@@ -71,7 +71,7 @@ def run_all(page: Page, lab: Lab, folder: Path) -> str:
 
 
 @pytest.mark.promise(
-    "Running the notebook again does not destroy what you wrote in the editor.",
+    "Running the notebook again does not overwrite what you wrote in the editor.",
     "| The cell says that your file was kept. |",
     "make lab",
 )

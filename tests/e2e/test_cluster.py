@@ -98,10 +98,10 @@ def grade_during_kills(cluster: LocalCluster, kills: int, draw: random.Random) -
     "| A worker dies. |",
     "| The scheduler dies, or the client. |",
     "Nothing else changes: the verb, the results, `--resume` and Ctrl-C are the same.",
-    "Workers see no folder of the client.",
-    "What was tried: the commands above",
-    "A large class goes to [many machines]",
-    "A large class is graded [on many machines]",
+    "Workers cannot see the client's folders.",
+    "The commands above are tested with a scheduler and three workers",
+    "A large class can be graded on [many machines]",
+    "A large class can be graded [on many machines]",
 )
 @pytest.mark.parametrize(
     ("kills", "flawed"), [pytest.param(3, 0, id="3"), pytest.param(20, 8, id="20", marks=pytest.mark.nightly)]
@@ -157,7 +157,7 @@ def test_a_submission_that_kills_two_workers_is_not_graded_and_the_others_are(to
 
 
 @pytest.mark.promise(
-    "It gets no submission, and the client says in a sentence what differs.", "| No worker fits for two minutes. |"
+    "It gets no submissions, and the client says what differs.", "| No worker is suitable for two minutes. |"
 )
 def test_a_worker_of_another_suite_is_refused_and_gets_no_submission(
     todo: list[Job], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -175,7 +175,7 @@ def test_a_worker_of_another_suite_is_refused_and_gets_no_submission(
 
 
 @pytest.mark.promise(
-    "`--scheduler local` makes such a cluster on this machine",
+    "`--scheduler local` starts such a cluster on this machine",
     "Nothing else changes: the verb, the results, `--resume` and Ctrl-C are the same.",
 )
 def test_ctrl_c_keeps_the_gradings_that_have_begun_and_resume_grades_the_rest(tmp_path: Path) -> None:

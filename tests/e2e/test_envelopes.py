@@ -50,14 +50,14 @@ def a_class(answer: Answer, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.promise(
-    "It has no mark then, the table says why, and the exit status is 1.",
-    "Where an attempt holds two different answers, it is unclear",
-    "Hand in one version: two notebooks with different answers are unclear",
+    "It then has no mark, the table says why, and the exit status is 1.",
+    "It is listed with the reason and has no mark, and the exit status is 1.",
+    "Two notebooks with different answers are unclear",
     '| The table says "unclear". |',
-    "Other names, archives in archives, environments, caches and files beside the answer change no mark.",
-    "What counts is what students checked: the files in `ws/src`.",
-    "Archives in a folder or in another archive are opened",
-    "The notebook itself runs only where its other cells have to make files.",
+    "Renamed folders, nested archives, environments, caches and extra files do not change a mark.",
+    "The grader uses the files that students checked: those in `ws/src`.",
+    "Archives inside folders or other archives are opened",
+    "The notebook itself runs only if its other cells have to create files.",
 )
 def test_each_envelope_has_all_points_or_is_unclear(a_class: Path) -> None:
     done, results = grade(a_class)
@@ -94,8 +94,8 @@ def test_a_dry_run_names_what_counts_and_what_is_not_used(a_class: Path) -> None
 
 
 @pytest.mark.promise(
-    "The newest attempt of a student counts, with all of its files",
-    "Each member of a group on Gradescope has the group's result",
+    "Only a student's newest attempt counts, with all of its files",
+    "Every member of a Gradescope group gets the group's result.",
 )
 def test_all_files_of_a_canvas_attempt_and_all_members_of_a_gradescope_group_count(
     answer: Answer, tmp_path: Path

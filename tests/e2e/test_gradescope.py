@@ -40,7 +40,7 @@ def graded(home: Path) -> dict[str, object]:
     return report
 
 
-@pytest.mark.promise("Gradescope builds an image of it and grades each submission when it comes.")
+@pytest.mark.promise("Gradescope builds an image from it and grades each submission when it arrives.")
 def test_the_reference_has_all_points_and_an_answer_without_packages_has_no_score(home: Path) -> None:
     submission = home / "submission"
     write_reference(suites.hidden(ASSIGNMENT).sources, submission / "ws")
@@ -56,7 +56,7 @@ def test_the_reference_has_all_points_and_an_answer_without_packages_has_no_scor
     assert "package" in str(report["output"])
 
 
-@pytest.mark.promise("Then no submission gets a mark, and the output of each says why.")
+@pytest.mark.promise("no submission gets a mark, and the output of each submission says why.")
 def test_without_namespaces_a_submission_has_no_result_and_the_output_says_why(home: Path, tmp_path: Path) -> None:
     bwrap = tmp_path / "bwrap"
     bwrap.write_text("#!/bin/sh\necho 'No permissions to create new namespace' >&2\nexit 1\n")
@@ -75,7 +75,7 @@ def test_without_namespaces_a_submission_has_no_result_and_the_output_says_why(h
 
 
 @pytest.mark.promise(
-    "autograder gradescope 02_nodes --out 02_nodes.zip", "The zip holds `setup.sh`, `run_autograder`, and the course"
+    "autograder gradescope 02_nodes --out 02_nodes.zip", "The zip contains `setup.sh`, `run_autograder`, and the course"
 )
 def test_the_zip_holds_what_setup_needs_and_nothing_that_was_built(home: Path) -> None:
     names = set(zipfile.ZipFile(home / "upload.zip").namelist())

@@ -84,7 +84,7 @@ def test_the_reference_gets_everything_in_every_layout(together: dict[str, Resul
     assert result.build.packages[-1] == PACKAGE
 
 
-@pytest.mark.promise("Each student has a folder in `results`: `result.json`, pictures, and")
+@pytest.mark.promise("Each student has a folder in `results` with `result.json`, pictures, and")
 def test_the_pictures_of_the_tracks_are_stored_beside_the_result(together: dict[str, Result]) -> None:
     assert {artifact.check for artifact in together["zip"].artifacts} == {"room", "pillars", "corridor"}
 
@@ -102,7 +102,7 @@ def test_grading_one_at_a_time_gives_the_same_result_as_two_at_once(
 
 @pytest.mark.promise(
     "autograder replay results/alice --check room",
-    "A mark comes with its seed, and the same seed gives the same inputs.",
+    "Each mark is stored with its seed, and the same seed gives the same inputs.",
 )
 def test_a_check_is_replayed_with_the_seed_of_its_result(
     together: dict[str, Result], layouts: dict[str, Path], tmp_path: Path
@@ -306,7 +306,7 @@ def test_a_machine_without_namespaces_refuses_to_grade_with_the_weak_tier(
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.promise("`--isolation process` grades there all the same")
+@pytest.mark.promise("`--isolation process` still grades there")
 def test_the_weaker_tier_is_named_in_the_result(reference: Path, tmp_path: Path) -> None:
     shutil.copytree(reference, tmp_path / "alice")
     (tmp_path / "alice" / "src" / PACKAGE / "setup.py").unlink()

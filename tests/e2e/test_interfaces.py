@@ -83,7 +83,7 @@ def talk(scratch: Path) -> dict[str, Any]:
     return {"levels": levels, "hashes": sorted(hashes), "output": output}
 
 
-@pytest.mark.promise("The ROS 2 is real: rclpy, DDS, rosidl and colcon of Jazzy, from pip.")
+@pytest.mark.promise("It uses the real ROS 2 Jazzy: rclpy, DDS, rosidl and colcon, installed by pip.")
 def test_both_ends_have_the_same_type_hash_and_exchange_messages() -> None:
     answer = in_cell(talk)
     assert answer["levels"] == [42], answer

@@ -93,12 +93,12 @@ def imported(path: Path, worksheet: Path) -> dict[str, str]:
 @pytest.mark.promise(
     "autograder grade download.zip --assignment 02_nodes --roster worksheet.csv --out results -j 4",
     "autograder export results --format moodle --roster worksheet.csv --out marks.csv",
-    "A submission that fits no student is listed, and the exit status is 1.",
-    "`results/handed_in.json` lists the late students",
+    "A submission that matches no student is listed, and the exit status is 1.",
+    "`results/handed_in.json` lists late students",
     "`--format moodle`: the worksheet with grades",
-    "A download of Moodle, Canvas, Gradescope or GitHub Classroom is graded",
-    "Marks are scaled to the maximum that the table says.",
-    "Two commands take a class from the system's download to the table that it imports.",
+    "Downloads from Moodle, Canvas, Gradescope and GitHub Classroom are graded",
+    "Marks are scaled to the maximum in the table.",
+    "Two commands turn the system's download into a table of marks that it can import.",
 )
 @pytest.mark.parametrize(
     ("assignment", "flawed", "students"),

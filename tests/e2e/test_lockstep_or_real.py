@@ -171,9 +171,9 @@ def met(scratch: Path, text: str) -> Any:
 
 
 @pytest.mark.promise(
-    "for example, runs in real time, and the result says so.",
+    "runs in real time, and the result says so.",
     "| Grading takes minutes. |",
-    "`AutoHarness` steps a program where that is possible",
+    "`AutoHarness` steps a program if possible",
 )
 @pytest.mark.parametrize(
     ("reason", "words"),

@@ -36,10 +36,10 @@ def workers() -> Iterator[WorkerPool]:
 
 
 @pytest.mark.promise(
-    "The reference and right answers in another style have all marks.",
-    "The untouched release has none.",
-    "About a thousand wrong answers each lose the checks that they should",
-    "The tests execute the notebooks, and grade some of the submissions whose mark is known.",
+    "The reference and correct answers in other styles get full marks.",
+    "The untouched student release gets none.",
+    "About a thousand wrong answers each fail exactly the checks that they should.",
+    "The tests execute the notebooks and grade some of the submissions with a known mark.",
 )
 @pytest.mark.slow
 @pytest.mark.parametrize("case", PROOF.values(), ids=PROOF)

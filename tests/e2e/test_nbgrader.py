@@ -86,7 +86,7 @@ def results(graded: Classroom) -> dict[str, Result]:
 
 
 @pytest.mark.promise(
-    "`autograde` takes its points from the grader of this course.", "nbgrader's gradebook, by `nbgrader autograde`"
+    "`autograde` takes its points from this course's grader.", "nbgrader's gradebook, by `nbgrader autograde`"
 )
 @pytest.mark.parametrize("student", CLASS)
 def test_the_gradebook_has_the_points_that_the_grader_gave(
@@ -166,7 +166,7 @@ def test_students_fetch_their_feedback(graded: Classroom) -> None:
 
 @pytest.mark.promise(
     "nbgrader autograde 02_nodes",
-    "It records a stored result of `autograder grade` and does not grade that submission again.",
+    "`autograde` records that result instead of grading again.",
 )
 def test_results_graded_before_in_parallel_are_recorded(graded: Classroom, results: dict[str, Result]) -> None:
     stored = graded.place / "results"

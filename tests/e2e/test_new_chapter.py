@@ -36,9 +36,9 @@ def on(course: Path, words: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.promise(
-    "`autograder new chapter 10_mapping` writes a small one that works",
-    "`autograder --course FOLDER VERB` works on it with every verb.",
-    "The new chapter is small, but nothing is missing.",
+    "`autograder new chapter 10_mapping` creates a small, working chapter",
+    "`autograder --course FOLDER VERB` selects the course for any verb.",
+    "The new chapter is small but complete.",
 )
 def test_a_new_chapter_keeps_every_rule(course: Path) -> None:
     checked = on(course, "course check")
@@ -56,7 +56,7 @@ def test_a_new_chapter_contains_no_placeholder_of_the_template(course: Path) -> 
     assert [path for path, text in texts.items() if "NEW_" in f"{path}{text}" or "TODO" in text] == []
 
 
-@pytest.mark.promise("Without `--only`, `verify` also tries every small error in all that students write")
+@pytest.mark.promise("Without `--only`, `verify` also generates small errors in everything that students write")
 @pytest.mark.nightly
 def test_every_mutant_of_a_new_chapter_is_killed(course: Path) -> None:
     done = on(course, "verify -j 2")
@@ -93,13 +93,13 @@ def test_an_invalid_name_of_a_new_chapter_is_refused_and_nothing_is_written(
 
 
 @pytest.mark.promise(
-    "The variable says on which course `autograder` works.",
-    "The reference and the variant get all points, the untouched release none",
+    "The variable tells `autograder` which course to use.",
+    "The reference and the variant get all points, the untouched student release gets none",
     "`--record` writes all checks that the error fails to `mutants.snapshot.yaml`.",
-    "`autograder verify --assignment 02_nodes --only index_zero_is_forward` grades one of them",
-    "`sync` writes that, and `check` finds what does not fit together",
-    "`graded/ada/feedback.html` shows the check, your hint, and the sentence of the notebook.",
-    "Students get the course without hidden checks and answers, by this command:",
+    "`autograder verify --assignment 02_nodes --only index_zero_is_forward` grades a single mutant",
+    "`sync` updates it, and `check` reports inconsistencies",
+    "`graded/ada/feedback.html` shows the check, your hint, and the requirement from the notebook.",
+    "This command creates the student release, which has no hidden checks and no answers:",
 )
 def test_every_command_of_the_tutorial_prints_what_the_page_says(tmp_path: Path) -> None:
     blocks = BLOCKS.findall(PAGE.read_text(encoding="utf-8"))

@@ -48,7 +48,7 @@ def test_the_reference_passes_every_visible_check_and_leaves_nothing_in_the_work
 
 @pytest.mark.promise(
     "`check(...)` answers at once.",
-    "It says for each check whether it passed, why not, and gives a hint.",
+    "For each check it says whether it passed and, if it failed, why, with a hint.",
     "Each exercise has a check that answers at once",
 )
 def test_a_failed_check_shows_hints_and_the_other_checks_still_run(tmp_path: Path) -> None:

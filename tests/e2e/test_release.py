@@ -33,7 +33,7 @@ def text_of(folder: Path) -> str:
     return "\n".join(path.read_text(errors="replace") for path in folder.rglob("*") if path.is_file())
 
 
-@pytest.mark.promise("autograder release --out course", "The folder holds the notebooks without their solutions")
+@pytest.mark.promise("autograder release --out course", "The folder contains the notebooks without their solutions")
 def test_the_release_contains_every_chapter_as_nbgrader_releases_it(bundle: Path) -> None:
     for chapter in chapters():
         released = in_form(chapter.read(), Form.RELEASED)
@@ -58,7 +58,7 @@ def test_each_make_target_that_the_release_names_is_in_its_makefile(bundle: Path
     assert {"setup", "real-launch"} <= named <= targets
 
 
-@pytest.mark.promise("It holds no hidden check and no solution.", "autograder release --out course")
+@pytest.mark.promise("It contains no hidden checks and no solutions.", "autograder release --out course")
 def test_the_release_contains_no_line_of_a_hidden_suite(bundle: Path) -> None:
     shown = text_of(bundle)
     hidden = {
@@ -96,9 +96,10 @@ def test_check_of_the_release_runs_without_the_instructors_modules(bundle: Path)
 @pytest.mark.promise(
     "autograder release 00_welcome 01_package_structure --out week-1",
     "autograder release 02_nodes --out week-2-again --newest /srv/ros2/newest",
+    "`--newest` names a folder that students' machines can read",
     ".venv/bin/autograder update ../FOLDER",
-    "They unpack it and type `autograder update FOLDER`.",
-    "A later release, of all chapters or of one, updates the folders that students have already:",
+    "Students unpack it and type `autograder update FOLDER`.",
+    "A later release, of one chapter or all, updates the folders that students already have:",
 )
 def test_a_release_of_one_chapter_updates_a_bundle_of_all_chapters(bundle: Path, tmp_path: Path) -> None:
     mine = shutil.copytree(bundle, tmp_path / "mine")

@@ -92,7 +92,7 @@ def _out(*names: str) -> list[str]:
         return [out for name in names if (out := in_cell(tries, name, server.getsockname()[1]))]
 
 
-@pytest.mark.promise("sandbox without network and without sight of the checks")
+@pytest.mark.promise("sandbox that has no network and cannot see the checks")
 def test_no_file_process_or_memory_of_the_grader_can_be_read() -> None:
     assert _out("files", "processes", "memory") == []
 
@@ -129,8 +129,8 @@ def test_a_large_file_is_cut_off() -> None:
 
 
 @pytest.mark.promise(
-    "sandbox without network and without sight of the checks",
-    "Students' code does not see it: the sandbox has neither the network nor that folder.",
+    "sandbox that has no network and cannot see the checks",
+    "Students' code cannot read it: the sandbox has neither the network nor that folder.",
 )
 def test_there_is_no_way_out_to_any_network() -> None:
     assert _out("network", "loopback") == []

@@ -69,7 +69,7 @@ def test_the_proof_of_a_second_course_succeeds(autograder: Run) -> None:
     "make demo",
     "`make demo` takes about three minutes the first time and ends with one line for each robot",
     "`.build/demo/` then holds the results as JSON.",
-    "For each robot it holds a page of feedback",
+    "It also holds a feedback page for each robot",
 )
 def test_the_demo_ends_with_a_line_for_each_robot_and_writes_its_results(course: Path, autograder: Run) -> None:
     done = autograder("demo")
@@ -81,7 +81,7 @@ def test_the_demo_ends_with_a_line_for_each_robot_and_writes_its_results(course:
     assert all((made / name / "feedback.html").is_file() for name, _ in rows)
 
 
-@pytest.mark.promise("The checks of a chapter are imported as `autograder.checks.chID`, wherever the course lies.")
+@pytest.mark.promise("A chapter's checks are imported as `autograder.checks.chID`, wherever the course is.")
 def test_feedback_of_a_second_course_quotes_the_contract_of_that_course(
     course: Path, autograder: Run, tmp_path: Path
 ) -> None:
@@ -105,14 +105,14 @@ def test_a_course_folder_without_course_yaml_is_refused(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.promise("So does the environment variable `AUTOGRADER_COURSE`")
+@pytest.mark.promise("The environment variable `AUTOGRADER_COURSE` does the same")
 def test_a_second_course_has_only_its_own_chapters(autograder: Run) -> None:
     done = autograder("grade", ".", "--assignment", "02_nodes", "--out", "graded")
     assert done.returncode == 2
     assert "there are for: 01_greeting, 02_beat" in done.stderr
 
 
-@pytest.mark.promise("Sandboxes and releases hide the hidden checks, the reference and the sources of the notebooks")
+@pytest.mark.promise("Sandboxes and student releases hide the hidden checks, the reference and the notebook sources")
 def test_the_release_of_a_second_course_holds_no_answer_and_no_hidden_check_of_any_course(
     course: Path, autograder: Run, tmp_path: Path
 ) -> None:
@@ -133,7 +133,7 @@ def test_the_release_of_a_second_course_holds_no_answer_and_no_hidden_check_of_a
     assert checked.returncode == 1
 
 
-@pytest.mark.promise("Sandboxes and releases hide the hidden checks, the reference and the sources of the notebooks")
+@pytest.mark.promise("Sandboxes and student releases hide the hidden checks, the reference and the notebook sources")
 def test_a_sandbox_hides_checks_reference_and_notebooks_of_a_second_course(course: Path) -> None:
     code = (
         "import sys\n"
@@ -166,7 +166,7 @@ def test_a_solved_notebook_of_a_second_course_runs_and_is_graded_as_a_submission
     assert graded.returncode == 0, graded.stdout + graded.stderr
 
 
-@pytest.mark.promise("which nbgrader, JupyterLab and the workers of a cluster heed")
+@pytest.mark.promise("also for nbgrader, JupyterLab and the workers of a cluster")
 def test_nbgrader_records_the_marks_of_a_second_course(course: Path) -> None:
     def nbgrader(verb: str) -> None:
         done = run("nbgrader", verb, "01_greeting", cwd=course, AUTOGRADER_COURSE=str(course))

@@ -109,7 +109,7 @@ def runs() -> list[ParameterSet]:
     ]
 
 
-@pytest.mark.promise("The tests execute the notebooks, and grade some of the submissions whose mark is known.")
+@pytest.mark.promise("The tests execute the notebooks and grade some of the submissions with a known mark.")
 @pytest.mark.slow
 @pytest.mark.timeout(1200)  # half a minute on an idle machine; the bound is for a stuck kernel
 @pytest.mark.parametrize(("chapter", "form"), runs())

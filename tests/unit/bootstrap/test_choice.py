@@ -72,7 +72,7 @@ def test_a_students_workspace_over_the_wheels_does_not_count_as_sourced() -> Non
     assert bootstrap.sourced_ros(overlaid, VENV, PY312) is None
 
 
-@pytest.mark.promise("Where a ROS 2 Jazzy is sourced, that one is used.")
+@pytest.mark.promise("If a ROS 2 Jazzy installation is sourced, the course uses it.")
 def test_a_sourced_jazzy_is_used(ros: Path) -> None:
     sourced = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": "/opt/ros/jazzy", "PYTHONPATH": f"/elsewhere:{ros}"}
     assert bootstrap.sourced_ros(sourced, VENV, PY312) == str(ros)

@@ -38,7 +38,7 @@ def test_make_alone_lists_every_target_with_its_help() -> None:
     assert make("help") == told
 
 
-@pytest.mark.promise("`.ci/run` runs lint, types and all tests but the nightly ones.")
+@pytest.mark.promise("`.ci/run` runs the linters, the type checker and all tests except the nightly ones.")
 def test_ci_runs_lint_types_doctor_and_all_tests_but_the_nightly_ones() -> None:
     assert re.search(r"^make test ", (ROOT / ".ci" / "run").read_text(), re.MULTILINE)
     told = make("-n", "test")
@@ -105,7 +105,7 @@ def test_without_a_usable_python_the_makefile_takes_python3_and_the_set_up_repor
     assert chosen(interpreters) == "python3"
 
 
-@pytest.mark.promise("`make PYTHON=...` takes a Python of your choice", "`make setup PYTHON=python3.12`")
+@pytest.mark.promise("`make PYTHON=...` uses the Python of your choice", "`make setup PYTHON=python3.12`")
 def test_the_interpreter_that_the_user_chose_is_used(interpreters: Path) -> None:
     assert chosen(interpreters, PYTHON="/opt/python3.13") == "/opt/python3.13"
 

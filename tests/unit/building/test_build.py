@@ -43,7 +43,7 @@ def test_a_whole_package_is_found_by_the_name_in_its_manifest(tmp_path: Path) ->
     assert packages.find_packages(tmp_path) == ({NAME: tmp_path / NAME}, {})
 
 
-@pytest.mark.promise("The message names what was found.")
+@pytest.mark.promise("The message lists the files that were found.")
 def test_a_missing_package_is_named_with_what_is_there(tmp_path: Path) -> None:
     _package(tmp_path, **{"package.xml": "<package><name>my_robot</name></package>"})
     (tmp_path / NAME).rename(tmp_path / "other")

@@ -62,7 +62,7 @@ def write(bundle: Path, answer: str) -> None:
     (bundle / "chapters/02_nodes/ws/src/robot/more.py").write_text("a student's")
 
 
-@pytest.mark.promise("It replaces what they have not changed, also single cells of a notebook, and adds what is new.")
+@pytest.mark.promise("The command replaces everything that they have not changed, down to single cells of a notebook,")
 def test_unchanged_files_become_those_of_the_later_release(bundle: Path, newer: Path) -> None:
     update_bundle(bundle, newer)
     for name in read_manifest(newer).files:
@@ -73,8 +73,8 @@ def test_unchanged_files_become_those_of_the_later_release(bundle: Path, newer: 
 
 @pytest.mark.promise(
     "What you wrote in `chapters` stays as it is.",
-    "Files and cells in `chapters` that they wrote stay.",
-    "The command names each file there that it left alone",
+    "It keeps files and cells in `chapters` that they wrote.",
+    "The command lists each file there that it did not update",
 )
 def test_files_and_cells_that_a_student_wrote_are_kept(bundle: Path, newer: Path) -> None:
     write(bundle, "my answer")
@@ -101,7 +101,7 @@ def test_kept_files_and_cells_are_kept_at_the_next_update(bundle: Path, newer: P
 
 
 @pytest.mark.promise(
-    "your version gets the ending `.yours`", "A file elsewhere that they changed is kept beside the new one."
+    "your version is kept with the suffix `.yours`", "Elsewhere, it keeps a file that they changed beside the new one."
 )
 def test_a_changed_file_of_the_course_is_set_aside(bundle: Path, newer: Path) -> None:
     (bundle / "sim/world.py").write_text("mine")

@@ -93,7 +93,7 @@ def test_grading_prints_a_line_and_a_row_for_each_submission_and_exits_0(
 @pytest.mark.promise(
     "autograder grade submissions/ --assignment 02_nodes --out results --resume -j 4",
     "lists the marks that differ",
-    "At the end come the students whose mark has changed, by how much, and by which checks.",
+    "At the end, the command lists each student whose mark has changed, by how much, and because of which checks.",
 )
 def test_regrading_with_resume_lists_the_students_whose_mark_changed(
     tmp_path: Path, make_result: MakeResult, graded: Callable[..., dict[str, Any]]

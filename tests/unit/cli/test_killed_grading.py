@@ -78,8 +78,8 @@ def listed(folder: Path) -> list[str]:
 
 
 @pytest.mark.promise(
-    "nor does a machine that stops",
-    "the same command lists all changes at its end",
+    "Neither Ctrl-C nor a crashed machine loses results",
+    "the same command lists all changes when it completes",
     "Each old result stays until the new one is complete.",
 )
 @pytest.mark.slow

@@ -61,7 +61,7 @@ def with_run(result: Result, name: str) -> Result:
     return replace(result, artifacts=(Artifact("turns.png", "track", SHA256, "turns", run=name),))
 
 
-@pytest.mark.promise("A submission travels as its files")
+@pytest.mark.promise("A submission is sent as its files")
 def test_a_parcel_is_unpacked_as_it_was_packed_for_any_file_names() -> None:
     names = ("src/a b/ü.py", "src/\udcff.txt", "run")
     files = tuple(SubmittedFile(PurePosixPath(name), name.encode("utf-8", "replace"), name == "run") for name in names)
@@ -158,7 +158,7 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
     }
 
 
-@pytest.mark.promise("The client checks it as that of a stranger", "Nothing is written before all of it holds.")
+@pytest.mark.promise("The client treats replies as untrusted.", "It writes nothing until the whole reply is valid.")
 def test_a_hostile_answer_is_refused_and_writes_nothing(job: Job, result: Result) -> None:
     for name, (data, why) in hostile(result).items():
         with pytest.raises(AnswerError, match=why):
@@ -181,7 +181,7 @@ def test_a_submission_that_intake_refuses_is_unclear_and_needs_no_worker(tmp_pat
     assert (result.status, result.score, result.diagnosis) == (Status.UNCLEAR, 0.0, caught.value.diagnosis)
 
 
-@pytest.mark.promise("An answer is at most 64 MiB")
+@pytest.mark.promise("A reply is at most 64 MiB")
 def test_an_answer_that_would_be_too_large_is_a_failure() -> None:
     files: dict[str, Any] = {"result.json": b"\x00" * (MAX_ANSWER + 1)}
     assert "which is too much" in Answer.unpack(Answer(files).pack()).failure

@@ -32,7 +32,7 @@ def test_a_text_that_is_no_address_is_a_usage_error(address: str) -> None:
         require_address(address)
 
 
-@pytest.mark.promise("An address that is not this machine's own is only used with TLS.")
+@pytest.mark.promise("Addresses of other machines are only used with TLS.")
 def test_submissions_never_leave_the_machine_in_clear_text() -> None:
     with pytest.raises(UsageError, match=r"in clear text: start scheduler and workers with tls://"):
         require_address("tcp://10.0.0.1:8786")
@@ -61,7 +61,7 @@ def test_a_certificate_works_for_server_and_client_and_only_its_owner_can_read_i
 HERE = "autograder 02_nodes 5ca1ab1e0000 10cc10cc10cc 3.12 stand-ins bubblewrap"
 
 
-@pytest.mark.promise("It gets no submission, and the client says in a sentence what differs.")
+@pytest.mark.promise("It gets no submissions, and the client says what differs.")
 @pytest.mark.parametrize(
     ("offered", "why"),
     [

@@ -36,7 +36,7 @@ def test_the_platform_page_lists_what_the_lock_installs_and_which_tutorials_run(
 
 
 @pytest.mark.promise(
-    "pytest, setuptools, CMake and the like have the versions of Jazzy's own platform",
+    "pytest, setuptools, CMake and similar tools have the versions of Ubuntu 24.04",
     "What students' programs, builds and tests meet has the versions of that platform",
 )
 @pytest.mark.parametrize("python", MADE["PYTHONS"])

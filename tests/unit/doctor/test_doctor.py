@@ -363,9 +363,9 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
 @pytest.mark.promise(
     "autograder doctor` says which command fixes it",
     "autograder doctor` names the command for each thing that is missing",
-    "autograder doctor` finds many of these by itself and names the command that fixes them",
-    "autograder doctor` looks at your machine and names the command that fixes it",
-    "`autograder doctor` tells them that their release is an older one",
+    "autograder doctor` detects many of these problems and names the command that fixes them",
+    "autograder doctor` examines your machine and names the command that fixes each problem",
+    "`autograder doctor` tells them when their release is out of date",
     "`autograder doctor` says where a machine has others",
     "| `g++: command not found` |",
 )
@@ -462,7 +462,7 @@ def forgets_tries() -> Iterator[None]:
 
 
 @pytest.mark.promise(
-    "The command that `autograder doctor` prints", "`autograder doctor` in a container says whether it is enough"
+    "The command that `autograder doctor` prints", "`autograder doctor` in a container says whether that is sufficient"
 )
 def test_a_bubblewrap_that_is_denied_namespaces_is_detected_on_this_machine(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgets_tries: None

@@ -102,7 +102,7 @@ def gradescope(stored: Class, out: Path) -> list[dict[str, Any]]:
     return [json.loads((out / item.student / "results.json").read_text(encoding="utf-8")) for item in stored]
 
 
-@pytest.mark.promise("`--format gradescope`: a `results.json` each")
+@pytest.mark.promise("`--format gradescope`: a `results.json` for each submission")
 def test_gradescope_gets_the_score_and_a_test_for_each_check(a_class: Class, tmp_path: Path) -> None:
     alice, bob, _ = gradescope(a_class, tmp_path / "out")
     assert (alice["score"], alice["execution_time"], alice["output"]) == (4.0, 12, "")
@@ -126,7 +126,7 @@ def test_gradescope_names_the_failure_with_which_another_came(a_class: Class, tm
     assert came not in tests[2]["output"] + tests[4]["output"]
 
 
-@pytest.mark.promise("Students read the results of hidden checks when you publish the marks.")
+@pytest.mark.promise("Students see the results of hidden checks when you publish the marks.")
 def test_gradescope_shows_hidden_checks_with_the_marks(a_class: Class, tmp_path: Path) -> None:
     tests = gradescope(a_class, tmp_path / "out")[0]["tests"]
     assert {test["visibility"] for test in tests} == {"after_published"}

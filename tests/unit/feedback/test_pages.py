@@ -54,7 +54,7 @@ def test_the_page_shows_the_score_each_check_and_the_reason(make_result: MakeRes
     assert page.all("aria-label") == ["passed", "passed", "failed", "not checked", "failed"]
 
 
-@pytest.mark.promise("for example, runs in real time, and the result says so.")
+@pytest.mark.promise("runs in real time, and the result says so.")
 def test_only_a_result_with_a_program_in_real_time_has_the_note_on_real_time(
     make_result: MakeResult, tmp_path: Path
 ) -> None:
@@ -129,7 +129,7 @@ def test_hints_are_folded_one_inside_the_other_and_the_page_to_read_is_linked(
     assert "https://docs.ros.org/en/jazzy/p/sensor_msgs/" in page.all("href")
 
 
-@pytest.mark.promise("Feedback quotes them.", "which sentence of the notebook asks for something else")
+@pytest.mark.promise("Feedback quotes them.", "which requirement in the notebook it did not meet")
 def test_a_failed_check_quotes_its_sentence_of_the_contract(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
@@ -266,7 +266,7 @@ def test_a_page_asks_for_nothing_from_the_network(
     assert [href for href in page.all("href") if "://" in href] == ["https://docs.ros.org/en/jazzy/p/sensor_msgs/"]
 
 
-@pytest.mark.promise("give everybody a page of feedback")
+@pytest.mark.promise("give every student a feedback page")
 def test_the_table_links_each_page_and_sums_up(
     make_result: MakeResult, broken_result: Result, ungraded_result: Result, tmp_path: Path
 ) -> None:

@@ -24,13 +24,13 @@ def with_passes(result: Result, *passed: bool) -> Result:
     return replace(result, checks=checks, max_score=float(len(passed)))
 
 
-@pytest.mark.promise("The page shows how the marks are spread")
+@pytest.mark.promise("The page shows the distribution of marks")
 def test_marks_are_counted_in_bands_and_full_marks_lie_in_the_last(make_result: MakeResult) -> None:
     results = [with_passes(make_result(), *([True] * n + [False] * (4 - n))) for n in (0, 1, 2, 4)]
     assert class_statistics(results).bands == (1, 0, 1, 0, 0, 1, 0, 0, 0, 1)
 
 
-@pytest.mark.promise("how well it tells good answers from weak ones")
+@pytest.mark.promise("how well it separates strong answers from weak ones")
 def test_a_check_that_only_good_submissions_pass_has_a_high_discrimination(make_result: MakeResult) -> None:
     rows = [(True, True, False), (True, True, False), (False, False, True), (False, False, True)]
     by_id = {c.id: c for c in class_statistics([with_passes(make_result(), *row) for row in rows]).checks}
@@ -47,7 +47,7 @@ def test_a_check_with_equal_results_has_no_discrimination_and_one_that_all_passe
     assert (missed.id, missed.passed, missed.total, missed.discrimination) == ("listens", 0, 3, None)
 
 
-@pytest.mark.promise("what was said most often")
+@pytest.mark.promise("the most frequent messages")
 def test_a_reason_is_counted_once_for_each_student_who_got_it(make_result: MakeResult) -> None:
     found = class_statistics([make_result("alice"), make_result("bob")]).reasons
     assert ("it starts after 3 s", 2) in found

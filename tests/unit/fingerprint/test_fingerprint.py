@@ -79,8 +79,8 @@ def test_a_file_that_a_grading_reads_changes_the_digest(name: str, course: Path)
 
 
 @pytest.mark.promise(
-    "`--resume` grades those again whose version has changed",
-    "This grades each submission again whose result is of another version of the suite",
+    "`--resume` grades results from other versions again",
+    "This command regrades each submission whose result comes from another version of the suite.",
 )
 @pytest.mark.parametrize("name", OWN)
 def test_a_file_of_the_chapter_changes_the_version(name: str, course: Path) -> None:

@@ -39,8 +39,8 @@ def test_a_single_submission_has_the_name_of_its_folder_or_file(tmp_path: Path) 
 
 
 @pytest.mark.promise(
-    "A folder with one submission for each student is graded like this:",
-    "Without `--roster`, the student has the whole name of the clone.",
+    "This command grades a folder with one submission for each student:",
+    "Without `--roster`, the student's name is the clone's whole name.",
 )
 def test_a_folder_of_submissions_has_one_submission_for_each_student(tmp_path: Path) -> None:
     _submission(tmp_path / "class" / "bob")
@@ -148,7 +148,7 @@ def grade(
     return run
 
 
-@pytest.mark.promise("Equal submissions are graded once, and the result is stored for each.")
+@pytest.mark.promise("Identical submissions are graded once, and the result is stored for each of them.")
 def test_equal_submissions_are_graded_once_and_get_the_same_result(
     grade: Callable[..., list[str]], tmp_path: Path
 ) -> None:
@@ -163,7 +163,7 @@ def test_equal_submissions_are_graded_once_and_get_the_same_result(
     assert grade(resume=True) == ["bob"]
 
 
-@pytest.mark.promise("What wraps the answer, such as the name of the zip, makes no difference.")
+@pytest.mark.promise("Packaging, such as the name of the zip, makes no difference.")
 def test_equal_submissions_are_equal_in_any_archive_or_folder(tmp_path: Path) -> None:
     folder = _submission(tmp_path / "alice")
     with zipfile.ZipFile(tmp_path / "bob.zip", "w") as archive:
@@ -177,7 +177,7 @@ def test_as_many_submissions_are_graded_at_once_as_requested(grade: Callable[...
     assert grade(together=2, jobs=2) == ["alice", "bob"]
 
 
-@pytest.mark.promise("same command with `--resume` grades what is left, and what has changed since")
+@pytest.mark.promise("same command with `--resume` grades the remaining submissions and those that have changed since")
 def test_a_resumed_run_grades_only_what_has_changed(grade: Callable[..., list[str]], tmp_path: Path) -> None:
     grade()
     assert grade(resume=True) == []
@@ -196,7 +196,9 @@ def test_a_submission_with_an_invalid_stored_result_is_graded_again(
     assert grade(resume=True) == ["alice"]
 
 
-@pytest.mark.promise("Run the same command with `--resume`.", "The rest goes on; `--resume` tries it again.")
+@pytest.mark.promise(
+    "Run the same command with `--resume`.", "Grading continues with the rest; `--resume` tries it again."
+)
 def test_a_submission_that_was_not_graded_is_graded_again(grade: Callable[..., list[str]], tmp_path: Path) -> None:
     grade()
     path = tmp_path / "out" / "alice" / "result.json"

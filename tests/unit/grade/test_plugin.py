@@ -102,7 +102,8 @@ def test_each_check_passes_or_fails_with_its_fraction_in_the_order_of_the_file(g
 
 
 @pytest.mark.promise(
-    "`hint` is shown when the check fails", "`expect(..., hints=...)` has others for a failure that they do not fit"
+    "`hint` texts are shown one after the other when the check fails",
+    "`expect(..., hints=...)` replaces them for a failure that they do not fit",
 )
 def test_a_failure_has_the_hints_of_the_check_or_its_own(grade: Grade) -> None:
     plugin = grade("""
@@ -148,7 +149,7 @@ def test_checks_that_need_a_failed_check_directly_or_not_are_not_run(grade: Grad
     assert plugin.failures == []
 
 
-@pytest.mark.promise("This one is run in any case, and feedback shows it under them if both fail.")
+@pytest.mark.promise("If both fail, feedback shows this one under the other.")
 def test_a_check_after_one_that_failed_is_run_and_judged_by_itself(grade: Grade) -> None:
     plugin = grade("""
         @check(points=1, group="g")
@@ -354,7 +355,7 @@ def test_a_check_gets_the_workspace_the_seed_and_a_gallery_of_its_own(grade: Gra
     assert _outcomes(plugin) == {"it": (Outcome.PASSED, 1.0)}
 
 
-@pytest.mark.promise("`draw` gives random numbers that follow from the seed of the grading.")
+@pytest.mark.promise("`draw` is a random number generator that is seeded for each grading.")
 def test_what_a_check_draws_follows_from_the_seed(grade: Grade) -> None:
     text = """
         @check(points=1, group="g")

@@ -279,8 +279,8 @@ def test_there_are_sixty_envelopes_and_more() -> None:
 
 
 @pytest.mark.promise(
-    "a file that is missing, or still as you got it, is taken from the notebook's cell",
-    "A file that is missing, or still as released, is taken from the notebook's cell.",
+    "If a file is missing or unchanged, it is taken from the notebook's cell.",
+    "If a file is missing or unchanged since the release, it is taken from the notebook's cell.",
 )
 @pytest.mark.parametrize("envelope", FOLDERS)
 def test_a_folder_is_graded_as_the_plain_answer(
@@ -345,7 +345,7 @@ def test_a_link_outside_of_the_packages_is_left_out_and_named(
     assert found.unused == ("latest is a symbolic link", "pipe is not a regular file")
 
 
-@pytest.mark.promise("Screenshots, reports and readmes beside the answer are listed and not used.")
+@pytest.mark.promise("Screenshots, reports and readme files beside the answer are listed but not used.")
 def test_each_file_that_plays_no_part_is_named(answer: Answer, tmp_path: Path) -> None:
     files = {
         **answer.released,
@@ -389,7 +389,7 @@ UNCLEAR: dict[str, tuple[Callable[[Answer], Files], str]] = {
 
 
 @pytest.mark.promise(
-    "For 7z, RAR and Zstandard, the message says to unpack them.", "A submission is *unclear* if it cannot be opened"
+    "For 7z, RAR and Zstandard, a message asks you to unpack them.", "A submission is *unclear* if it cannot be opened"
 )
 @pytest.mark.parametrize("envelope", UNCLEAR)
 def test_what_may_hold_an_answer_and_is_unclear_says_what_to_do(envelope: str, answer: Answer, tmp_path: Path) -> None:

@@ -28,7 +28,7 @@ def test_a_course_needs_a_name_and_a_title_and_all_else_has_a_default(tmp_path: 
     assert small.released == ()
 
 
-@pytest.mark.promise("the file may name other places")
+@pytest.mark.promise("The file can name other locations")
 def test_a_course_file_names_the_folders_and_the_files_that_students_get(tmp_path: Path) -> None:
     small = course(tmp_path, LINES + "checks: suites\nreleased: [chapters/commands.md]\n")
     assert small.checks == "suites"

@@ -96,8 +96,8 @@ def test_the_name_of_a_moodle_file_cannot_make_it_another_students(tmp_path: Pat
 
 
 @pytest.mark.promise(
-    "A download of Moodle, Canvas, Gradescope or GitHub Classroom is graded",
-    "Canvas says in the names of files who was late",
+    "Downloads from Moodle, Canvas, Gradescope and GitHub Classroom are graded",
+    "Canvas marks late submissions in their file names",
 )
 def test_a_canvas_download_names_attempts_and_late_submissions(tmp_path: Path) -> None:
     folder = download(
@@ -126,7 +126,7 @@ def test_the_files_of_a_canvas_attempt_come_together_whatever_their_numbers(tmp_
     assert (collected.older, collected.unmatched) == ((), ())
 
 
-@pytest.mark.promise("A late attempt replaces one that was in time.")
+@pytest.mark.promise("A late attempt replaces an earlier one that was on time.")
 def test_the_files_of_a_late_canvas_attempt_replace_those_of_one_in_time(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "canvas",
@@ -156,8 +156,8 @@ def receipts(folder: Path, **logins: str) -> None:
 
 @pytest.mark.promise(
     "| Blackboard |",
-    "Whose a file of Blackboard is, the receipt beside it says",
-    "A text that a student typed in without a file is listed, and the exit status is 1.",
+    "A Blackboard receipt, a text file beside the submission, identifies the student.",
+    "Text that a student typed in without attaching a file is listed, and the exit status is 1.",
 )
 def test_a_blackboard_download_holds_attempts_and_a_receipt_for_each(tmp_path: Path) -> None:
     folder = download(
@@ -199,7 +199,7 @@ BRIGHTSPACE = """OrgDefinedId,Username,Last Name,First Name,Email,End-of-Line In
 """
 
 
-@pytest.mark.promise("| Brightspace (D2L) |", "Brightspace names the member who handed in")
+@pytest.mark.promise("| Brightspace (D2L) |", "Brightspace names only the member who submitted")
 def test_a_brightspace_download_names_the_student_and_the_time_in_folders_or_files(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "Lab 1 Download",
@@ -241,7 +241,7 @@ typist,typist,Text,Tom,0.0
 """
 
 
-@pytest.mark.promise("| Sakai |", "and each one whom the name of a folder of Sakai names")
+@pytest.mark.promise("| Sakai |", "So does every student named in a Sakai folder's name.")
 def test_a_sakai_download_has_a_folder_for_each_student_or_group(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "bulk_download",
@@ -392,7 +392,7 @@ def test_each_member_of_a_gradescope_group_has_the_submission(tmp_path: Path) ->
     )
 
 
-@pytest.mark.promise("A download of Moodle, Canvas, Gradescope or GitHub Classroom is graded")
+@pytest.mark.promise("Downloads from Moodle, Canvas, Gradescope and GitHub Classroom are graded")
 def test_the_list_of_a_gradescope_download_names_student_and_time_of_each_folder(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "export", *(f"assignment_1_export/submission_{n}/ws/src/p/package.xml" for n in (1, 2, 3, 4))
@@ -412,7 +412,9 @@ def test_the_list_of_a_gradescope_download_names_student_and_time_of_each_folder
     assert [name for name, _ in collected.unmatched] == ["submission_4"]
 
 
-@pytest.mark.promise("A download of Moodle, Canvas, Gradescope or GitHub Classroom is graded", "| GitHub Classroom |")
+@pytest.mark.promise(
+    "Downloads from Moodle, Canvas, Gradescope and GitHub Classroom are graded", "| GitHub Classroom |"
+)
 def test_a_github_classroom_clone_is_assigned_by_the_account_in_its_name(tmp_path: Path) -> None:
     names = ("02-nodes-jane-doe/ws/src/p/x", "02-nodes-Zoe/ws/src/p/x", "02-nodes-doe/ws/src/p/x", "02-nodes-eve/x")
     folder = download(tmp_path / "02-nodes-submissions", *names)
@@ -426,9 +428,9 @@ GITHUB = "identifier,github_username,github_id,name\nbob,bob,1,\neve,eve,2,\nzo√
 
 
 @pytest.mark.promise(
-    "A clone of GitHub Classroom is ASSIGNMENT-ACCOUNT",
-    "In another folder it is what most clones begin with",
-    "Where that leaves a doubt, the clone is listed as unclear.",
+    "The name of a GitHub Classroom clone is ASSIGNMENT-ACCOUNT.",
+    "In any other folder, ASSIGNMENT is the most frequent prefix of the clones",
+    "If the account is ambiguous, the clone is listed as unclear.",
 )
 @pytest.mark.parametrize(
     ("folder", "names", "entries", "strangers"),

@@ -34,8 +34,8 @@ def rows(path: Path) -> list[dict[str, str]]:
 
 
 @pytest.mark.promise(
-    "Marks are scaled to the maximum that the table says.",
-    "A student without a grade or a submission keeps an empty cell.",
+    "Marks are scaled to the maximum in the table.",
+    "The cell of a student without a grade or a submission stays empty.",
 )
 def test_moodle_gets_marks_scaled_to_its_own_maximum(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
@@ -53,8 +53,8 @@ def test_moodle_gets_marks_scaled_to_its_own_maximum(
 
 
 @pytest.mark.promise(
-    "`--format canvas`: the gradebook's columns of names and the assignment's",
-    "Moodle and Canvas get [their own tables]",
+    "`--format canvas`: the gradebook's name columns and the assignment's column",
+    "marks go back to Moodle and Canvas in [their own formats]",
 )
 def test_canvas_gets_the_column_of_the_assignment_and_late_submissions_lose_points(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
@@ -104,7 +104,7 @@ def test_a_table_of_another_shape_is_a_usage_error(
         write_marks(stored, system, roster, tmp_path / "out.csv")
 
 
-@pytest.mark.promise("`--late-penalty 20` takes a fifth of the marks of a late submission.")
+@pytest.mark.promise("`--late-penalty 20` deducts a fifth of the marks of a late submission.")
 def test_export_applies_the_late_penalty_to_late_students(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
 ) -> None:

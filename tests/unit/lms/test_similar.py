@@ -57,7 +57,7 @@ def test_without_copydetect_the_command_says_how_to_install_it(
     assert "run `.venv/bin/pip install copydetect`" in capsys.readouterr().err
 
 
-@pytest.mark.promise("What the release gives is taken out, and other names hide nothing.")
+@pytest.mark.promise("Code from the student release is excluded, and renaming does not hide a copy.")
 def test_a_renamed_copy_is_found_and_given_code_is_ignored() -> None:
     codes = {name: GIVEN + text for name, text in {"alice": OWN, "bob": RENAMED, "carol": OTHER}.items()}
     (found,) = pairs(codes, GIVEN, 0.5)
@@ -128,7 +128,7 @@ HARD = (
 )
 
 
-@pytest.mark.promise("the command names whose code is longer")
+@pytest.mark.promise("the command lists students whose code is longer")
 def test_of_a_long_text_so_many_characters_are_compared_and_that_is_said() -> None:
     told: dict[str, str] = {}
     long = "".join(f"{OWN}# {number}" for number in range(2_000))

@@ -54,7 +54,7 @@ def test_nothing_is_said_where_the_file_is_what_its_student_means(
 
 
 @pytest.mark.promise(
-    "Where a cell has another text than its file, `check(...)` and the feedback say so.",
+    "If a cell and its file differ, `check(...)` and the feedback say so.",
     '| "differs from the cell that writes it" |',
 )
 @pytest.mark.parametrize(

@@ -116,7 +116,7 @@ LATER = ("It turns <left>.", "It stops.")
 
 
 @pytest.mark.promise(
-    "After `check(...)` has passed, it lists the hidden checks, which run only after you have handed in."
+    "After `check(...)` has passed, it lists the hidden checks, which run only after you have submitted."
 )
 def test_a_report_lists_the_hidden_checks_if_all_visible_checks_passed() -> None:
     report = CheckReport("02_nodes", LINES[:1], later=LATER)

@@ -14,7 +14,7 @@ PACKAGES = ("launch", "launch_ros", "launch_testing", "launch_pytest")
 ADVICE = "run `make real-launch` (needs GitHub), or use a shell in which an installation of ROS 2 is sourced"
 
 
-@pytest.mark.promise("stand-ins written here are used", "and the course's stand-ins are used")
+@pytest.mark.promise("it installs stand-ins written for this course", "and the course's stand-ins are used")
 @pytest.mark.parametrize("name", PACKAGES)
 def test_a_stand_in_says_that_it_is_one_and_how_to_get_the_real_package(name: str) -> None:
     text = " ".join((importlib.import_module(name).__doc__ or "").split())

@@ -57,7 +57,7 @@ def test_a_release_gains_nothing() -> None:
     assert verify_zero(result("nan")).startswith("it scores")
 
 
-@pytest.mark.promise("Without, it ends with 1 where a mutant passes its own check")
+@pytest.mark.promise("Without `--record`, the exit status is 1 if a mutant passes the check that should catch it")
 def test_a_mutant_fails_its_own_check_and_what_is_recorded_and_no_other() -> None:
     mutant = next(m for m in mutants(ASSIGNMENT) if m.id == "minus_inf_dropped")
     assert verify_mutant(mutant, result(*mutant.fails)) == ""
@@ -92,7 +92,7 @@ def test_the_summary_counts_each_kind() -> None:
 
 
 @pytest.mark.promise(
-    "`autograder verify --assignment 02_nodes` grades the reference, the untouched release,",
+    "`autograder verify --assignment 02_nodes` grades the reference, the untouched student release,",
     "`make verify` grades all of these submissions.",
 )
 def test_the_whole_proof_contains_every_kind_and_each_submission_once() -> None:
