@@ -13,6 +13,9 @@ import pytest
 ROOT = Path(__file__).parents[3]
 
 
+STUDENTS = ROOT / "assets" / "students" / "Makefile"
+
+
 def make(*arguments: str, path: str | None = None, **environ: str) -> str:
     """Run make in the project and return what it prints."""
     clean = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS", "PYTHON"))}
@@ -73,8 +76,16 @@ def interpreter(folder: Path, name: str, body: str) -> None:
 
 
 def chosen(folder: Path, **environ: str) -> str:
-    """Return the interpreter that the set-up would be run with; the system has none unless one is given."""
-    return make("-n", "setup", path=str(folder), **{"SYSTEM_PYTHON": "", **environ}).split()[0]
+    """Return the interpreter that both set-ups, the course's and a release's, would be run with.
+
+    The system has none unless one is given.
+    """
+    system = {"SYSTEM_PYTHON": "", **environ}
+    (choice,) = {
+        make("-n", "-f", str(makefile), "setup", path=str(folder), **system).split()[0]
+        for makefile in (ROOT / "Makefile", STUDENTS)
+    }
+    return choice
 
 
 def test_a_python_that_does_not_run_is_skipped(interpreters: Path) -> None:
@@ -108,6 +119,14 @@ def test_without_a_usable_python_the_makefile_takes_python3_and_the_set_up_repor
 @pytest.mark.promise("`make PYTHON=...` uses the Python of your choice", "`make setup PYTHON=python3.12`")
 def test_the_interpreter_that_the_user_chose_is_used(interpreters: Path) -> None:
     assert chosen(interpreters, PYTHON="/opt/python3.13") == "/opt/python3.13"
+
+
+def test_a_release_prefers_the_same_python_of_the_system_as_the_course() -> None:
+    lines = [
+        next(line for line in path.read_text().splitlines() if line.startswith("SYSTEM_PYTHON"))
+        for path in (ROOT / "Makefile", STUDENTS)
+    ]
+    assert lines == ["SYSTEM_PYTHON ?= /usr/bin/python3"] * 2
 
 
 def test_the_interpreter_chosen_on_this_machine_is_supported() -> None:
