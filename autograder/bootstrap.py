@@ -15,6 +15,7 @@ import os
 import platform
 import re
 import shutil
+import stat
 import subprocess
 import sys
 import sysconfig
@@ -108,6 +109,17 @@ def sourced_ros(environ: Mapping[str, str], venv: Path, interpreter: Interpreter
             "(the wheels are then used)"
         )
     return str(modules[0])
+
+
+def closed_to_other_users(python: Path, course: Path) -> str | None:
+    """Say why no other user can run the `.venv` that `python` makes in the folder `course`, and what to do; or None."""
+    advice = {course: "move the course, to /srv for example, and run `make setup` there"}
+    advice[python] = "run `make setup PYTHON=/usr/bin/python3`"
+    for path, what_to_do in advice.items():
+        for folder in reversed(path.parents):
+            if not folder.stat().st_mode & stat.S_IXOTH:
+                return f"other users cannot run .venv, as {folder} is closed to them, and {path} is in it; {what_to_do}"
+    return None
 
 
 def without_ros(lock: str) -> str:
@@ -253,6 +265,24 @@ def exclusive_set_up(lock_file: Path) -> Iterator[None]:
         yield
 
 
+def missing_packages(interpreter: Interpreter, headers: Path, *, browser: bool) -> list[str]:
+    """Return the packages of apt's that are not there: tools, and Python's headers in the folder `headers`."""
+    tools = [tool for tool in TOOLS if browser or tool != "chromium"]
+    missing = [tool for tool in tools if not any(map(shutil.which, TOOLS[tool]))]
+    with_headers = (headers / "Python.h").is_file()
+    return missing if with_headers else [*missing, "python{}.{}-dev".format(*interpreter.version)]
+
+
+def require_compiler(missing: Sequence[str]) -> None:
+    """Raise a `SetUpError` if a package by which message packages are compiled is missing."""
+    if needed := [package for package in missing if package == "g++" or package.endswith("-dev")]:
+        lacks = " and ".join("g++" if package == "g++" else "Python.h" for package in needed)
+        raise SetUpError(
+            f"{lacks} not found, which ROS needs to compile messages: "
+            f"run `sudo apt-get install {' '.join(needed)}`, then the same command again"
+        )
+
+
 def install_tools(missing: Sequence[str], tried: Path, uid: int, run: Run) -> None:
     """Install packages with apt, or say the command; `tried` remembers what failed, as each attempt takes seconds."""
     by_hand = f"sudo apt-get install {' '.join(missing)}"
@@ -291,13 +321,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         check_machine(interpreter.version, platform.system(), platform.machine())
         sourced, standins = sourced_ros(os.environ, root / ".venv", interpreter), os.environ.get("ROS2_STANDINS")
         set_up = SetUp(root, interpreter, sourced, run, standins == "1")
-        asked = [tool for tool in TOOLS if options.browser or tool != "chromium"]
-        missing = [tool for tool in asked if not any(map(shutil.which, TOOLS[tool]))]
-        if not Path(sysconfig.get_path("include"), "Python.h").is_file():
-            missing.append("python{}.{}-dev".format(*interpreter.version))
-        if missing:
+        headers = Path(sysconfig.get_path("include"))
+        if missing := missing_packages(interpreter, headers, browser=options.browser):
             install_tools(missing, root / ".build" / "apt-tried", os.geteuid(), run)
         if set_up.missing_parts(dev=options.dev) or options.real_launch:
+            require_compiler(missing_packages(interpreter, headers, browser=False))
+            if os.geteuid() == 0 and (closed := closed_to_other_users(Path(interpreter.executable), root)):
+                print_progress(closed)
             with exclusive_set_up(root / ".build" / "set-up.lock"):
                 set_up.make(dev=options.dev, real_launch=options.real_launch)
     except SetUpError as error:

@@ -15,6 +15,7 @@ def examine(system: System) -> tuple[Finding, ...]:
     return (
         machine.python(system),
         machine.environment(system),
+        *machine.other_users(system),
         *ros.examine(system),
         machine.compiler(system),
         machine.build_tools(system),

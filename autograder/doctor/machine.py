@@ -63,6 +63,12 @@ def environment(system: System) -> Finding:
     return Finding("environment", Status.WEAK, found, "make setup")
 
 
+def other_users(system: System) -> tuple[Finding, ...]:
+    """Look at whether the users of this machine, such as a class, can run what root has set up."""
+    closed = system.closed_to_other_users()
+    return (Finding("other users", Status.WEAK, closed, "make setup PYTHON=/usr/bin/python3"),) if closed else ()
+
+
 def compiler(system: System) -> Finding:
     """Look for the compilers, and for Python's headers, that turn message definitions into libraries."""
     missing = [command for command in ("gcc", "g++") if system.run([command, "--version"], {}).status != 0]

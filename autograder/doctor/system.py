@@ -14,6 +14,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from autograder import layout
+from autograder.bootstrap import closed_to_other_users
 from autograder.ros import find
 from autograder.ros.launch_packages import describe_launch
 from autograder.ros.patch_wheels import baked_files
@@ -97,6 +99,10 @@ class System:
                 return True
         except OSError:
             return False
+
+    def closed_to_other_users(self) -> str | None:
+        """Say why other users cannot run what root has set up here; None if they can, or this user is not root."""
+        return closed_to_other_users(Path(sys.executable).resolve(), layout.ROOT) if os.geteuid() == 0 else None
 
     def package(self, name: str) -> str | None:
         """Return an installed distribution's version, or None."""

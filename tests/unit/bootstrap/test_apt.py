@@ -1,4 +1,7 @@
-"""Packages that pip does not have are installed with apt if no password is needed. Otherwise they are named."""
+"""Packages that pip does not have are installed with apt if no password is needed. Otherwise they are named.
+
+Without a compiler, or Python's headers, the set-up ends there.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,9 @@ from typing import Any
 import pytest
 
 from autograder import bootstrap
+from autograder.bootstrap import Interpreter, SetUpError
 
+PY312 = Interpreter("/usr/bin/python3.12", (3, 12), "3.12.1 (main)", ".cpython-312-x86_64-linux-gnu.so")
 Which = Callable[..., None]
 
 
@@ -70,3 +75,30 @@ def test_a_failed_installation_is_not_tried_again(
     assert "chromium is missing" in capsys.readouterr().out
     bootstrap.install_tools(["bubblewrap", "chromium"], tmp_path / "tried", 0, commands)
     assert any("apt-get" in line for line in commands.ran)
+
+
+@pytest.mark.promise("You need Linux on x86-64, Python 3.10 to 3.13 with its headers (python3-dev), pip, make and g++.")
+@pytest.mark.parametrize(
+    ("there", "with_headers", "told"),
+    [
+        (("g++", "bwrap"), False, r"Python\.h not found, .*: run `sudo apt-get install python3\.12-dev`, then"),
+        (("bwrap",), True, r"g\+\+ not found, .*: run `sudo apt-get install g\+\+`, then"),
+        ((), False, r"g\+\+ and Python\.h not found, .*: run `sudo apt-get install g\+\+ python3\.12-dev`, then"),
+    ],
+)
+def test_without_compiler_or_headers_the_set_up_stops_with_the_command(
+    installed: Which, tmp_path: Path, there: tuple[str, ...], with_headers: bool, told: str
+) -> None:
+    installed(*there)
+    if with_headers:
+        (tmp_path / "Python.h").touch()
+    with pytest.raises(SetUpError, match=told):
+        bootstrap.require_compiler(bootstrap.missing_packages(PY312, tmp_path, browser=False))
+
+
+def test_without_bubblewrap_the_set_up_goes_on(installed: Which, tmp_path: Path) -> None:
+    installed("g++")
+    (tmp_path / "Python.h").touch()
+    missing = bootstrap.missing_packages(PY312, tmp_path, browser=True)
+    assert missing == ["bubblewrap", "chromium"]
+    bootstrap.require_compiler(missing)

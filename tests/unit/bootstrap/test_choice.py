@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -126,3 +127,20 @@ def test_children_see_the_proxy_but_neither_foreign_modules_nor_the_wheels_libra
         "PIP_DISABLE_PIP_VERSION_CHECK": "1",
     }
     assert bootstrap.child_environment({"LD_LIBRARY_PATH": "/opt/python/lib"})["LD_LIBRARY_PATH"] == "/opt/python/lib"
+
+
+def test_a_python_or_a_course_that_other_users_cannot_reach_is_named_with_what_to_do() -> None:
+    with tempfile.TemporaryDirectory(dir="/tmp") as scratch:
+        place = Path(scratch).resolve()
+        (closed := place / "closed").mkdir()
+        place.chmod(0o755)
+        closed.chmod(0o700)
+        python, course = place / "python3", place / "course"
+        assert bootstrap.closed_to_other_users(python, course) is None
+        assert bootstrap.closed_to_other_users(closed / "bin" / "python3", course) == (
+            f"other users cannot run .venv, as {closed} is closed to them, and {closed}/bin/python3 is in it; "
+            "run `make setup PYTHON=/usr/bin/python3`"
+        )
+        told = bootstrap.closed_to_other_users(python, closed / "course")
+        assert told is not None
+        assert told.endswith("is in it; move the course, to /srv for example, and run `make setup` there")

@@ -67,6 +67,21 @@ def test_the_script_shows_the_output_of_a_failed_pip_and_writes_no_stamp(script_
     assert not (script_clone / ".venv" / bootstrap.STAMP).exists()
 
 
+def test_without_pythons_headers_the_script_ends_before_it_makes_anything(script_clone: Path, tmp_path: Path) -> None:
+    for tool in ("g++", "bwrap"):  # and no apt-get
+        (tmp_path / tool).touch(mode=0o755)
+    program = script_clone / "autograder/bootstrap.py"
+    code = f"import runpy, sysconfig; sysconfig.get_path = lambda name: {str(tmp_path)!r}; "
+    code += f"runpy.run_path({str(program)!r}, run_name='__main__')"
+    command = [Interpreter.running().executable, "-I", "-c", code]
+    done = subprocess.run(command, env={"PATH": str(tmp_path)}, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 1
+    assert "set-up: Python.h not found" in done.stderr
+    assert "-dev`, then the same command again.\n" in done.stderr
+    assert "making .venv" not in done.stdout
+    assert not (script_clone / ".venv").exists()
+
+
 def test_the_script_does_nothing_if_the_stamp_is_valid(script_clone: Path) -> None:
     program = script_clone / "autograder/bootstrap.py"
     code = f"""

@@ -67,6 +67,7 @@ GOOD: dict[str, Any] = dict(
     unpatched_cmake_files=lambda prefix: [],
     namespaces_failure=lambda: None,
     bounds=lambda: frozenset({"pids", "memory"}),
+    closed_to_other_users=lambda: None,
 )
 
 
@@ -131,6 +132,13 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     "a Mac": ("Python", {"platform": ("Darwin", "arm64")}, Status.MISSING, "Darwin arm64", "devcontainer up"),
     "an ARM board": ("Python", {"platform": ("Linux", "aarch64")}, Status.MISSING, "a JupyterHub", "devcontainer up"),
     "the system's own Python": ("environment", {"in_venv": False}, Status.WEAK, "not a virtual", "make setup"),
+    "a Python that root alone can run": (
+        "other users",
+        {"closed_to_other_users": lambda: "other users cannot run .venv, as /root is closed to them"},
+        Status.WEAK,
+        "/root is closed",
+        "make setup PYTHON=/usr/bin/python3",
+    ),
     "no ROS": (
         "ROS 2",
         {"find_ros": raising(RosNotFoundError("rclpy cannot be imported"))},
