@@ -1,19 +1,16 @@
 """Renders the pages from the templates. All text is escaped. A page loads no other file.
 
-The only script that a page lets run is the player's, which it names by its digest. A page without a run has none.
+A page lets no script run but its own, which it names by its digest: the player of a run, or what sorts a class's table.
 """
 
 from __future__ import annotations
 
 import base64
 import hashlib
-import os
-from collections.abc import Sequence
 from functools import cache
 from html import escape
 from pathlib import Path
-from statistics import mean
-from urllib.parse import quote, urlsplit
+from urllib.parse import urlsplit
 
 import jinja2
 from markupsafe import Markup
@@ -22,11 +19,9 @@ from autograder import layout
 from autograder.plain_text import clean
 from autograder.report.feedback.model import page_view
 from autograder.report.feedback.pictures import Picture
-from autograder.report.feedback.statistics import class_statistics
 from autograder.report.feedback.text import no_mark, number
 from autograder.result.causes import FAILED_AS_WELL
-from autograder.result.class_folder import SUMMARY
-from autograder.result.model import Result, Status, write_atomically
+from autograder.result.model import Result, write_atomically
 from autograder.suite.contract import contract
 
 TEMPLATES = layout.ROOT / "assets" / "templates"
@@ -57,6 +52,17 @@ def environment() -> jinja2.Environment:
     return found
 
 
+def digest(script: str) -> str:
+    """Return what names a script in a page's policy, which lets no other one run."""
+    return base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii")
+
+
+def write_page(path: Path, template: str, **values: object) -> Path:
+    """Write a page from its template and return its path."""
+    write_atomically(path, environment().get_template(template).render(**values).encode("utf-8"))
+    return path
+
+
 def write(result: Result, folder: Path, *, artifacts: Path | None = None) -> Path:
     """Write the feedback page of one submission and return its path.
 
@@ -71,11 +77,13 @@ def write(result: Result, folder: Path, *, artifacts: Path | None = None) -> Pat
     known = contract(result.assignment) if result.assignment in layout.assignments() else {}
     page = page_view(result, artifacts or folder, known)
     script, style = _player_assets() if page.plays else ("", "")
-    digest = base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii") if script else ""
-    template = environment().get_template("feedback.html.j2")
-    return _write(
+    return write_page(
         folder / PAGE,
-        template.render(page=page, script=Markup(script), script_digest=digest, player_style=Markup(style)),
+        "feedback.html.j2",
+        page=page,
+        script=Markup(script),
+        script_digest=digest(script),
+        player_style=Markup(style),
     )
 
 
@@ -99,45 +107,3 @@ def _player(picture: Picture, first: bool = False) -> Markup:
     still = f'<img class="run-still" src="{picture.uri}" alt="{alt}">' if picture.uri else ""
     options = {"id": f"run-{picture.name}", "data-theme": "auto", **({"data-first": "yes"} if first else {})}
     return Markup(player.markup(picture.run or "", still, **options))
-
-
-def write_summary(results: Sequence[Result], folder: Path) -> Path:
-    """Write the table of a class's submissions and return its path.
-
-    The row of a submission links to `folder/<student>/feedback.html` if that file exists.
-    """
-    graded = [result for result in results if result.status is Status.GRADED]
-    html = (
-        environment()
-        .get_template("summary.html.j2")
-        .render(
-            assignments=list(dict.fromkeys(result.assignment for result in results)),
-            rows=[(result, _link(result, folder), _reason(result)) for result in results],
-            graded=graded,
-            mean=mean(result.percent for result in graded) if graded else None,
-            statistics=class_statistics(graded) if graded else None,
-        )
-    )
-    return _write(folder / SUMMARY, html)
-
-
-def _link(result: Result, folder: Path) -> str | None:
-    if (folder / result.student).resolve().parent != folder.resolve():
-        return None
-    # The name of a folder may be no UTF-8, as that of a zip's member.
-    return f"{quote(os.fsencode(result.student))}/{PAGE}" if (folder / result.student / PAGE).is_file() else None
-
-
-def _reason(result: Result) -> str:
-    """Return a sentence that says why points are missing."""
-    page = page_view(result, None)
-    if not page.graded:
-        return no_mark(result)
-    if not page.started:
-        return result.diagnosis.sentence
-    return (page.first.message or page.first.title) if page.first else ""
-
-
-def _write(path: Path, html: str) -> Path:
-    write_atomically(path, html.encode("utf-8"))
-    return path
