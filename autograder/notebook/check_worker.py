@@ -2,7 +2,9 @@
 
 It does so with the code that grades submissions.
 
-python -m autograder.notebook.check_worker REQUEST
+python -m autograder.notebook.check_worker REQUEST DESCRIPTOR
+
+The descriptor is an end of its line (`autograder.run.sandbox.line`), over which it gets built interface packages.
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ import shutil
 import sys
 from collections.abc import Callable
 from dataclasses import asdict
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +25,7 @@ from autograder.notebook.worker_client import RECORDING, REPLY_FILE
 from autograder.result.model import write_json
 from autograder.ros import activate
 from autograder.ros.domains import Domain
+from autograder.run.sandbox import line
 from autograder.run.sandbox.launcher import current_tier, restore_sigint
 from autograder.run.sandbox.tiers import Tier
 
@@ -34,6 +38,7 @@ SEED = 1  # of the visible checks' inputs
 def main() -> None:
     """Run the request in the file that the command line names."""
     request = json.loads(Path(sys.argv[1]).read_text())
+    line.take(Connection(int(sys.argv[2])))
     restore_sigint()
     ros = activate()
     from autograder.run.workspace import Workspace  # once ROS is switched on: it reaches rclpy, and so does what builds

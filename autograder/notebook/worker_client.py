@@ -7,12 +7,14 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from multiprocessing import Pipe
 from pathlib import Path
 from typing import Any
 
+from autograder.building import keeper
 from autograder.exceptions import GraderError, UsageError
 from autograder.run.sandbox import best_tier
-from autograder.run.sandbox.cell import place_of, run_in_cell
+from autograder.run.sandbox.cell import ended, in_cell, place_of
 from autograder.run.sandbox.limits import NOTEBOOK_CELL
 from autograder.run.sandbox.spec import View
 from autograder.suite.fingerprint import places
@@ -31,19 +33,24 @@ def run_in_worker(verb: str, workspace: Path, **arguments: Any) -> Iterator[tupl
     source = workspace / "src"
     if not source.is_dir():
         raise UsageError(f"there is no folder {source}: run this from the assignment's folder, where ws/src is")
-    with tempfile.TemporaryDirectory(prefix="request-") as folder:
+    tier = best_tier()
+    ours, theirs = Pipe()
+    with tempfile.TemporaryDirectory(prefix="request-") as folder, ours:
 
         def command(scratch: Path) -> list[str]:
-            place = place_of(source.resolve(), best_tier(), scratch)
+            place = place_of(source.resolve(), tier, scratch)
             request = {"verb": verb, "source": place, "out": folder, "scratch": scratch}
             request["arguments"] = arguments
             file = Path(folder) / REQUEST  # a command line has no room for the walls of a large map
             file.write_text(json.dumps(request, default=str))
-            return [sys.executable, "-m", "autograder.notebook.check_worker", str(file)]
+            return [sys.executable, "-m", "autograder.notebook.check_worker", str(file), str(theirs.fileno())]
 
         shown = places(assignment, parts=("visible",)) if (assignment := arguments.get("assignment")) else []
         view = View(shown=tuple(shown), submitted=(source.resolve(),), writable=(Path(folder),))
-        report = run_in_cell(command, best_tier(), NOTEBOOK_CELL, view=view)
+        with theirs, in_cell(command, tier, NOTEBOOK_CELL, view=view, pass_fds=(theirs.fileno(),)) as (process, _):
+            theirs.close()  # once the worker has ended, nobody holds its end
+            keeper.attend(ours, tier, lambda: process.ending is not None)  # it asks for interface packages
+            report = ended(process)
         reply = Path(folder) / REPLY_FILE
         if report.returncode != 0 or not reply.is_file():
             raise GraderError(f"the check itself failed, not your code:\n{report.output[-3000:]}")

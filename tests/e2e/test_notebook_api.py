@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import nbformat
@@ -14,12 +17,17 @@ from nbgrader.validator import Validator
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import chapters
 from autograder.author.verification.mutants import mutants, write_mutant, write_reference
+from autograder.building import keeper
+from autograder.building.interfaces import Cache
 from autograder.layout import SOLUTIONS
 from autograder.notebook import check, drive, ros
 from autograder.notebook.checking import CheckReport
 from autograder.notebook.driving import FAULTS, DriveReport
 from autograder.notebook.notices import Notice
 from autograder.notebook.terminal import shell
+from autograder.run.sandbox import best_tier
+from autograder.run.sandbox.limits import SOURCES
+from autograder.run.sandbox.trees import Entry, read_tree
 from sim import Pose, RobotSpec, Simulation, World
 from sim.codec import to_json
 
@@ -44,6 +52,21 @@ def test_the_reference_passes_every_visible_check_and_leaves_nothing_in_the_work
     assert isinstance(report, CheckReport)
     assert report.passed, repr(report)
     assert [path.name for path in right.iterdir()] == ["src"]
+
+
+def test_message_packages_that_were_built_once_are_not_built_again_by_a_check(tmp_path: Path) -> None:
+    write_reference(("my_robot_interfaces", PACKAGE), tmp_path)
+    source = tmp_path / "src/my_robot_interfaces"
+    tree = {Entry(source.name, "folder"): b""}
+    tree |= {
+        replace(entry, path=f"{source.name}/{entry.path}"): data for entry, data in read_tree(source, SOURCES).items()
+    }
+    with Cache.default(keeper.CACHE).use(keeper.key(tree), partial(keeper._make, tree, best_tier())) as kept:
+        os.utime(kept, (0, 0))  # whoever takes it sets the time
+        report = check("03_interfaces", tmp_path)
+        assert isinstance(report, CheckReport)
+        assert report.passed, repr(report)
+        assert kept.stat().st_mtime > 0
 
 
 @pytest.mark.promise(
