@@ -23,7 +23,7 @@ OPEN = """
 
 - **Buffers of sockets, where no control group can be made.** There the limits of a sandbox count what its processes
   have mapped. `autograder doctor` says whether the kernel counts the rest.
-- **Answers copied from another student.** No mark depends on it. `autograder similar` shows pairs of submissions
+- **Answers copied from another student.** No mark depends on it. `autograder similar` shows groups of submissions
   that are alike, for a person to judge.
 - **Whole lines of a log that a program prints.** A node that prints what the logger would print is heard as if it had
   logged (07). A launch file that gives its processes other names can print an order that it does not keep (04).

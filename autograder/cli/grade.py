@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import click
 
@@ -18,17 +17,15 @@ from autograder.cli.options import (
     json_option,
     seed_option,
 )
+from autograder.cli.submissions import find_submissions, roster_option
 from autograder.cli.terminal import echo, on_line
 from autograder.cli.text_tables import failure_summary, score_text, table
 from autograder.exceptions import StudentError, UsageError
 from autograder.grade.apart import read_preview
-from autograder.grade.batch import GradeEach, discover, grade_all
+from autograder.grade.batch import GradeEach, grade_all
 from autograder.grade.store import LOG
-from autograder.lms.collect import collect, unpacked
-from autograder.lms.roster import read_roster
 from autograder.report import feedback
 from autograder.report.export.earlier import EarlierMarks
-from autograder.result.class_folder import COLLECTION_REPORT
 from autograder.result.model import Result, Status, write_json
 from autograder.run.sandbox import Tier
 from autograder.suite import suites
@@ -51,11 +48,7 @@ INTERRUPTED = 130  # the exit status of a shell after Ctrl-C
     is_flag=True,
     help="Keep a result if submission, suite, seed and isolation are the same. List the students whose mark changed.",
 )
-@click.option(
-    "--roster",
-    type=click.Path(path_type=Path, dir_okay=False, exists=True),
-    help="The table of students as CSV. PATHS is then one download of Moodle, Canvas, Gradescope or GitHub Classroom.",
-)
+@roster_option
 @click.option(
     "--scheduler",
     metavar="ADDRESS",
@@ -100,10 +93,10 @@ def grade(
     """
     suites.hidden(assignment)
     if dry_run:
-        with _find_submissions(paths, assignment, roster, out, write=False) as (submissions, all_fit):
+        with find_submissions(paths, assignment, roster) as (submissions, all_fit):
             sys.exit(0 if _preview(submissions, assignment, Tier(isolation)) and all_fit else 1)
     with (
-        _find_submissions(paths, assignment, roster, out) as (submissions, all_fit),
+        find_submissions(paths, assignment, roster, out=out) as (submissions, all_fit),
         Progress(len(submissions)) as progress,
     ):
         earlier = EarlierMarks(out, submissions)
@@ -154,35 +147,6 @@ def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None
             echo(f"{on_line(result.student)}: {said}", err=True)
     if json_file is not None:
         write_json(json_file, [result.to_json() for result in results])
-
-
-@contextmanager
-def _find_submissions(
-    paths: tuple[Path, ...], assignment: str, roster: Path | None, out: Path, *, write: bool = True
-) -> Iterator[tuple[Mapping[str, Path], bool]]:
-    """Yield the submissions, and whether each item of the download belongs to a student."""
-    if roster is None:
-        discovered = discover(paths, assignment)
-        _print_others(discovered.others)
-        yield discovered.submissions, not discovered.others
-        return
-    if len(paths) != 1:
-        raise UsageError("--roster goes with one download: give one zip or folder")
-    with unpacked(paths[0]) as folder, TemporaryDirectory(prefix="attempts-") as scratch:
-        found = collect(folder, read_roster(roster), assignment, Path(scratch))
-        _print_others(found.unmatched)
-        for title, names in (("Nothing handed in", found.missing), ("Late", found.late), ("Older ones", found.older)):
-            if names:
-                echo(f"{title}: {', '.join(map(on_line, names))}")
-        if write:
-            lists = {name: getattr(found, name) for name in ("late", "older", "unmatched", "missing")}
-            write_json(out / COLLECTION_REPORT, lists)
-        yield found.submissions, not found.unmatched
-
-
-def _print_others(others: Sequence[tuple[str, str]]) -> None:
-    for name, why in others:
-        echo(f"Not graded: {on_line(name)}: {on_line(why)}.", err=True)
 
 
 def _preview(submissions: Mapping[str, Path], assignment: str, tier: Tier) -> bool:

@@ -2,43 +2,55 @@
 
 from __future__ import annotations
 
+import sys
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from autograder import layout
 from autograder.author.course.release import write_bundle
 from autograder.cli.options import json_option
+from autograder.cli.submissions import find_submissions, roster_option
 from autograder.cli.terminal import echo, on_line
-from autograder.exceptions import StudentError, UsageError
+from autograder.exceptions import AutograderError, StudentError, UsageError
 from autograder.grade.apart import code, read_code
-from autograder.grade.batch import discover
 from autograder.result.model import write_json
 from autograder.run.sandbox import Tier
 from autograder.submission.intake import read_submission
+
+if TYPE_CHECKING:
+    from autograder.lms.similar import Group
 
 
 @click.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option("--assignment", required=True, metavar="ID", help="The assignment that the submissions answer.")
 @click.option("--out", required=True, type=click.Path(path_type=Path, file_okay=False), help="The folder for the page.")
+@roster_option
 @click.option(
     "--least",
     type=click.FloatRange(0, 100),
     default=50.0,
     show_default=True,
     metavar="PERCENT",
-    help="List a pair if at least PERCENT of the own text of one student is also in the other's.",
+    help="Put two students into a group if at least PERCENT of the own text of one is also in the other's.",
 )
 @json_option
-def similar(paths: tuple[Path, ...], assignment: str, out: Path, least: float, json_file: Path | None) -> None:
-    """List pairs of submissions at PATHS with similar passages. Text of the release does not count.
+def similar(
+    paths: tuple[Path, ...], assignment: str, out: Path, roster: Path | None, least: float, json_file: Path | None
+) -> None:
+    """List groups of submissions at PATHS with similar passages. Text of the release does not count.
 
-    A pair is a hint to read both texts, and no verdict. No mark changes.
+    PATHS are what `autograder grade` takes. A group is a hint to read the texts, and no verdict. No mark changes.
+
+    The exit status is 0 when every submission was compared, 1 when one cannot be read or fits no student of --roster,
+    or when there are no two to compare, and 2 for a wrong call.
     """
     try:
-        from autograder.lms.similar import MAX_PAIRS, pairs, write_pairs
+        from autograder.lms.similar import compare, write_page
     except ModuleNotFoundError as error:
         if error.name != "copydetect":
             raise
@@ -47,21 +59,52 @@ def similar(paths: tuple[Path, ...], assignment: str, out: Path, least: float, j
     def in_part(student: str, what: str) -> None:
         echo(f"Compared in part: {on_line(student)}: {what}", err=True)
 
-    codes = {}
     with tempfile.TemporaryDirectory() as name:
         write_bundle(Path(name) / "given", (assignment,))
         given = code(read_submission(Path(name) / "given" / layout.course().chapters / assignment, assignment))
-    for student, path in discover(paths, assignment).submissions.items():
-        try:
-            codes[student] = read_code(path, assignment, Tier.BUBBLEWRAP)
-        except StudentError as error:
-            echo(f"Not compared: {on_line(student)}: {on_line(error)}", err=True)
-    found = pairs(codes, given, least / 100, in_part)
-    for pair in found:
-        shares = " and ".join(f"{100 * share:.0f} %" for share in pair.shares)
-        echo(f"{on_line(pair.names[0])} and {on_line(pair.names[1])}: {shares} of their own text alike")
-    if len(found) == MAX_PAIRS:
-        echo(f"These are the {MAX_PAIRS} most alike. There may be more.")
-    echo(f"{len(found)} pairs to read, no verdict: {write_pairs(found, out)}")
+    with find_submissions(paths, assignment, roster, verb="compared") as (submissions, all_fit):
+        codes, all_read = _codes(submissions, assignment)
+    found = compare(codes, given, least / 100, in_part)
+    for student in found.without_own:
+        echo(f"Not compared: {on_line(student)}: it has no passage of its own", err=True)
+    compared = len(codes) - len(found.without_own)
+    if compared < 2:
+        hint = "; for a download of an LMS, give its table of students with --roster" if roster is None else ""
+        raise AutograderError(f"nothing was compared: of {len(submissions)} submissions, {compared} has own code{hint}")
+    for group in found.groups:
+        echo(_sentence(group))
+    groups = f"{len(found.groups)} {'group' if len(found.groups) == 1 else 'groups'}"
+    echo(f"{compared} compared, {groups} to read, no verdict: {write_page(found, out)}")
     if json_file is not None:
-        write_json(json_file, [{"students": pair.names, "shares": pair.shares} for pair in found])
+        write_json(json_file, [_as_json(group) for group in found.groups])
+    sys.exit(0 if all_fit and all_read else 1)
+
+
+def _codes(submissions: Mapping[str, Path], assignment: str) -> tuple[dict[str, str], bool]:
+    """Return the code of each submission, and whether all can be read. Students who share one stand together."""
+    students: dict[Path, list[str]] = {}
+    for student, path in submissions.items():
+        students.setdefault(path, []).append(student)
+    codes, all_read = {}, True
+    for path, names in students.items():
+        try:
+            codes[" + ".join(names)] = read_code(path, assignment, Tier.BUBBLEWRAP)
+        except StudentError as error:
+            echo(f"Not compared: {on_line(' + '.join(names))}: {on_line(error)}", err=True)
+            all_read = False
+    return codes, all_read
+
+
+def _as_json(group: Group) -> dict[str, object]:
+    pairs = [{"students": pair.names, "shares": pair.shares} for pair in group.pairs]
+    return {"students": group.names, "pairs": pairs}
+
+
+def _sentence(group: Group) -> str:
+    *others, last = map(on_line, group.names)
+    if len(others) == 1:
+        percent = " and ".join(f"{100 * share:.0f} %" for share in group.pairs[0].shares)
+    else:
+        shares = [100 * max(pair.shares) for pair in group.pairs]
+        percent = f"{min(shares):.0f} to {max(shares):.0f} %"
+    return f"{', '.join(others)} and {last}: {percent} of their own text alike"

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import io
+import json
 import re
 import sys
+import zipfile
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
@@ -13,8 +16,9 @@ import pytest
 from autograder.cli import main
 from autograder.grade.apart import code
 from autograder.lms import similar
-from autograder.lms.similar import pairs, write_pairs
+from autograder.lms.similar import compare, write_page
 from autograder.submission.intake import SubmittedFile, detect_layout
+from tests.unit.lms.test_collect import MOODLE
 
 GIVEN = "\n".join(f"def given_{n}(a, b):\n    return [a * {n} + b, (a - b) / {n + 1}]" for n in range(9))
 OWN = """
@@ -60,21 +64,46 @@ def test_without_copydetect_the_command_says_how_to_install_it(
 @pytest.mark.promise("Code from the student release is excluded, and renaming does not hide a copy.")
 def test_a_renamed_copy_is_found_and_given_code_is_ignored() -> None:
     codes = {name: GIVEN + text for name, text in {"alice": OWN, "bob": RENAMED, "carol": OTHER}.items()}
-    (found,) = pairs(codes, GIVEN, 0.5)
+    (found,) = compare(codes, GIVEN, 0.5).groups
     assert found.names == ("alice", "bob")
-    assert found.shares == pytest.approx((1.0, 1.0))
-    assert "closest" in found.texts[1].partition("<mark>")[2]
-    assert len(pairs(codes, "", 0.5)) == 3
+    (pair,) = found.pairs
+    assert pair.names == (("alice",), ("bob",))
+    assert pair.shares == pytest.approx((1.0, 1.0))
+    assert pair.texts is not None
+    assert "closest" in pair.texts[1].partition("<mark>")[2]
+    (all_of_them,) = compare(codes, "", 0.5).groups
+    assert all_of_them.names == ("alice", "bob", "carol")
 
 
 def test_unchanged_releases_are_not_similar() -> None:
-    assert pairs({"alice": GIVEN, "bob": GIVEN, "carol": ""}, GIVEN, 0.0) == []
+    found = compare({"alice": GIVEN, "bob": GIVEN, "carol": ""}, GIVEN, 0.0)
+    assert (found.groups, found.without_own) == ((), ("alice", "bob", "carol"))
 
 
-@pytest.mark.promise("The page `similar/index.html` shows pairs of submissions side by side")
+def test_seven_equal_copies_are_one_group_with_one_pair_of_texts() -> None:
+    names = [f"student {number}" for number in range(7)]
+    (group,) = compare(dict.fromkeys(names, OWN), "", 0.5).groups
+    assert group.names == tuple(names)
+    (pair,) = group.pairs
+    assert pair.names == ((names[0],), tuple(names[1:]))
+    assert pair.shares == (1.0, 1.0)
+
+
+def test_a_group_is_joined_by_its_most_similar_pairs_and_others_stay_apart() -> None:
+    codes = {"ada": OWN, "bob": RENAMED, "carl": OWN + OTHER, "dora": OWN, "eve": f"{OTHER * 2}\n{GIVEN}", "fay": GIVEN}
+    first, second = sorted(compare(codes, "", 0.95).groups, key=lambda group: group.names)
+    assert (first.names, second.names) == (("ada", "bob", "carl", "dora"), ("eve", "fay"))
+    assert [pair.names for pair in first.pairs] == [
+        (("ada",), ("dora",)),
+        (("ada", "dora"), ("bob",)),
+        (("ada", "dora"), ("carl",)),
+    ]
+
+
+@pytest.mark.promise("The page `similar/index.html` shows groups of submissions")
 def test_the_page_of_a_pair_shows_both_texts_escaped_and_says_that_it_is_no_verdict(tmp_path: Path) -> None:
     text = "# <script>\n" + OWN
-    page = write_pairs(pairs({"alice": text, "<bob>": text}, "", 0.5), tmp_path).read_text()
+    page = write_page(compare({"alice": text, "<bob>": text}, "", 0.5), tmp_path).read_text()
     assert page.count("<mark>") == page.count("</mark>") >= 2
     assert "<script>" not in page
     assert "<bob>" not in page
@@ -104,11 +133,85 @@ def test_similar_compares_a_class_and_names_unreadable_submissions(
     (tmp_path / "class" / "dave.zip").write_bytes(b"no zip")
     with pytest.raises(SystemExit) as ended:
         main(["similar", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out")])
-    assert ended.value.code == 0
+    assert ended.value.code == 1  # one could not be read
     told = capsys.readouterr()
     assert "alice and bob: 100 % and 100 % of their own text alike" in told.out
+    assert "3 compared, 1 group to read" in told.out
     assert "carol" not in told.out
     assert "Not compared: dave: dave.zip is not a folder" in told.err
+
+
+def in_a_zip(text: str) -> bytes:
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w") as archive:
+        archive.writestr("answer/ws/src/p/node.py", text)
+    return data.getvalue()
+
+
+@pytest.mark.promise(
+    "autograder similar download.zip --assignment 02_nodes --roster worksheet.csv --out similar",
+    "The exit status is 1 if a submission cannot be read or fits no student",
+)
+def test_a_download_of_moodle_is_compared_by_the_names_of_its_roster(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "worksheet.csv").write_text(MOODLE, encoding="utf-8")
+    download = tmp_path / "download.zip"
+    with zipfile.ZipFile(download, "w") as archive:
+        archive.writestr("Zoë Müller-Żak_101_assignsubmission_file_/a.zip", in_a_zip(OWN))
+        archive.writestr("Jane Doe_102_assignsubmission_file_/b.zip", in_a_zip(RENAMED))
+        archive.writestr("Bob Roe_103_assignsubmission_file_/c.zip", in_a_zip(OTHER))
+    command = ["similar", str(download), "--assignment", "02_nodes", "--out", str(tmp_path / "out")]
+    with pytest.raises(SystemExit) as ended:
+        main(command)
+    assert ended.value.code == 1
+    assert "--roster" in capsys.readouterr().err
+    with pytest.raises(SystemExit) as ended:
+        main([*command, "--roster", str(tmp_path / "worksheet.csv"), "--json", str(tmp_path / "found.json")])
+    assert ended.value.code == 0
+    assert "jane@example.edu and zoe@example.edu: 100 % and 100 %" in capsys.readouterr().out
+    (group,) = json.loads((tmp_path / "found.json").read_text())
+    assert group["students"] == ["jane@example.edu", "zoe@example.edu"]
+
+
+def test_members_of_a_group_with_one_submission_are_not_alike(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "roster.csv").write_text("SID,Name,Email\n1,Ada,a@x.edu\n2,Bob,b@x.edu\n3,Eve,e@x.edu\n")
+    folder = tmp_path / "assignment_export"
+    for name, text in (("submission_1", OWN), ("submission_2", OTHER)):
+        (folder / name / "src").mkdir(parents=True)
+        (folder / name / "src" / "node.py").write_text(text)
+    (folder / "submission_metadata.yml").write_text(
+        "submission_1:\n  :submitters: [{':sid': '1'}, {':sid': '2'}]\nsubmission_2:\n  :submitters: [{':sid': '3'}]\n"
+    )
+    arguments = ["--assignment", "02_nodes", "--out", str(tmp_path / "out"), "--roster", str(tmp_path / "roster.csv")]
+    with pytest.raises(SystemExit) as ended:
+        main(["similar", str(folder), *arguments])
+    assert ended.value.code == 0
+    assert "2 compared, 0 groups to read" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("texts", "why"),
+    [
+        ({"ada": OWN}, "of 1 submissions, 1 has own code"),
+        ({"ada": "", "bob": "x = 1"}, "of 2 submissions, 0 has own code"),
+    ],
+)
+def test_where_no_two_submissions_can_be_compared_the_command_says_so_and_exits_1(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], texts: dict[str, str], why: str
+) -> None:
+    for name, text in texts.items():
+        (tmp_path / "class" / name / "src").mkdir(parents=True)
+        (tmp_path / "class" / name / "src" / "node.py").write_text(text)
+    with pytest.raises(SystemExit) as ended:
+        main(["similar", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out")])
+    assert ended.value.code == 1
+    said = capsys.readouterr()
+    assert f"nothing was compared: {why}" in said.err
+    assert "groups" not in said.out
+    assert not (tmp_path / "out").exists()
 
 
 HARD = (
@@ -132,11 +235,13 @@ HARD = (
 def test_of_a_long_text_so_many_characters_are_compared_and_that_is_said() -> None:
     told: dict[str, str] = {}
     long = "".join(f"{OWN}# {number}" for number in range(2_000))
-    (found,) = pairs({"alice": long, "bob": "a\n" * 700_000 + OTHER, "carol": OWN}, "", 0.5, told.__setitem__)
+    (found,) = compare({"alice": long, "bob": "a\n" * 700_000 + OTHER, "carol": OWN}, "", 0.5, told.__setitem__).groups
     assert found.names == ("alice", "carol")
     assert set(told) == {"alice", "bob"}
     assert told["alice"] == "the first 100,000 characters of its code, look at the rest yourself"
-    assert len(found.texts[0].striptags()) <= similar.MAX_CHARACTERS
+    (pair,) = found.pairs
+    assert pair.texts is not None
+    assert len(pair.texts[0].striptags()) <= similar.MAX_CHARACTERS
 
 
 @pytest.mark.parametrize("part", HARD)
@@ -154,7 +259,12 @@ def test_a_lexer_and_a_pair_take_steps_in_proportion_to_a_text(part: str) -> Non
     assert max(long) <= 10_000
 
 
-def test_the_most_alike_of_many_pairs_are_listed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_of_many_pairs_the_texts_of_the_most_alike_are_shown(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(similar, "MAX_PAIRS", 3)
-    codes = {name: OWN + OTHER for name in "abcdef"} | {"g": OWN}
-    assert [pair.names for pair in pairs(codes, "", 0.0)] == [("a", "b"), ("a", "c"), ("a", "d")]
+    codes = {name: f"{OWN}{OTHER}# {name}" for name in "abcdef"} | {"g": OWN}
+    found = compare(codes, "", 0.0)
+    (group,) = found.groups
+    assert group.names == tuple("abcdefg")
+    assert [pair.texts is not None for pair in group.pairs] == [True] * 3 + [False] * 3
+    page = write_page(found, tmp_path).read_text()
+    assert (page.count("<details"), page.count("the texts are not shown")) == (3, 3)
