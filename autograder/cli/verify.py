@@ -1,4 +1,4 @@
-"""`autograder verify`: grades submissions whose marks are known, and compares the results with these marks."""
+"""`autograder verify`: grades submissions with known marks and compares the results."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ import click
 from autograder import layout
 from autograder.author.verification import costs
 from autograder.author.verification.cases import cases
-from autograder.author.verification.claims import CaseKind, Claim
+from autograder.author.verification.claims import CaseKind, Verdict
+from autograder.author.verification.generated_mutants import GeneratedMutant, generated_mutants
 from autograder.author.verification.mutation_run import MutantResult, run_mutants
-from autograder.author.verification.population import GeneratedMutant, population
-from autograder.author.verification.prove import prove
-from autograder.author.verification.record import compared_again, record_failures
+from autograder.author.verification.record import compare_again, record_failures
 from autograder.author.verification.summary import summary
 from autograder.author.verification.survivors import ChapterMutationResult, faults, mutant_counts, reasons, report
+from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.cli.grade import Progress
 from autograder.cli.options import isolation_option, jobs_option, json_option, seed_option
@@ -30,7 +30,7 @@ from autograder.run.sandbox import Tier
 from autograder.suite import suites
 from autograder.suite.contract import counts
 
-HEADINGS = ("submission", "marks", "claim")
+HEADINGS = ("submission", "marks", "verdict")
 
 
 @click.command()
@@ -39,7 +39,7 @@ HEADINGS = ("submission", "marks", "claim")
     "assignments",
     multiple=True,
     metavar="ID",
-    help="Prove only these assignments. The default is all of them.",
+    help="Verify only these assignments. The default is all of them.",
 )
 @click.option(
     "--quick",
@@ -51,10 +51,10 @@ HEADINGS = ("submission", "marks", "claim")
 @click.option(
     "--record",
     is_flag=True,
-    help="Write what each graded mutant fails, and its diagnosis, to mutants.snapshot.yaml, beside mutants.yaml. "
-    "Read the difference.",
+    help="Write the failed checks and the diagnosis of each graded mutant to mutants.snapshot.yaml, beside "
+    "mutants.yaml. Review the diff.",
 )
-@click.option("--mutants", "mutants_only", is_flag=True, help="Grade only the populations of mutants.")
+@click.option("--mutants", "mutants_only", is_flag=True, help="Grade only the generated mutants.")
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),
@@ -77,68 +77,68 @@ def verify(
     isolation: str,
     json_file: Path | None,
 ) -> None:
-    """Grade submissions whose marks are known, and compare the results with these marks.
+    """Grade submissions with known marks, and compare the results.
 
-    The reference and right answers in another style have every point. The untouched release has none. Each named
-    mutant fails the check for which it was written, and what the snapshot records, and no other. No attack gains a
-    point. Of the generated mutants that are not equivalent to the reference, at least 95 in 100 of each chapter and
-    97 in 100 of all chapters lose a check. Every other one has a reason in survivors.yaml. A mutant with a reason
-    is graded only if --only names it. A stopped run continues: a result counts as long as the checks, the grader
-    and the submission are the same. The file mutants.md in the folder for the results has the tables.
+    The reference and correct answers in other styles must get every point, and the untouched student release none.
+    Each named mutant must fail the check for which it was written, and otherwise exactly the checks in the snapshot.
+    No attack may gain a point. Of the generated mutants that are not equivalent to the reference, at least 95 % of
+    each chapter and 97 % of all chapters must fail a check. Every other one needs a reason in survivors.yaml. A mutant
+    with a reason is only graded if --only names it.
 
-    A named mutant that loses more than twice the points of its own check is listed, unless its result or its entry
-    in mutants.yaml has a reason.
+    An interrupted run continues: a result is reused as long as the checks, the grader and the submission are
+    unchanged. The file mutants.md in the folder for the results contains the tables. It lists each named mutant that
+    loses more than twice the points of its own check, unless its result or its entry in mutants.yaml gives a reason.
 
-    The exit status is 0 when all of this is true, and 1 otherwise.
+    The exit status is 0 if all of these requirements are met, and 1 otherwise.
     """
     if record and quick:
-        raise click.UsageError("--record needs whole gradings: leave --quick out")
+        raise click.UsageError("--record needs complete gradings: remove --quick")
     began = time.monotonic()
     chapters = assignments or tuple(suites.graded_assignments())
-    proof = [] if mutants_only else [case for name in chapters for case in cases(name, quick=quick)]
-    chosen = [case for case in proof if not names or case.name in names]
-    populations = {} if quick or record else {name: population(name) for name in chapters}
+    all_cases = [] if mutants_only else [case for name in chapters for case in cases(name, quick=quick)]
+    chosen = [case for case in all_cases if not names or case.name in names]
+    generated = {} if quick or record else {name: generated_mutants(name) for name in chapters}
     mutants = {
         chapter: [mutant for mutant in each.mutants if not names or mutant.id in names]
-        for chapter, each in populations.items()
+        for chapter, each in generated.items()
     }
     if not chosen and not any(mutants.values()):
-        raise click.UsageError(f"the proof has no submission called {' or '.join(names)}")
+        raise click.UsageError(f"there is no submission called {' or '.join(names)}")
     with Progress(len(chosen)) as progress, WorkerPool(Tier(isolation), jobs) as workers:
 
-        def show(claim: Claim) -> None:
-            progress.show(claim.result, _name(claim))
+        def show(verdict: Verdict) -> None:
+            progress.show(verdict.result, _name(verdict))
 
-        claims = prove(chosen, seed=seed, out=out, workers=workers, on_claim=show)
+        verdicts = verify_cases(chosen, seed=seed, out=out, workers=workers, on_verdict=show)
         chapter_results = [
             _run_mutants(
                 ChapterMutationResult(name, each, reasons(name, each)), mutants[name], bool(names), workers, seed, out
             )
-            for name, each in populations.items()
+            for name, each in generated.items()
             if mutants[name]
         ]
     if record:
-        for chapter in dict.fromkeys(claim.assignment for claim in claims):
-            echo(record_failures(chapter, claims), err=True)
-        claims = compared_again(claims)
-    echo("\n" + table([(_name(claim), score_text(claim.result), _verdict(claim)) for claim in claims], HEADINGS))
-    paid = () if quick else costs.costs(claims)
-    counted = summary(claims, time.monotonic() - began) | counts(chapters) | costs.counts(paid)
-    echo("\n" + "  ".join(f"{name} {value}" for name, value in counted.items()))
-    plain = {
-        "summary": counted,
-        "claims": [_plain(claim) for claim in claims],
+        for chapter in dict.fromkeys(verdict.assignment for verdict in verdicts):
+            echo(record_failures(chapter, verdicts), err=True)
+        verdicts = compare_again(verdicts)
+    rows = [(_name(each), score_text(each.result), each.mismatch or "as expected") for each in verdicts]
+    echo("\n" + table(rows, HEADINGS))
+    mutant_costs = () if quick else costs.costs(verdicts)
+    figures = summary(verdicts, time.monotonic() - began) | counts(chapters) | costs.counts(mutant_costs)
+    echo("\n" + "  ".join(f"{name} {value}" for name, value in figures.items()))
+    document = {
+        "summary": figures,
+        "claims": [_to_json(verdict) for verdict in verdicts],
         "mutants": mutant_counts(chapter_results),
-        "costs": [vars(cost) for cost in paid],
+        "costs": [vars(cost) for cost in mutant_costs],
     }
     for path in filter(None, (out / "verify.json", json_file)):
-        write_json(path, plain)
-    write_atomically(out / "mutants.md", f"{report(chapter_results)}\n{costs.report(paid)}".encode())
-    for fault in (found := faults(chapter_results)):
-        echo(fault, err=True)
-    for sentence in costs.unexplained(paid):
+        write_json(path, document)
+    write_atomically(out / "mutants.md", f"{report(chapter_results)}\n{costs.report(mutant_costs)}".encode())
+    mutant_faults = faults(chapter_results)
+    for sentence in (*mutant_faults, *costs.unexplained(mutant_costs)):
         echo(sentence, err=True)
-    sys.exit(0 if all(claim.holds for claim in claims) and not found else 1)
+    sys.exit(0 if all(verdict.is_expected for verdict in verdicts) and not mutant_faults else 1)
 
 
 def _run_mutants(
@@ -149,36 +149,33 @@ def _run_mutants(
     seed: int,
     out: Path,
 ) -> ChapterMutationResult:
-    """Grade the mutants of a chapter. One that may survive is graded only if it is `named`."""
+    """Grade the mutants of a chapter. Those that may survive are only graded if they were `named`."""
 
     def show(result: MutantResult) -> None:
         if not result.killed:
             echo(f"{chapter.assignment} mutant {result.id} {result.killer or 'survives'}")
 
-    kept = out / chapter.assignment / "mutants.jsonl"
-    excused = {} if named else chapter.reasons
-    asked = [mutant for mutant in mutants if mutant.id not in excused]
-    results = run_mutants(chapter.assignment, asked, workers, seed=seed, kept=kept, on_result=show)
-    survivors = tuple(MutantResult(mutant.id, "", 0.0, "") for mutant in mutants if mutant.id in excused)
-    found = replace(chapter, results=results + survivors)
-    killed = sum(result.killed for result in found.results)
-    echo(f"{chapter.assignment}: {killed} of {len(mutants)} mutants killed, {len(found.unexplained)} without a reason")
-    return found
+    cache = out / chapter.assignment / "mutants.jsonl"
+    skipped = {} if named else chapter.reasons
+    to_grade = [mutant for mutant in mutants if mutant.id not in skipped]
+    results = run_mutants(chapter.assignment, to_grade, workers, seed=seed, cache=cache, on_result=show)
+    survivors = tuple(MutantResult(mutant.id, "", 0.0, "") for mutant in mutants if mutant.id in skipped)
+    done = replace(chapter, results=results + survivors)
+    killed = sum(result.killed for result in done.results)
+    echo(f"{chapter.assignment}: {killed} of {len(mutants)} mutants killed, {len(done.unexplained)} without a reason")
+    return done
 
 
-def _name(claim: Claim) -> str:
-    plain = claim.kind in (CaseKind.REFERENCE, CaseKind.RELEASE)
-    return f"{claim.assignment} {claim.name}" if plain else f"{claim.assignment} {claim.kind.value} {claim.name}"
+def _name(verdict: Verdict) -> str:
+    is_unique = verdict.kind in (CaseKind.REFERENCE, CaseKind.RELEASE)
+    kind = "" if is_unique else f"{verdict.kind.value} "
+    return f"{verdict.assignment} {kind}{verdict.name}"
 
 
-def _verdict(claim: Claim) -> str:
-    return claim.mismatch or "as claimed"
-
-
-def _plain(claim: Claim) -> dict[str, str]:
+def _to_json(verdict: Verdict) -> dict[str, str]:
     return {
-        "assignment": claim.assignment,
-        "kind": claim.kind.value,
-        "name": claim.name,
-        "wrong": claim.mismatch,
+        "assignment": verdict.assignment,
+        "kind": verdict.kind.value,
+        "name": verdict.name,
+        "wrong": verdict.mismatch,
     }

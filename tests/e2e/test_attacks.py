@@ -16,7 +16,7 @@ import pytest
 from autograder import layout
 from autograder.author.verification.cases import attacks
 from autograder.author.verification.claims import Attack, hidden_lines
-from autograder.author.verification.leaks import LOOT, found_in, texts_of
+from autograder.author.verification.leaks import STOLEN, hidden_text_in, texts_of
 from autograder.author.verification.payloads import CANARY
 from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, all_checks
 from autograder.grade import grade_submission
@@ -71,9 +71,9 @@ def test_an_attack_gains_no_point_and_learns_nothing(
 
     feedback.write(result, tmp_path / "out")
     written = _everything_written(tmp_path / "out")
-    assert LOOT not in written  # the notebook's own source says "STOLEN", and a comma
+    assert STOLEN not in written  # the notebook's own source says "STOLEN", and a comma
     assert f"SECRET_OF_THE_GRADER={CANARY}" not in written
-    assert not [word for text in texts_of(tmp_path / "out") for word in found_in(text, hidden_lines(assignment))]
+    assert not [word for text in texts_of(tmp_path / "out") for word in hidden_text_in(text, hidden_lines(assignment))]
 
     if (tmp_path / "out" / NOTEBOOK).is_file():
         notebook = nbformat.read(tmp_path / "out" / NOTEBOOK, as_version=4)

@@ -15,7 +15,7 @@ import yaml
 from autograder.author.verification.cases import Case
 from autograder.author.verification.claims import CaseKind, verify_full_marks
 from autograder.author.verification.mutants import write_reference
-from autograder.author.verification.prove import prove
+from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.run.sandbox import Tier
 from autograder.suite import suites
@@ -56,5 +56,6 @@ def test_no_check_takes_a_point_for_a_file_that_pkg_create_wrote(
             assert written(made) <= written(folder / "src" / package)
 
     case = Case(assignment, CaseKind.VARIANT, "created", write, verify_full_marks)
-    (claim,) = prove([case], seed=2026, out=tmp_path / "proof", workers=workers)
-    assert claim.holds, "\n".join(f"{one.id}: {one.points:g} points. {one.message}" for one in claim.result.checks)
+    (verdict,) = verify_cases([case], seed=2026, out=tmp_path / "verification", workers=workers)
+    messages = [f"{check.id}: {check.points:g} points. {check.message}" for check in verdict.result.checks]
+    assert verdict.is_expected, "\n".join(messages)

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from autograder.author.verification.cases import Case, cases, rewritten_cases
+from autograder.author.verification.generated_mutants import generated_mutants
 from autograder.author.verification.mutation_run import prepared_run
-from autograder.author.verification.population import population
-from autograder.author.verification.prove import prove
 from autograder.author.verification.survivors import reasons
+from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.run.sandbox import Tier
 from autograder.suite import suites
@@ -44,17 +44,17 @@ def workers() -> Iterator[WorkerPool]:
 @pytest.mark.slow
 @pytest.mark.parametrize("case", PROOF.values(), ids=PROOF)
 def test_a_submission_gets_its_expected_result(case: Case, workers: WorkerPool, tmp_path: Path) -> None:
-    (claim,) = prove([case], seed=2026, out=tmp_path, workers=workers)
+    (verdict,) = verify_cases([case], seed=2026, out=tmp_path, workers=workers)
     log = tmp_path / case.assignment / case.name / "grader.log"
-    messages = [f"{check.id}: {check.points:g} points. {check.message}" for check in claim.result.checks]
-    details = [claim.mismatch, *messages, log.read_text() if log.is_file() else ""]
-    assert claim.holds, "\n".join(details)
+    messages = [f"{check.id}: {check.points:g} points. {check.message}" for check in verdict.result.checks]
+    details = [verdict.mismatch, *messages, log.read_text() if log.is_file() else ""]
+    assert verdict.is_expected, "\n".join(details)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("assignment", SURVEYED)
 def test_mutants_of_each_population_are_killed_or_have_a_reason(assignment: str, workers: WorkerPool) -> None:
-    found = population(assignment)
+    found = generated_mutants(assignment)
     mutants = {mutant.id: mutant for mutant in found.mutants}
     asked = sorted(mutants.keys() - reasons(assignment, found).keys())
     chosen = asked[:: -(-len(asked) // PART)]
@@ -66,7 +66,7 @@ def test_mutants_of_each_population_are_killed_or_have_a_reason(assignment: str,
 
 @pytest.mark.slow
 def test_a_patched_build_of_the_reference_is_graded_like_a_real_build(workers: WorkerPool) -> None:
-    found = [mutant for mutant in population("02_nodes").mutants if mutant.operator == "no publish"]
+    found = [mutant for mutant in generated_mutants("02_nodes").mutants if mutant.operator == "no publish"]
     with prepared_run("02_nodes", workers, 2026) as run:
         assert run.ways["patched"] == {check.id for check in suites.hidden("02_nodes").checks}
         patched = [run.run_mutant(mutant).killer for mutant in found]

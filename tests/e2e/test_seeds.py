@@ -9,7 +9,7 @@ import pytest
 
 from autograder.author.verification.cases import Case, cases
 from autograder.author.verification.claims import CaseKind
-from autograder.author.verification.prove import prove
+from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.run.sandbox import Tier
 from autograder.suite import suites
@@ -32,5 +32,5 @@ def reference(assignment: str) -> Case:
 @pytest.mark.parametrize("seed", [*EACH_TIME, *(pytest.param(seed, marks=pytest.mark.nightly) for seed in AT_NIGHT)])
 @pytest.mark.parametrize("assignment", suites.graded_assignments())
 def test_the_reference_has_every_point(assignment: str, seed: int, workers: WorkerPool, tmp_path: Path) -> None:
-    (claim,) = prove([reference(assignment)], seed=seed, out=tmp_path, workers=workers)
-    assert claim.holds, claim.mismatch
+    (verdict,) = verify_cases([reference(assignment)], seed=seed, out=tmp_path, workers=workers)
+    assert verdict.is_expected, verdict.mismatch

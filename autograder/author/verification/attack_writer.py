@@ -1,4 +1,4 @@
-"""Writes attacks: the reference, or a mutant whose losses are known, and in it what the payload changes."""
+"""Writes attacks: the reference, or a mutant with known failures, with a payload added."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from autograder.author.verification.claims import Attack
 from autograder.author.verification.mutants import Mutant, mutants, write_mutant, write_reference
 from autograder.suite import suites
 
-TELLING = 14  # letters; a shorter id of a check may be a name that anything else has
+MIN_ID_LENGTH = 14  # characters; a shorter check id may coincide with another name
 Write = Callable[[Path], None]
 
-# Spins each node in a thread of its own, so that the program cannot be stepped and its time is real.
+# Spins each node in its own thread, so that the program cannot be stepped and runs in real time.
 FORCE_REAL_TIME = """
 import threading as _threading
 import rclpy as _rclpy
@@ -25,7 +25,7 @@ def _spin_beside(*arguments, _spin=_rclpy.spin):
 _rclpy.spin = _spin_beside
 """
 
-# Says by `_is_told()` whether anything around the program names a hidden check, the assignment, a student or a seed.
+# `_is_told()` returns whether anything around the program names a hidden check or the assignment.
 LOOK_FOR_NAMES = """
 import glob as _glob, os as _os, sys as _sys, threading as _threading
 def _is_told(names={names!r}):
@@ -43,7 +43,7 @@ def _is_told(names={names!r}):
 
 @dataclass(frozen=True)
 class Chapter:
-    """The chapter whose submissions an attack starts from."""
+    """A chapter whose reference and mutants are turned into attacks."""
 
     assignment: str
 
@@ -54,7 +54,7 @@ class Chapter:
 
     def mutant(self, name: str) -> Mutant:
         """Return a mutant by its name."""
-        return next(found for found in mutants(self.assignment) if found.id == name)
+        return next(mutant for mutant in mutants(self.assignment) if mutant.id == name)
 
     def write(
         self,
@@ -64,13 +64,13 @@ class Chapter:
         swaps: Mapping[str, tuple[str, str]] = {},
         files: Mapping[str, str] = {},
     ) -> Write:
-        """Return a function that writes a source tree with payloads. Paths are below its `src`.
+        """Return a function that writes a source tree with payloads. Paths are relative to its `src`.
 
         Args:
-            base: the mutant that gets them; the reference if None.
-            heads: text that goes before a file's own.
-            swaps: part of a file's text, and what takes its place.
-            files: whole files.
+            base: id of the mutant to start from; None for the reference.
+            heads: text to insert at the start of a file.
+            swaps: part of a file's text, and its replacement.
+            files: whole files to write.
         """
 
         def write(folder: Path) -> None:
@@ -93,28 +93,28 @@ class Chapter:
         return write
 
     def evasions(self, manner: str, mistake: str, base: str, file: str, swap: tuple[str, str]) -> tuple[Attack, ...]:
-        """Return two attacks that make a mistake where they hope that nobody looks: in real time, and unless told.
+        """Return two attacks that try to hide a mistake: one in real time, one unless it detects a hidden check.
 
         Args:
-            manner: how the program behaves, for the names.
-            mistake: the mistake, in words.
-            base: the mutant that makes it.
-            file: where the payloads go.
-            swap: part of the reference's file, and what makes the mistake in its place unless `_is_told()`, which says
-                whether something around the program tells it by which hidden checks it is judged.
+            manner: how the program behaves, for the ids of the attacks.
+            mistake: a description of the mistake.
+            base: id of the mutant that makes it.
+            file: the file that gets the payloads.
+            swap: part of the reference's file, and a replacement that makes the mistake unless `_is_told()`, which
+                returns whether the program's environment names the hidden checks.
         """
-        names = (self.assignment, "hidden", *sorted(name for name in self.checks if len(name) > TELLING))
+        names = (self.assignment, "hidden", *sorted(name for name in self.checks if len(name) > MIN_ID_LENGTH))
         fails = self.mutant(base).fails
         return (
             Attack(
                 f"{manner} in real time",
-                f"{mistake}, in a thread of its own, so that its time is real",
+                f"{mistake}, in its own thread, so that it runs in real time",
                 self.write(base, heads={file: FORCE_REAL_TIME}),
                 fails,
             ),
             Attack(
                 f"{manner} unless told",
-                f"{mistake}, unless something around it names the hidden checks",
+                f"{mistake}, unless its environment names the hidden checks",
                 self.write(heads={file: LOOK_FOR_NAMES.format(names=names)}, swaps={file: swap}),
                 fails,
             ),

@@ -1,4 +1,4 @@
-"""The submissions of the proof: what each is, how it is made, and what is claimed of its result."""
+"""The test cases of the verification: each submission, how it is written, and its expected result."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from autograder.author.course.release import write_released
 from autograder.author.course.sync import Chapter
 from autograder.author.verification.claims import Attack, CaseKind, verify_full_marks, verify_mutant, verify_zero
 from autograder.author.verification.equivalent_rewrites import rewrites
+from autograder.author.verification.generated_mutants import written_by_students
 from autograder.author.verification.mutants import Mutant, mutants, write_mutant, write_reference
-from autograder.author.verification.population import written_by_students
 from autograder.grade.job import Scope
 from autograder.result.model import Result
 from autograder.suite import suites
@@ -26,9 +26,10 @@ WITHOUT_PICTURES = Scope(pictures=False)
 
 @dataclass(frozen=True)
 class Case:
-    """One submission of the proof: how it is written, how much of the suite grades it, and what its result must be.
+    """A submission with a known mark.
 
-    `name` is unique in the assignment. `verify` returns how a result differs from the expected one, or an empty string.
+    `name` is unique in the assignment. `write` writes the submission to a folder. `verify` describes how a result
+    differs from the expected one, or returns an empty string. `scope` limits the checks that are run.
     """
 
     assignment: str
@@ -40,40 +41,41 @@ class Case:
 
 
 def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
-    """Return an assignment's proof: all of it, or the part for each change.
+    """Return the test cases of an assignment.
 
-    The quick part has one mutant for each check, graded by the checks that it stands for. It has no attacks and no
-    answers that `equivalent_rewrites` made.
+    The quick cases include one mutant for each check, graded only by the checks that it represents. They include no
+    attacks and no answers from `equivalent_rewrites`.
     """
     sources, chapter = suites.hidden(assignment).sources, Chapter(layout.chapter(assignment))
-    found = [
+    selected = [
         Case(assignment, CaseKind.REFERENCE, "reference", partial(write_reference, sources), verify_full_marks),
         Case(assignment, CaseKind.RELEASE, "release", partial(write_released, chapter), verify_zero),
         *_variants(assignment, sources),
     ]
     if quick:
-        found += [_mutant(assignment, mutant, sources, only) for mutant, only in one_mutant_per_check(assignment)]
+        selected += [_mutant(assignment, mutant, sources, only) for mutant, only in one_mutant_per_check(assignment)]
     else:
-        found += [_mutant(assignment, mutant, sources) for mutant in mutants(assignment)]
-        found += [_attack(assignment, attack) for attack in attacks(assignment)]
-        found += rewritten_cases(assignment)
-    return tuple(found)
+        selected += [_mutant(assignment, mutant, sources) for mutant in mutants(assignment)]
+        selected += [_attack(assignment, attack) for attack in attacks(assignment)]
+        selected += rewritten_cases(assignment)
+    return tuple(selected)
 
 
 def one_mutant_per_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]]:
-    """Return few mutants that fail every check, each with the checks that it stands for and those that these need.
+    """Return a small set of mutants that together fail every check.
 
-    A mutant that fails the check alone is preferred to one that also fails a check that this one needs or comes after.
+    Each mutant is returned with the checks that it represents and their dependencies. A mutant that fails a check
+    alone is preferred to one that also fails a dependency of that check.
     """
     suite = suites.hidden(assignment)
     dependencies = {check.id: frozenset(check.dependencies) for check in suite.checks}
     candidates = sorted(mutants(assignment), key=lambda m: m.slow)
     direct = {m.id: {name for name in m.fails if not dependencies[name] & m.fails} for m in candidates}
-    lost = {m.id: set(m.fails) for m in candidates}
+    failed = {m.id: set(m.fails) for m in candidates}
     quick = [m for m in candidates if not m.slow]
     chosen: dict[str, set[str]] = {}
     uncovered = set(dependencies)
-    for covers, among in ((direct, quick), (lost, quick), (lost, candidates)):
+    for covers, among in ((direct, quick), (failed, quick), (failed, candidates)):
         while best := max(among, key=lambda m: len(covers[m.id] & uncovered), default=None):
             if not covers[best.id] & uncovered:
                 break
@@ -88,7 +90,7 @@ def _mutant(assignment: str, mutant: Mutant, sources: tuple[str, ...], only: tup
 
 
 def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
-    """Yield the right answers of another style: whole files that take the place of the reference's."""
+    """Yield correct answers in other styles: the reference with some files replaced."""
     folder = suites.hidden(assignment).folder / "variants"
     for variant in sorted(folder.iterdir()) if folder.is_dir() else ():
 
@@ -100,19 +102,19 @@ def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
 
 
 def rewritten_cases(assignment: str) -> list[Case]:
-    """Return the answers that `equivalent_rewrites` makes from the reference, one for each way."""
+    """Return one answer for each rewrite of the reference by `equivalent_rewrites`."""
     sources = suites.hidden(assignment).sources
 
-    def write(target: Path, restyled: Callable[[str], str]) -> None:
+    def write(target: Path, rewrite: Callable[[str], str]) -> None:
         write_reference(sources, target)
         for file, *_ in written_by_students(assignment):
             path = target / "src" / file
             if path.suffix == ".py":
-                path.write_text(restyled(path.read_text(encoding="utf-8")), encoding="utf-8")
+                path.write_text(rewrite(path.read_text(encoding="utf-8")), encoding="utf-8")
 
     return [
-        Case(assignment, CaseKind.VARIANT, style, partial(write, restyled=restyled), verify_full_marks)
-        for style, restyled in rewrites().items()
+        Case(assignment, CaseKind.VARIANT, style, partial(write, rewrite=rewrite), verify_full_marks)
+        for style, rewrite in rewrites().items()
     ]
 
 
@@ -121,8 +123,8 @@ def _attack(assignment: str, attack: Attack) -> Case:
 
 
 def attacks(assignment: str) -> tuple[Attack, ...]:
-    """Return the attacks of an assignment: what `attacks()` in the module of this name gives, beside its suites."""
+    """Return the attacks on an assignment, from the function `attacks()` in `attacks.py` beside its suites."""
     if not (suites.hidden(assignment).folder / "attacks.py").is_file():
         return ()
-    found: tuple[Attack, ...] = import_module(f"{suites.HOME}.ch{assignment}.attacks").attacks()
-    return found
+    defined: tuple[Attack, ...] = import_module(f"{suites.HOME}.ch{assignment}.attacks").attacks()
+    return defined

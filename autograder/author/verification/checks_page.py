@@ -1,4 +1,4 @@
-"""The page `checks.md` for instructors: the contract, the hidden checks, and the mutants that fail them."""
+"""The page `checks.md` for instructors: the requirements, the hidden checks, and the mutants that fail them."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from autograder.author.verification.mutants import Mutant, mutants
 from autograder.suite import Check, suites
 from autograder.suite.contract import Sentence, contract
 
-HEAD = """# The hidden checks, and what proves them
+HEAD = """# The hidden checks and their mutants
 
-For instructors; nothing of this page reaches students. Each check is named with the sentence that the student reads,
-and with the flawed versions of the reference that fail it by themselves: small, realistic errors, `mutants.yaml` beside
-the suite. `autograder verify` grades them all. `autograder course tables` writes this page.
+For instructors: students do not get this page. Each check is listed with the sentence that the student reads, and with
+the mutants that fail it directly. A mutant is a version of the reference with one small, realistic error, defined in
+`mutants.yaml` beside the suite. `autograder verify` grades all of them. `autograder course tables` writes this page.
 
-The contract of a chapter is the list of the sentences that oblige a student, as they stand in the notebook. Each has
-the hidden checks that hold it and the mutants that break it, by their names. A sentence without a check says why.
+The requirements of a chapter are quoted from the notebook. Each is listed with the hidden checks that cover it and the
+mutants that break it. A requirement without a check has a reason.
 """
 COLUMNS = ("check", "points", "the student reads", "fails in a version that")
-CONTRACT = ("the notebook says", "held by", "broken by")
+CONTRACT = ("the notebook says", "covered by", "broken by")
 
 
 def checks_page() -> str:
@@ -30,24 +30,24 @@ def checks_page() -> str:
 def _chapter(name: str) -> list[str]:
     checks, flawed = suites.hidden(name).checks, mutants(name)
     sentences = [_sentence(sentence, checks, flawed) for sentence in contract(name).values()]
-    return [*table(COLUMNS, _rows(checks, flawed)), f"### The contract of {name}\n", *table(CONTRACT, sentences)]
+    return [*table(COLUMNS, _rows(checks, flawed)), f"### The requirements of {name}\n", *table(CONTRACT, sentences)]
 
 
 def _sentence(sentence: Sentence, checks: Sequence[Check], flawed: Sequence[Mutant]) -> tuple[str, ...]:
-    """Return the row of a sentence of the contract."""
+    """Return the row of a requirement."""
     if sentence.unchecked:
         return sentence.text, f"no check: {sentence.unchecked}", ""
-    holding = [check for check in checks if sentence.id in check.holds]
-    broken = dict.fromkeys(m.id for check in holding for m in flawed if _fails(m, check))
-    return sentence.text, ", ".join(f"`{check.id}`" for check in holding), ", ".join(broken)
+    covering = [check for check in checks if sentence.id in check.holds]
+    broken_by = dict.fromkeys(m.id for check in covering for m in flawed if _fails(m, check))
+    return sentence.text, ", ".join(f"`{check.id}`" for check in covering), ", ".join(broken_by)
 
 
 def _rows(checks: Sequence[Check], flawed: Sequence[Mutant]) -> Iterator[tuple[str, ...]]:
     for check in checks:
-        alone = [m.title for m in flawed if _fails(m, check)]
-        yield f"`{check.id}`", f"{check.points:g}", check.title, "; ".join(alone)
+        errors = [m.title for m in flawed if _fails(m, check)]
+        yield f"`{check.id}`", f"{check.points:g}", check.title, "; ".join(errors)
 
 
 def _fails(mutant: Mutant, check: Check) -> bool:
-    """Return whether a mutant fails a check by itself, not with one that the check needs or comes after."""
+    """Return whether a mutant fails a check directly, without failing any of its dependencies."""
     return check.id in mutant.fails and not mutant.fails & set(check.dependencies)

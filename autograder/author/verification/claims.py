@@ -1,7 +1,7 @@
-"""Compares the result of a submission of the proof with the result that it must have.
+"""Compares the result of a test case with the expected result.
 
-Each `verify_` function gets the result of a submission that was graded. It returns the differences in words, and an
-empty string if there are none.
+Each `verify_` function takes the result of a graded submission. It describes the differences, or returns an empty
+string if there are none.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 
 from autograder import layout
-from autograder.author.verification.leaks import LOOT
+from autograder.author.verification.leaks import STOLEN
 from autograder.author.verification.mutants import Mutant
 from autograder.diagnosis import Kind
 from autograder.result.model import Result
@@ -23,7 +23,7 @@ RECORD = "`autograder verify --record`"
 
 
 class CaseKind(str, Enum):
-    """The kinds of submissions of the proof."""
+    """The kinds of test cases."""
 
     REFERENCE = "reference"
     RELEASE = "release"
@@ -33,10 +33,10 @@ class CaseKind(str, Enum):
 
 
 @dataclass(frozen=True)
-class Claim:
-    """The result of a submission of the proof, and how it differs from the expected one, in words.
+class Verdict:
+    """The result of a test case, and a description of how it differs from the expected result.
 
-    `mismatch` is empty if the claim holds.
+    `mismatch` is empty if the result is the expected one.
     """
 
     assignment: str
@@ -46,46 +46,46 @@ class Claim:
     mismatch: str
 
     @property
-    def holds(self) -> bool:
+    def is_expected(self) -> bool:
         """Whether the result is the expected one."""
         return not self.mismatch
 
 
 def verify_full_marks(result: Result) -> str:
-    """Return why a right answer has not every point."""
+    """Describe why a correct answer does not have every point."""
     if result.diagnosis.kind is not Kind.OK:
         return result.diagnosis.sentence
     missing = lost_checks(result)
-    return f"loses {', '.join(sorted(missing))}" if missing else ""
+    return f"fails {', '.join(sorted(missing))}" if missing else ""
 
 
 def verify_zero(result: Result) -> str:
-    """Return why an untouched release does not have 0 points."""
+    """Describe why an untouched student release does not have 0 points."""
     return "" if result.score == 0 else f"it scores {result.score:g}"
 
 
 def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozenset()) -> str:
-    """Return how a mutant's result differs from its recorded failures and its diagnosis.
+    """Describe how a mutant's result differs from its recorded failures and diagnosis.
 
-    A mutant that passes the check for which it was written is wrong, whatever is recorded.
+    A mutant that passes the check for which it was written is a mismatch, regardless of its record.
 
     Args:
         mutant: the mutant that was graded.
         result: its result.
-        only: the ids of the checks that were run; every check if there are none. The diagnosis is compared only if
-            every check was run, because any of them may have made it.
+        only: ids of the checks that were run; empty means every check. The diagnosis is compared only if every check
+            was run, because any of them may have caused it.
     """
-    failed, recorded, asked = lost_checks(result), mutant.fails, only or {check.id for check in result.checks}
+    failed, recorded, run = lost_checks(result), mutant.fails, only or {check.id for check in result.checks}
     wrong = []
-    if mutant.check in asked - failed:
+    if mutant.check in run - failed:
         wrong.append(f"passes {mutant.check}, for which it was written")
     if not recorded:
         wrong.append(f"has no recorded failures: {RECORD} writes them")
     else:
-        failed, recorded = failed & asked, recorded & asked
+        failed, recorded = failed & run, recorded & run
         changes = [f"also fails {', '.join(sorted(failed - recorded))}"] if failed - recorded else []
         changes += [f"passes {', '.join(sorted(recorded - failed))}"] if recorded - failed else []
-        wrong += [f"{'; '.join(changes)} (if this is right, {RECORD} records it)"] if changes else []
+        wrong += [f"{'; '.join(changes)} (if this is correct, {RECORD} updates the snapshot)"] if changes else []
     if not only and result.diagnosis.kind is not mutant.diagnosis:
         wrong.append(f"is diagnosed {result.diagnosis.kind.value} instead of {mutant.diagnosis.value}")
     return "; ".join(wrong)
@@ -98,11 +98,11 @@ def lost_checks(result: Result) -> frozenset[str]:
 
 @dataclass(frozen=True)
 class Attack:
-    """A malicious submission: the attacks that it combines, in words, and a function that writes it to a folder.
+    """A malicious submission: a description of the attacks that it combines, and a function that writes it to a folder.
 
-    `loses` holds the checks that it must lose, with or without the payload, and no others if it loses them `exactly`,
-    because the payload disturbs nothing. The result has one of the diagnoses, or any if there are none. What a student
-    reads first holds the text `says`, if every check was run.
+    `loses` names the checks that it must fail, with or without the payload. If `exactly` is set, the payload does not
+    interfere with anything, and it must fail no other checks. The result must have one of the diagnoses; none means
+    any. If every check was run, the first sentence that a student reads must contain the text `says`.
     """
 
     id: str
@@ -114,11 +114,11 @@ class Attack:
     says: str = ""
 
     def verify(self, result: Result, only: frozenset[str] = frozenset()) -> str:
-        """Return what the attack gained or disturbed, and an empty string if nothing.
+        """Describe what the attack gained or disturbed, or return an empty string.
 
         Args:
             result: result of the attack.
-            only: ids of the checks that were run; every check if there are none.
+            only: ids of the checks that were run; empty means every check.
         """
         suite = suites.hidden(result.assignment)
         run = only or frozenset(check.id for check in suite.checks)
@@ -132,7 +132,7 @@ class Attack:
             wrong.append(f"is diagnosed {result.diagnosis.kind.value}")
         if not only and self.says not in (first := first_sentence(result)):
             wrong.append(f"is told: {first}")
-        wrong += [f"shows {line}" for line in stolen(result)[:1]]
+        wrong += [f"shows {line}" for line in leaked_lines(result)[:1]]
         return "; ".join(wrong)
 
 
@@ -143,10 +143,10 @@ def first_sentence(result: Result) -> str:
     return next((check.message for check in result.checks if check.outcome is Outcome.FAILED), "")
 
 
-def stolen(result: Result) -> list[str]:
-    """Return what a result shows of hidden checks, and of what a payload says that it has stolen."""
-    shown = "\n".join(_texts(result.to_json()))
-    return sorted(line for line in {LOOT, *hidden_lines(result.assignment)} if line in shown)
+def leaked_lines(result: Result) -> list[str]:
+    """Return the lines of hidden checks that appear in a result, and the marker that payloads print after a theft."""
+    text = "\n".join(_texts(result.to_json()))
+    return sorted(line for line in {STOLEN, *hidden_lines(result.assignment)} if line in text)
 
 
 def _texts(value: object) -> Iterator[str]:
@@ -159,7 +159,7 @@ def _texts(value: object) -> Iterator[str]:
 
 @cache
 def hidden_lines(assignment: str) -> frozenset[str]:
-    """Return lines that stand in an assignment's hidden suite only: whoever prints one of them has read it."""
+    """Return the lines that occur only in an assignment's hidden suite. A program that prints one has read it."""
     lines = {
         line.strip()
         for path in suites.hidden(assignment).files

@@ -1,6 +1,6 @@
-"""Rewrites right answers as other people would write them: they do the same, and have to keep every point.
+"""Rewrites correct answers in other styles without changing their behaviour. They must keep every point.
 
-Like the operators, a rewriting changes the text at the positions that `ast` gives.
+Like the mutation operators, a rewrite changes the text at the positions that `ast` reports.
 """
 
 from __future__ import annotations
@@ -29,45 +29,45 @@ from autograder.author.verification.python_operators import (
 MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
 # Operands that bind tighter than a comparison.
 TIGHT = (ast.Attribute, ast.BinOp, ast.Call, ast.Constant, ast.Name, ast.Subscript, ast.UnaryOp)
-LONGEST_LINE = 99  # columns, of the linters of ROS
+LONGEST_LINE = 99  # columns, the limit of the ROS linters
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def rewritten(text: str) -> str:
-    """Return the text of a module that does the same in other words.
+    """Return an equivalent module.
 
-    Comparisons are mirrored, conditional expressions turned round, sums written out, local variables renamed, methods
-    reordered, and functions have type hints, which are not evaluated.
+    Comparisons are mirrored, conditional expressions inverted, augmented assignments expanded, local variables renamed
+    and methods reordered. Functions get return types, which are not evaluated.
     """
     for rewriting in REWRITINGS:
         source = Source(text)
-        found = [context for _, context in nodes_in_context(source, None)]
-        text = replaced(source.data, tuple(rewriting(source, found))).decode()
+        nodes = [context for _, context in nodes_in_context(source, None)]
+        text = replaced(source.data, tuple(rewriting(source, nodes))).decode()
     return text
 
 
 def formatted(text: str) -> str:
-    """Return a module's text in the style of black, as ruff formats it; the quotes stay, because ROS has its own."""
+    """Format a module with ruff. The quotes are preserved, because ROS has its own rule for them."""
     command = [sys.executable, "-m", "ruff", "format", "--isolated", f"--line-length={LONGEST_LINE}"]
     command += ["--config", "format.quote-style='preserve'", "-"]
     return subprocess.run(command, cwd="/", input=text, stdout=subprocess.PIPE, text=True, check=True).stdout
 
 
 def rewrites() -> Mapping[str, Callable[[str], str]]:
-    """Return the ways to rewrite an answer. `formatted` needs ruff, which only the developers of a course have."""
+    """Return the available rewrites by name. `formatted` needs ruff, which is only installed for developers."""
     return {"rewritten": rewritten, "formatted": formatted} if find_spec("ruff") else {"rewritten": rewritten}
 
 
 def _where_it_fits(
     rewriting: Callable[[Source, list[NodeInContext]], Iterator[Replacement]],
 ) -> Callable[[Source, list[NodeInContext]], Iterator[Replacement]]:
-    """Keep of a rewriting what lies in no other replacement, and in one line, which it does not make too long."""
+    """Keep only replacements that do not overlap, stay within one line, and do not make it too long."""
 
     @functools.wraps(rewriting)
-    def fitting(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
+    def fitting(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
         reached = -1
-        for start, end, new in sorted(rewriting(source, found), key=lambda one: (one[0], -one[1])):
+        for start, end, new in sorted(rewriting(source, nodes), key=lambda one: (one[0], -one[1])):
             first, last = source.data.rfind(b"\n", 0, start) + 1, source.data.find(b"\n", end)
             columns = (start - first) + len(new) + (last - end)
             if start > reached and b"\n" not in source.data[start:end] and columns <= LONGEST_LINE:
@@ -78,9 +78,9 @@ def _where_it_fits(
 
 
 @_where_it_fits
-def mirrored_comparisons(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
-    """Yield `b > a` for `a < b`, unless both sides call something: the order of the calls may matter."""
-    for context in found:
+def mirrored_comparisons(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
+    """Yield `b > a` for `a < b`, unless both sides contain calls, whose order may matter."""
+    for context in nodes:
         node = context.node
         if isinstance(node, ast.Compare) and len(node.ops) == 1:
             sides = (node.left, node.comparators[0])
@@ -91,9 +91,9 @@ def mirrored_comparisons(source: Source, found: list[NodeInContext]) -> Iterator
 
 
 @_where_it_fits
-def turned_conditions(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
+def turned_conditions(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield `b if not c else a` for `a if c else b`."""
-    for context in found:
+    for context in nodes:
         node = context.node
         if isinstance(node, ast.IfExp):
             body, test, other = (_operand(source, part) for part in (node.body, node.test, node.orelse))
@@ -101,19 +101,19 @@ def turned_conditions(source: Source, found: list[NodeInContext]) -> Iterator[Re
 
 
 @_where_it_fits
-def written_out_sums(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
-    """Yield `x = x + 1` for `x += 1`: of numbers only, as a list would become another list."""
-    for context in found:
+def written_out_sums(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
+    """Yield `x = x + 1` for `x += 1`, for numbers only: with a list, it would create a new list."""
+    for context in nodes:
         node = context.node
         if isinstance(node, ast.AugAssign) and isinstance(node.op, ast.Add) and isinstance(node.value, ast.Constant):
             target = source.text(node.target)
             yield (*source.span(node), f"{target} = {target} + {source.text(node.value)}")
 
 
-def renamed_variables(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
-    """Yield another name for each local variable, of the same length, so that continued lines stay in their columns."""
+def renamed_variables(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
+    """Yield a new name of the same length for each local variable, so that continuation lines stay aligned."""
     taken = set(re.findall(r"\w+", source.data.decode()))
-    for context in found:
+    for context in nodes:
         function = context.node
         if not isinstance(function, FUNCTIONS) or any(isinstance(outer, FUNCTIONS) for outer in context.ancestors):
             continue
@@ -124,9 +124,9 @@ def renamed_variables(source: Source, found: list[NodeInContext]) -> Iterator[Re
                 yield (*source.span(node), names[node.id])
 
 
-def reordered_methods(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
-    """Yield the methods of each class in the opposite order, after `__init__`."""
-    for node in (context.node for context in found if isinstance(context.node, ast.ClassDef)):
+def reordered_methods(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
+    """Yield the methods of each class, except `__init__`, in reverse order."""
+    for node in (context.node for context in nodes if isinstance(context.node, ast.ClassDef)):
         methods = [each for each in node.body if isinstance(each, FUNCTIONS) and each.name != "__init__"]
         names = {each.name for each in methods}
         decorators = [ast.walk(decorator) for each in methods for decorator in each.decorator_list]
@@ -138,9 +138,9 @@ def reordered_methods(source: Source, found: list[NodeInContext]) -> Iterator[Re
 
 
 @_where_it_fits
-def return_types(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
+def return_types(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield `-> None` for each function that returns nothing."""
-    for node in (context.node for context in found if isinstance(context.node, FUNCTIONS)):
+    for node in (context.node for context in nodes if isinstance(context.node, FUNCTIONS)):
         inside = list(ast.walk(node))
         gives = any(isinstance(each, ast.Return) and each.value for each in inside)
         if (
@@ -152,10 +152,10 @@ def return_types(source: Source, found: list[NodeInContext]) -> Iterator[Replace
             yield colon, colon, " -> None"
 
 
-def postponed_annotations(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
+def postponed_annotations(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield `from __future__ import annotations` below the module's docstring."""
     body = source.tree.body
-    if found and ast.get_docstring(source.tree) and "__future__" not in source.data.decode():
+    if nodes and ast.get_docstring(source.tree) and "__future__" not in source.data.decode():
         end = source.span(body[0])[1]
         yield end, end, "\n\nfrom __future__ import annotations"
 
@@ -169,9 +169,9 @@ def _operand(source: Source, node: ast.expr) -> str:
 
 
 def _variables(function: Function) -> set[str]:
-    """Return the names that a function binds as variables, and as nothing else, and that no f-string holds.
+    """Return the names that a function uses only as variables, and not inside an f-string.
 
-    The positions in f-strings are not those of the file before Python 3.12.
+    Before Python 3.12, positions inside f-strings are not relative to the file.
     """
     inside = list(ast.walk(function))
     stored = {node.id for node in inside if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}

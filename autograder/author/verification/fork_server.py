@@ -1,14 +1,13 @@
-"""A fork server: a worker that has imported everything once, and forks for each submission.
+"""A fork server: a worker that imports everything once and forks for each submission.
 
     python -m autograder.author.verification.fork_server SCRATCH DESCRIPTOR
 
-Starting a worker costs about a core-second, as much as the checks of many a submission. The proof grades thousands of
-submissions, which the course itself wrote. So one worker in one cell grades many of them, one after another. The
-submission of a student always gets a new worker in a new cell (`own_cell.in_own_cell`), and so does an attack. The
-sandboxes around students' code are the same in both.
-
-It receives jobs. A child sends what it leaves, and the server then the child's exit status with what it wrote. Nothing
-is unpickled.
+Starting a worker takes about one core-second, as long as the checks of many submissions. The verification grades
+thousands of submissions that the course itself contains, so one worker in one worker sandbox grades many of them in
+sequence. A student's submission always gets a new worker in a new sandbox (`own_cell.in_own_cell`), and so does an
+attack. The inner sandboxes around students' code are the same in both cases.  The server receives jobs. For each job, a
+child sends the files that it produced, and then the server sends the child's exit status and output. Nothing is
+unpickled.
 """
 
 from __future__ import annotations
@@ -33,11 +32,11 @@ OUTPUT = 1024 * 1024  # bytes: the end of a child's output that goes into the re
 
 
 def serve(scratch: Path, client: Connection) -> None:
-    """Do jobs until the client ends, each in a child of its own that leaves no file."""
+    """Run jobs until the client closes the connection, each in a separate child. Remove the files that it leaves."""
     log_file = scratch / "output.log"
     while True:
         job = Job.from_json(client.recv_bytes().decode())
-        assert job.suite.version + job.suite.files_digest  # read once for all, too
+        assert job.suite.version + job.suite.files_digest  # cached here for all children
         child = os.fork()
         if child == 0:
             line.take(client)
@@ -51,7 +50,7 @@ def serve(scratch: Path, client: Connection) -> None:
 
 
 def _work(job: Job, log_file: Path) -> None:
-    """Grade one submission in the child process, and exit: with status 0, or with 1 after an exception."""
+    """Grade one submission in the child process and exit with status 0, or with 1 after an exception."""
     status = 1
     try:
         log = os.open(log_file, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
@@ -68,13 +67,13 @@ def _work(job: Job, log_file: Path) -> None:
 
 
 def main() -> None:
-    """Serve in the folder and on the descriptor that the command line names."""
+    """Serve with the folder and descriptor from the command line."""
     worker.prepare()
-    for profile in PROFILES:  # a server that a child warmed up would end with it
+    for profile in PROFILES:  # a server started by a child would end with that child
         warm_up(profile)
-    PROFILES["tests"].load()  # a worker needs most of that, too
+    PROFILES["tests"].load()  # a worker needs most of these modules, too
     gc.collect()
-    gc.freeze()  # what the children share is not theirs to look through
+    gc.freeze()  # keeps the children's garbage collectors away from shared memory pages
     with Connection(int(sys.argv[2])) as client, suppress(EOFError):
         serve(Path(sys.argv[1]), client)
 

@@ -1,7 +1,7 @@
-"""Finds hidden text in what students get, also if it is turned round, encoded, or split into pieces.
+"""Finds hidden text in the files that students get, even if it is reversed, encoded or split into pieces.
 
-Hidden text is a word that was planted in a version of a package (`leak_markers`), or a line that stands in the hidden
-checks alone.
+Hidden text is a word that was planted in a version of a package (`leak_markers`), or a line that occurs only in the
+hidden checks.
 """
 
 from __future__ import annotations
@@ -17,21 +17,21 @@ from PIL import Image
 
 from autograder.probes.leak_markers import markers_in
 
-LOOT = "STOLEN /"  # what a payload of an attack prints before a path that it could read or write
+STOLEN = "STOLEN /"  # an attack's payload prints this before a path that it could read or write
 TEXTS = (".json", ".html", ".ipynb", ".svg", ".csv", ".txt")
 PICTURES = (".png",)
 _HEX = re.compile(r"(?:[0-9a-fA-F]{2}[ :,-]?){20,}")
 _BASE64 = re.compile(r"[A-Za-z0-9+/_-]{24,}")
-_ID = re.compile(r"\[([^\[\]]{1,8})\]")  # of a parametrized test
+_ID = re.compile(r"\[([^\[\]]{1,8})\]")  # the id of a parametrized test
 _NUMBER = re.compile(r"\b\d{2,3}\b")
 
 
-def found_in(text: str, lines: Iterable[str] = ()) -> list[str]:
-    """Return the planted words that a text holds, and those of the hidden lines, as they were before they were encoded.
+def hidden_text_in(text: str, lines: Iterable[str] = ()) -> list[str]:
+    """Return the planted words and hidden lines that a text contains, in their original form.
 
     Args:
-        text: what a student gets.
-        lines: lines that only hidden files hold.
+        text: text that a student gets.
+        lines: lines that occur only in hidden files.
     """
     readings = list(_readings(text))
     words = {word for reading in readings for word in markers_in(reading.lower())}
@@ -41,7 +41,7 @@ def found_in(text: str, lines: Iterable[str] = ()) -> list[str]:
 
 
 def texts_of(folder: Path) -> Iterator[str]:
-    """Yield the texts of all files that a grading and its feedback left, and those beside the pixels of pictures."""
+    """Yield the names and texts of all files from a grading and its feedback, including the metadata of pictures."""
     for path in sorted(folder.rglob("*")):
         yield path.name
         if path.suffix in TEXTS:
@@ -52,7 +52,7 @@ def texts_of(folder: Path) -> Iterator[str]:
 
 
 def _readings(text: str) -> Iterator[str]:
-    """Yield a text in each way in which it can be read."""
+    """Yield every decoding of a text."""
     for plain in (text, text[::-1]):
         yield plain
         yield _squeezed(plain)
@@ -69,7 +69,7 @@ def _readings(text: str) -> Iterator[str]:
 
 
 def _squeezed(text: str) -> str:
-    """Return the letters alone, in small ones, so that nothing between them hides a word."""
+    """Return only the letters, in lower case, so that separators cannot hide a word."""
     return "".join(char for char in text.lower() if char.isalpha())
 
 
@@ -84,7 +84,7 @@ def _from_base64(text: str) -> Iterator[str]:
         run = match[0].replace("-", "+").replace("_", "/")
         for start in range(4):
             part = run[start:]
-            part = part[:-1] if len(part) % 4 == 1 else part  # one character alone is no byte
+            part = part[:-1] if len(part) % 4 == 1 else part  # a single character does not encode a byte
             yield base64.b64decode(part + "=" * (-len(part) % 4)).decode("latin-1")
 
 
@@ -92,7 +92,7 @@ def _even(digits: str) -> str:
     return digits[: len(digits) // 2 * 2]
 
 
-ENCODINGS: dict[str, Callable[[str], str]] = {  # those that `found_in` sees through, for its tests and for attacks
+ENCODINGS: dict[str, Callable[[str], str]] = {  # that `hidden_text_in` decodes; used by its tests and by attacks
     "plain": str,
     "reversed": lambda text: text[::-1],
     "upper case": str.upper,

@@ -1,7 +1,7 @@
 """Mutants: copies of the reference solution with one realistic student error each.
 
-The file `mutants.yaml` of a suite holds the edits of each mutant and the check that it is for. All checks that it
-fails, and its diagnosis, are recorded in a snapshot beside that file (`autograder.author.verification.snapshot`).
+A suite's `mutants.yaml` defines the edits of each mutant and the check that should catch it. A snapshot beside that
+file records all checks that the mutant fails, and its diagnosis (`autograder.author.verification.snapshot`).
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from autograder.diagnosis import Kind
 from autograder.exceptions import GraderError
 from autograder.suite import suites
 
-LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the same, ten times as fast where it was compiled
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # equivalent; the C version is ten times as fast
 
 
 @dataclass(frozen=True)
 class Edit:
-    """One change of a file of the reference.
+    """A change to one file of the reference.
 
     Attributes:
-        file: path of the file, below `src`.
+        file: path of the file, relative to `src`.
         find: text to replace, which occurs exactly once in the file. None replaces the whole file.
         replace: the new text. None deletes the file.
     """
@@ -45,14 +45,14 @@ class Mutant:
 
     Attributes:
         id: unique in the assignment.
-        title: the error in words.
-        edits: changes of the reference.
+        title: a description of the error.
+        edits: changes to the reference.
         check: id of the check for which the mutant was written.
-        fails: ids of all checks that do not pass, as recorded; empty if the mutant is not recorded.
-        diagnosis: what the result says of building and starting the programs, as recorded.
+        fails: recorded ids of all checks that do not pass; empty if the mutant has no record.
+        diagnosis: recorded diagnosis of building and starting the programs.
         demo: whether `make demo` grades it.
         slow: whether grading it waits for a time-out.
-        reason: why it loses far more than its own check, where its result does not say so; see `costs`.
+        reason: why it costs much more than its own check, if its result does not explain it; see `costs`.
     """
 
     id: str
@@ -79,17 +79,17 @@ def mutants(assignment: str) -> tuple[Mutant, ...]:
 
 
 def write_reference(sources: tuple[str, ...], folder: Path) -> None:
-    """Copy packages and other folders of the reference solution to `folder`/src."""
+    """Copy packages and other folders of the reference solution to `folder/src`."""
     for source in sources:
         shutil.copytree(layout.SOLUTIONS / source, folder / "src" / source)
 
 
 def write_mutant(mutant: Mutant, sources: tuple[str, ...], folder: Path) -> None:
-    """Write a mutant as a source tree, `folder`/src.
+    """Write a mutant as a source tree, `folder/src`.
 
     Args:
         mutant: the mutant to write.
-        sources: packages and folders of the reference to copy, by their names below `solutions/`.
+        sources: names of the packages and folders in `solutions/` to copy.
         folder: the folder that gets `src`.
 
     Raises:
@@ -116,7 +116,7 @@ def _apply(mutant: Mutant, edit: Edit, path: Path) -> None:
 
 
 def _edit(entry: dict[str, Any], file: str) -> Edit:
-    """Read `{find, replace}`, `{write: TEXT}` or `{delete: true}`. An entry without `file` changes the given one."""
+    """Read `{find, replace}`, `{write: TEXT}` or `{delete: true}`. `file` is the default for an entry without one."""
     file = entry.get("file", file)
     if entry.get("delete"):
         return Edit(file, None, None)

@@ -1,9 +1,9 @@
-"""Grades the mutants of a chapter's population, each up to the first check that it loses, and stores the results.
+"""Grades the generated mutants of a chapter, each until a check fails, and stores the results.
 
-A mutant costs a second, because of three things. Where colcon would only copy the changed file, the built reference is
-patched. Where checks look at the sources alone, they are asked before anything is built. And the checks that killed the
-mutants of the same function before come first. The reference is graded in each of these ways before any mutant: a way
-counts only for checks that the reference passes in it.
+Three shortcuts reduce the time for a mutant to a second. If colcon would only copy the changed file, the built
+reference is patched. Checks that only read the sources run before anything is built. Checks that killed earlier mutants
+of the same function run first. Before any mutant, the reference is graded with each shortcut. A shortcut is used only
+for checks that the reference passes with it.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from autograder import layout
+from autograder.author.verification.generated_mutants import GeneratedMutant
 from autograder.author.verification.mutants import write_reference
-from autograder.author.verification.population import GeneratedMutant
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.building.build import build_workspace
 from autograder.diagnosis import Kind
@@ -32,15 +32,15 @@ from autograder.run.workspace import Workspace
 from autograder.suite import Outcome, suites
 from autograder.suite.fingerprint import digest
 
-COPIED = (".py", ".yaml")  # endings of files that colcon only copies
+COPIED = (".py", ".yaml")  # suffixes of files that colcon only copies
 NOT_COPIED = ("setup.py",)
-FIRST = 3  # checks that are asked before all others
+FIRST = 3  # checks that run before all others
 FAILED = "not graded"
 
 
 @dataclass(frozen=True)
 class MutantResult:
-    """The result of a mutant. `killer` is the check that it lost, "" if it lost none, FAILED if the grader failed."""
+    """The result of a mutant. `killer` is the check that failed, "" if none did, or FAILED if the grader failed."""
 
     id: str
     killer: str
@@ -49,7 +49,7 @@ class MutantResult:
 
     @property
     def killed(self) -> bool:
-        """Whether a check was lost."""
+        """Whether a check failed."""
         return self.killer not in ("", FAILED)
 
 
@@ -60,7 +60,7 @@ class MutationRun:
         assignment: the chapter.
         workers: the pool that grades.
         seed: seed of every hidden input.
-        folder: a temporary folder, which gets the built reference.
+        folder: a temporary folder for the built reference.
     """
 
     def __init__(self, assignment: str, workers: WorkerPool, seed: int, folder: Path) -> None:
@@ -72,50 +72,50 @@ class MutationRun:
         (folder / "home").mkdir()
         workspace = Workspace(folder / "patched", activate(), folder / "home")
         build_workspace(workspace, self._suite.packages)
-        self.ways = {name: self._passed(folder / name) for name in ("patched", "unbuilt")}
+        self.shortcuts = {name: self._passed(folder / name) for name in ("patched", "unbuilt")}
 
     def _passed(self, built: Path) -> frozenset[str]:
-        """Return the checks that the reference passes without a build of its own."""
+        """Return the checks that the reference passes with this workspace instead of a new build."""
         result = self._grade({}, Scope(pictures=False, built=str(built)))
         return frozenset(check.id for check in result.checks if check.outcome is Outcome.PASSED)
 
     def run_mutant(self, mutant: GeneratedMutant, version: str = "") -> MutantResult:
-        """Grade a mutant up to the first check that it loses."""
+        """Grade a mutant until a check fails."""
         began = time.monotonic()
         killer = next(filter(None, self._stages(mutant)), "")
         if killer:
-            for place in {(mutant.file, mutant.function), (mutant.file, "")}:
-                self._killers[place][killer] += 1
+            for location in {(mutant.file, mutant.function), (mutant.file, "")}:
+                self._killers[location][killer] += 1
         return MutantResult(mutant.id, killer, round(time.monotonic() - began, 2), version)
 
     def _stages(self, mutant: GeneratedMutant) -> Iterator[str]:
-        """Yield the killer of each stage, or "": first what is quick, and what is likely to kill."""
+        """Yield the killer of each stage, or "". Fast checks and likely killers come first."""
         texts = mutant.texts()
         in_tests = all("/test/" in file for file in texts)
-        # The reference's own tests would kill much, and a student has others.
-        counted = frozenset(self._ids).difference(() if in_tests else self._suite.own_tests)
+        # The reference's own tests would kill many mutants, but a student has other tests.
+        eligible = frozenset(self._ids).difference(() if in_tests else self._suite.own_tests)
         copied = all(file.endswith(COPIED) and not file.endswith(NOT_COPIED) for file in texts)
-        way = "patched" if copied else "unbuilt"
-        able = self.ways[way] & counted
-        likely = self._likely(mutant) & able if copied else able
-        built = str(self._folder / way)
+        shortcut = "patched" if copied else "unbuilt"
+        applicable = self.shortcuts[shortcut] & eligible
+        likely = self._likely(mutant) & applicable if copied else applicable
+        built = str(self._folder / shortcut)
         if likely:
             yield self._killer(texts, self._suite.with_dependencies(*likely), built)
-        if copied and able - likely:
-            yield self._killer(texts, self._suite.with_dependencies(*able), built)
-        if counted - able:
-            yield self._killer(texts, self._suite.with_dependencies(*counted), "")
+        if copied and applicable - likely:
+            yield self._killer(texts, self._suite.with_dependencies(*applicable), built)
+        if eligible - applicable:
+            yield self._killer(texts, self._suite.with_dependencies(*eligible), "")
 
     def _likely(self, mutant: GeneratedMutant) -> frozenset[str]:
-        known = self._killers[mutant.file, mutant.function] or self._killers[mutant.file, ""]
-        return frozenset(name for name, _ in known.most_common(FIRST))
+        killers = self._killers[mutant.file, mutant.function] or self._killers[mutant.file, ""]
+        return frozenset(name for name, _ in killers.most_common(FIRST))
 
     def _killer(self, texts: dict[str, str], only: tuple[str, ...], built: str) -> str:
         result = self._grade(texts, Scope(only=only, first_loss=True, pictures=False, built=built))
         if result.status is not Status.GRADED or result.unjudged:
             return FAILED
-        lost = [check.id for check in result.checks if check.outcome is Outcome.FAILED]
-        return lost[0] if lost else "" if result.diagnosis.kind is Kind.OK else result.diagnosis.kind.value
+        failed = [check.id for check in result.checks if check.outcome is Outcome.FAILED]
+        return failed[0] if failed else "" if result.diagnosis.kind is Kind.OK else result.diagnosis.kind.value
 
     def _grade(self, texts: dict[str, str], scope: Scope) -> Result:
         with tempfile.TemporaryDirectory(prefix="mutant-") as name:
@@ -134,24 +134,24 @@ def run_mutants(
     workers: WorkerPool,
     *,
     seed: int,
-    kept: Path,
+    cache: Path,
     on_result: Callable[[MutantResult], None] = lambda result: None,
 ) -> tuple[MutantResult, ...]:
     """Grade mutants of a chapter, and return their results.
 
-    `kept` is a file of results. A result in it counts if suite and reference are the same, so that a stopped run can
-    continue. Each new result is added to it.
+    `cache` is a file of results. A stored result is reused if suite and reference are unchanged, so that an interrupted
+    run can continue. Each new result is appended to the file.
     """
     version, chosen = _version(assignment), list(mutants)
-    lines = kept.read_text(encoding="utf-8").splitlines() if kept.is_file() else []
+    lines = cache.read_text(encoding="utf-8").splitlines() if cache.is_file() else []
     known = {
         result.id: result
         for result in (MutantResult(**json.loads(line)) for line in lines)
         if result.version == version
     }
     missing = [mutant for mutant in chosen if mutant.id not in known]
-    kept.parent.mkdir(parents=True, exist_ok=True)
-    with kept.open("a", encoding="utf-8") as file:
+    cache.parent.mkdir(parents=True, exist_ok=True)
+    with cache.open("a", encoding="utf-8") as file:
 
         def keep(result: MutantResult) -> None:
             if result.killer != FAILED:
@@ -159,13 +159,13 @@ def run_mutants(
                 file.flush()
             on_result(result)
 
-        made: tuple[MutantResult, ...] = ()
+        new: tuple[MutantResult, ...] = ()
         if missing:
             with prepared_run(assignment, workers, seed) as run:
-                made = map_parallel(
+                new = map_parallel(
                     lambda mutant: run.run_mutant(mutant, version), missing, jobs=workers.count, on_done=keep
                 )
-    known |= {result.id: result for result in made}
+    known |= {result.id: result for result in new}
     return tuple(known[mutant.id] for mutant in chosen)
 
 
@@ -177,6 +177,6 @@ def prepared_run(assignment: str, workers: WorkerPool, seed: int) -> Iterator[Mu
 
 
 def _version(assignment: str) -> str:
-    """Return a digest of what the suite and the reference are read from."""
+    """Return a digest of the files of the suite and the reference."""
     suite = suites.hidden(assignment)
     return digest(assignment, (*suite.reads, *(f"{layout.course().solutions}/{source}" for source in suite.sources)))

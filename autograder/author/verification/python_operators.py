@@ -1,8 +1,8 @@
-"""Mutation operators for Python. Each changes one place, or makes the same change at all its places.
+"""Mutation operators for Python. Each changes one place, or makes the same change in several places.
 
-They change the text at the positions that `ast` gives, so that the rest of the text stays the same. cosmic-ray and
-mutmut have the classic ones only, and bring a parser and a dozen packages with them; the operators for ROS,
-`ros_operators.py`, need the positions of `ast` in any case.
+They change the text at the positions that `ast` reports, so that the rest of the text is preserved. cosmic-ray and
+mutmut only have the classic operators, and depend on a parser and a dozen other packages. The ROS operators in
+`ros_operators.py` need the positions from `ast` in any case.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ BOUNDARY = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 ARITHMETIC = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
 ARITHMETIC |= {ast.FloorDiv: ("//", "/"), ast.Mod: ("%", "//")}
 LEVELS = {"debug": "info", "info": "debug", "warning": "info", "error": "warning", "fatal": "error"}
-FOR_PEOPLE = {"description", "additional_constraints", "reason", "msg", "maintainer", "maintainer_email"}  # words
+FOR_PEOPLE = {"description", "additional_constraints", "reason", "msg", "maintainer", "maintainer_email"}
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
-Replacement = tuple[int, int, str]  # offsets of the replaced part in bytes of UTF-8, and the new text
-Mutation = tuple[str, tuple[Replacement, ...]]  # the operator, and what it replaces
-NodeMutation = tuple[str, ast.AST, str]  # the operator, the node that it replaces, and the new text
+Replacement = tuple[int, int, str]  # start and end of the replaced part in UTF-8 bytes, and the new text
+Mutation = tuple[str, tuple[Replacement, ...]]  # the operator and its replacements
+NodeMutation = tuple[str, ast.AST, str]  # the operator, the replaced node, and the new text
 
 
 class Source:
-    """A module's text, as it stands at the nodes of its syntax tree."""
+    """A module's source text, addressed by the nodes of its syntax tree."""
 
     def __init__(self, text: str) -> None:
         self.data = text.encode()
@@ -38,13 +38,13 @@ class Source:
             self._starts.append(self._starts[-1] + len(line))
 
     def span(self, first: ast.AST, last: ast.AST | None = None) -> tuple[int, int]:
-        """Return the offsets of a node, or of the first to the last of several."""
+        """Return the start and end of a node, or of a range of nodes."""
         last = last or first
         end = self.offset(getattr(last, "end_lineno"), getattr(last, "end_col_offset"))  # noqa: B009
         return self.offset(getattr(first, "lineno"), getattr(first, "col_offset")), end  # noqa: B009
 
     def offset(self, line: int, column: int) -> int:
-        """Return the offset of a position in bytes of UTF-8, with lines from 1 and columns from 0."""
+        """Return the offset of a position in UTF-8 bytes. Lines start at 1, columns at 0."""
         return self._starts[line - 1] + column
 
     def text(self, node: ast.AST) -> str:
@@ -54,7 +54,7 @@ class Source:
 
 
 def replaced(data: bytes, changes: Iterable[Replacement]) -> bytes:
-    """Return a text in which some parts, which do not overlap, are replaced."""
+    """Return a text with some non-overlapping parts replaced."""
     for start, end, new in sorted(changes, reverse=True):
         data = data[:start] + new.encode() + data[end:]
     return data
@@ -62,7 +62,7 @@ def replaced(data: bytes, changes: Iterable[Replacement]) -> bytes:
 
 @dataclass(frozen=True)
 class NodeInContext:
-    """A node, the nodes that contain it (the innermost first), and the function that it belongs to, or None."""
+    """A node, its ancestors (innermost first), and the function that contains it, or None."""
 
     node: ast.AST
     ancestors: tuple[ast.AST, ...]
@@ -70,11 +70,11 @@ class NodeInContext:
 
 
 def nodes_in_context(source: Source, functions: frozenset[str] | None) -> Iterator[tuple[str, NodeInContext]]:
-    """Yield the nodes that students write, each with the name of its function, "" at the top of the module.
+    """Yield (function name, node) for each node that students write. The name is "" at module level.
 
     Args:
         source: the module.
-        functions: the qualified names of the functions that students write. None stands for all.
+        functions: qualified names of the functions that students write; None means all.
     """
 
     def walk(node: ast.AST, name: str, context: NodeInContext) -> Iterator[tuple[str, NodeInContext]]:
@@ -99,7 +99,7 @@ def nodes_in_context(source: Source, functions: frozenset[str] | None) -> Iterat
 
 
 def _is_silent(node: ast.AST, context: NodeInContext) -> bool:
-    """Return whether a node is no part of what runs, or only words for people."""
+    """Return whether a node does not affect execution, or only contains text for people."""
     if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
         return True  # a docstring
     if isinstance(node, ast.Import | ast.ImportFrom | ast.JoinedStr):
@@ -165,14 +165,14 @@ def _constants(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     value = node.value
     if isinstance(value, bool):
         yield "constant", node, str(not value)
-    elif isinstance(value, str) and " " not in value:  # a sentence is for people, and no name
+    elif isinstance(value, str) and " " not in value:  # a string with spaces is text, not a name
         yield "name", node, repr(f"{value}s" if value else "x")
     elif isinstance(value, int | float):
         yield from ((name, node, text) for name, text in numbers(value))
 
 
 def numbers(value: float) -> Iterator[tuple[str, str]]:
-    """Yield (operator, new text) for a number: a tenth more, a quarter less, one more, one less, the other sign."""
+    """Yield (operator, new text) for a number: one more, one less, 10 % more, 25 % less, and the opposite sign."""
     whole = isinstance(value, int)
     made = {repr(value): ""}
     steps = [("off by one", value + 1), ("off by one", value - 1)] if whole or value == 0 else []
@@ -200,7 +200,7 @@ def _statements(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
 
 
 def _kind(call: ast.Call) -> str:
-    """Return what a call is: a log call, a publish, a timer or another one."""
+    """Return the kind of a call: "log", "publish", "timer" or "call"."""
     name = getattr(call.func, "attr", "")
     return {"publish": "publish", "create_timer": "timer"}.get(name, "log" if name in LEVELS else "call")
 
@@ -232,7 +232,7 @@ def _elements(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
 
 
 def left_out(source: Source, node: ast.AST) -> Iterator[Mutation]:
-    """Yield the mutations that leave out an argument that has a name, or an element of a list or a dictionary."""
+    """Yield mutations that remove a keyword argument, or an element of a list or dictionary."""
     parts: list[tuple[ast.AST, ast.AST]] = []
     if isinstance(node, ast.Call):
         arguments: list[ast.expr | ast.keyword] = [*node.args, *node.keywords]
@@ -250,7 +250,7 @@ def left_out(source: Source, node: ast.AST) -> Iterator[Mutation]:
         elif at:
             start = spans[at - 1][1]
         else:
-            end = source.span(node)[1] - 1  # with the comma that may follow
+            end = source.span(node)[1] - 1  # includes a trailing comma
         yield "keyword" if isinstance(node, ast.Call) else "element", ((start, end, ""),)
 
 

@@ -1,4 +1,4 @@
-"""Records what the named mutants fail, and their diagnoses, from the results of their gradings."""
+"""Records the failed checks and the diagnosis of each graded mutant in the snapshot."""
 
 from __future__ import annotations
 
@@ -6,51 +6,51 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from autograder.author.verification import snapshot
-from autograder.author.verification.claims import CaseKind, Claim, lost_checks, verify_mutant
+from autograder.author.verification.claims import CaseKind, Verdict, lost_checks, verify_mutant
 from autograder.author.verification.mutants import mutants
 from autograder.author.verification.snapshot import Record
 from autograder.result.model import Status
 
 
-def record_failures(assignment: str, claims: Iterable[Claim]) -> str:
-    """Record what the graded mutants of an assignment fail, and their diagnoses; return what changed, in words.
+def record_failures(assignment: str, verdicts: Iterable[Verdict]) -> str:
+    """Record the failures and diagnoses of the graded mutants of an assignment, and describe what changed.
 
-    A mutant that was not graded keeps its record, and one that `mutants.yaml` no longer has loses it. A mutant that
-    passes the check for which it was written proves nothing, so its result is not recorded.
+    A mutant that was not graded keeps its record. Records of mutants that are no longer in `mutants.yaml` are removed.
+    A mutant that passes the check for which it was written proves nothing, so its result is not recorded.
     """
     written_for = {mutant.id: mutant.check for mutant in mutants(assignment)}
-    seen = {
-        claim.name: Record(lost_checks(claim.result), claim.result.diagnosis.kind)
-        for claim in claims
-        if claim.assignment == assignment and _is_recordable(claim)
+    observed = {
+        verdict.name: Record(lost_checks(verdict.result), verdict.result.diagnosis.kind)
+        for verdict in verdicts
+        if verdict.assignment == assignment and _is_recordable(verdict)
     }
-    useless = sorted(name for name, record in seen.items() if written_for[name] not in record.fails)
+    useless = sorted(name for name, record in observed.items() if written_for[name] not in record.fails)
     before = snapshot.recorded(assignment)
-    after = before | {name: record for name, record in seen.items() if name not in useless}
+    after = before | {name: record for name, record in observed.items() if name not in useless}
     after = {name: after[name] for name in written_for if name in after}
     snapshot.write(assignment, after)
     changed = sum(before.get(name) != after.get(name) for name in before | after)
-    text = f"{assignment}: {len(seen)} mutants graded, {changed} records changed"
+    text = f"{assignment}: {len(observed)} mutants graded, {changed} records changed"
     return text + (f"; not recorded, because they pass their own check: {', '.join(useless)}" if useless else "")
 
 
-def compared_again(claims: Iterable[Claim]) -> tuple[Claim, ...]:
-    """Return the claims with the results of named mutants compared with what is recorded now."""
-    claims = tuple(claims)
-    known = {
+def compare_again(verdicts: Iterable[Verdict]) -> tuple[Verdict, ...]:
+    """Compare the results of named mutants with the current snapshot, and return the updated verdicts."""
+    verdicts = tuple(verdicts)
+    by_id = {
         (assignment, mutant.id): mutant
-        for assignment in {claim.assignment for claim in claims}
+        for assignment in {verdict.assignment for verdict in verdicts}
         for mutant in mutants(assignment)
     }
     return tuple(
-        replace(claim, mismatch=verify_mutant(known[claim.assignment, claim.name], claim.result))
-        if _is_recordable(claim)
-        else claim
-        for claim in claims
+        replace(verdict, mismatch=verify_mutant(by_id[verdict.assignment, verdict.name], verdict.result))
+        if _is_recordable(verdict)
+        else verdict
+        for verdict in verdicts
     )
 
 
-def _is_recordable(claim: Claim) -> bool:
-    """Return whether a claim is of a named mutant that every check judged."""
-    graded = claim.result.status is Status.GRADED and not claim.result.unjudged
-    return claim.kind is CaseKind.MUTANT and graded
+def _is_recordable(verdict: Verdict) -> bool:
+    """Return whether a verdict belongs to a named mutant that was graded by every check."""
+    graded = verdict.result.status is Status.GRADED and not verdict.result.unjudged
+    return verdict.kind is CaseKind.MUTANT and graded

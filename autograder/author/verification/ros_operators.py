@@ -1,4 +1,4 @@
-"""Mutation operators for the errors of ROS programs: quality of service, time, parameters, exceptions, units."""
+"""Mutation operators for typical errors in ROS programs: quality of service, time, parameters, exceptions, units."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SWAPPED |= {right: left for left, right in SWAPPED.items()}
 
 
 def ros_mutations(source: Source, context: NodeInContext) -> Iterator[NodeMutation]:
-    """Yield the mutations of a node that are about robots."""
+    """Yield the ROS-specific mutations of a node."""
     node = context.node
     if isinstance(node, ast.Attribute | ast.Name):
         yield from _names(source, node, context)
@@ -72,7 +72,7 @@ def _calls(source: Source, node: ast.Call, context: NodeInContext) -> Iterator[N
 
 
 def is_queue_length(context: NodeInContext) -> bool:
-    """Return whether a node is the length of a queue, of which `qos` makes what matters."""
+    """Return whether a node is a queue length, for which the operator "qos" makes the relevant mutations."""
     outer = context.ancestors[0]
     if isinstance(outer, ast.keyword):
         return outer.arg == "depth"
@@ -96,7 +96,7 @@ def multi_node_mutations(source: Source, context: NodeInContext) -> Iterator[Mut
 
 
 def wall_time(source: Source, within: list[ast.AST]) -> Iterator[Mutation]:
-    """Yield the mutation that reads the machine's clock at every place where a module reads the clock of ROS."""
+    """Yield a mutation that replaces every use of the ROS clock in a module by the machine's clock."""
     clocks = [node for node in within if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "get_clock"]
     if clocks:
         yield "wall time", tuple((*source.span(node), WALL_CLOCK) for node in clocks)

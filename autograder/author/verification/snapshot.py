@@ -1,8 +1,8 @@
-"""The record of each named mutant: every check that it did not pass when it was last recorded, and its diagnosis.
+"""Snapshots of the named mutants: the checks that each one fails, and its diagnosis.
 
-`mutants.yaml` says for which check somebody wrote a mutant. What else it fails, and how its result is diagnosed,
-follows from the suite, so no person keeps that list: `autograder verify --record` writes it, and a reviewer reads the
-difference.
+`mutants.yaml` names the check for which a mutant was written. The other checks that it fails and its diagnosis follow
+from the suite. `autograder verify --record` writes them, so that nobody maintains the list by hand and a reviewer sees
+every change in the diff.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ WIDTH = 118  # characters in a line
 
 @dataclass(frozen=True)
 class Record:
-    """What was recorded of a mutant.
+    """The record of a mutant.
 
     Attributes:
         fails: ids of all checks that do not pass; empty if nothing is recorded.
-        diagnosis: what its result says of building and starting the programs.
+        diagnosis: diagnosis of building and starting the programs.
     """
 
     fails: frozenset[str] = frozenset()
@@ -45,9 +45,9 @@ def snapshot_file(assignment: str) -> Path:
 
 
 def recorded(assignment: str) -> dict[str, Record]:
-    """Return what is recorded of each mutant, by the mutant's id.
+    """Return the record of each mutant, by the mutant's id.
 
-    A check that the suite no longer has is left out.
+    Checks that the suite no longer has are omitted.
     """
     path = snapshot_file(assignment)
     known = frozenset(check.id for check in suites.hidden(assignment).checks)
@@ -65,7 +65,7 @@ def write(assignment: str, records: Mapping[str, Record]) -> None:
 
 
 def _read(row: Any, known: frozenset[str]) -> Record:
-    """Return the record in a row: `all`, a list of checks, or one of them as `fails` beside a `diagnosis`."""
+    """Parse a record: `all`, a list of checks, or a mapping of `fails` (one of these two) and `diagnosis`."""
     fails, diagnosis = (row["fails"], row["diagnosis"]) if isinstance(row, dict) else (row, Kind.OK)
     return Record(known if fails == ALL else known & frozenset(fails), Kind(diagnosis))
 

@@ -1,4 +1,4 @@
-"""Mutation operators for what students write besides Python: definitions, build files, manifests, settings."""
+"""Mutation operators for files other than Python: interface definitions, build files, manifests and parameters."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ TAGS = {"depend": "build_depend", "exec_depend": "build_depend", "build_depend":
 TAGS |= {"test_depend": "exec_depend", "buildtool_depend": "build_depend"}
 NUMBER = re.compile(r"(?<![\w.<])\d+(?:\.\d+)?(?![\w.])")
 DEFINITION = re.compile(r"(?P<type>[a-z_0-9A-Z/]+)(?P<bound>\[[^]]*\]|<=\d+)?(?P<rest>\[[^]]*\])?\s+(?P<name>\w+)")
-SAID = re.compile(r">(?P<value>[^<>\n]+)</|=(?P<attribute>\"[^\"\n]*)\"")
+NAME_VALUE = re.compile(r">(?P<value>[^<>\n]+)</|=(?P<attribute>\"[^\"\n]*)\"")
 TAG = re.compile(r"<(?P<tag>\w+)>(?P<text>[^<>\n]+)</(?P=tag)>")
 WORD = re.compile(r"[\w./${}-]+")
-NO_WORDS = ("<description>", "<maintainer", "<?xml")  # for people, or for programs that no student runs
+NO_WORDS = ("<description>", "<maintainer", "<?xml")  # for people, or for tools that students do not run
 
 
 def text_mutations(file: str, text: str) -> Iterator[Mutation]:
-    """Yield the mutations of a text, by the kind of its file; offsets are in bytes."""
+    """Yield the mutations of a text, depending on its file type. Offsets are in bytes."""
     at = 0
     before: tuple[int, str] | None = None
     for line in text.splitlines(keepends=True):
@@ -44,12 +44,12 @@ def text_mutations(file: str, text: str) -> Iterator[Mutation]:
 
 
 def _in_line(file: str, line: str) -> Iterator[tuple[str, int, int, str]]:
-    """Yield (operator, start, end, new text) in a line."""
+    """Yield (operator, start, end, new text) for a line."""
     if file.endswith((".msg", ".srv", ".action")):
         yield from _in_definition(line)
     elif file.endswith(".xml"):
-        for found in SAID.finditer(line):
-            end = found.end() - (2 if found["value"] else 1)
+        for match in NAME_VALUE.finditer(line):
+            end = match.end() - (2 if match["value"] else 1)
             yield "name", end, end, "s"
         if (tag := TAG.search(line)) and tag["tag"] in TAGS:
             new = TAGS[tag["tag"]]
@@ -66,25 +66,25 @@ def _in_line(file: str, line: str) -> Iterator[tuple[str, int, int, str]]:
 
 
 def _in_definition(line: str) -> Iterator[tuple[str, int, int, str]]:
-    found = DEFINITION.match(line)
-    if found is None:
+    match = DEFINITION.match(line)
+    if match is None:
         return
-    if found["type"] in TYPES:
-        yield "type", *found.span("type"), TYPES[found["type"]]
-    yield "name", found.end("name"), found.end("name"), "S" if found["name"].isupper() else "s"
+    if match["type"] in TYPES:
+        yield "type", *match.span("type"), TYPES[match["type"]]
+    yield "name", match.end("name"), match.end("name"), "S" if match["name"].isupper() else "s"
     for bound in ("bound", "rest"):
-        if found[bound]:
-            yield "bound", *found.span(bound), "[]" if found[bound].startswith("[<") else ""
-            if number := NUMBER.search(found[bound].replace("<=", "  ")):
-                start = found.start(bound) + number.start()
+        if match[bound]:
+            yield "bound", *match.span(bound), "[]" if match[bound].startswith("[<") else ""
+            if number := NUMBER.search(match[bound].replace("<=", "  ")):
+                start = match.start(bound) + number.start()
                 yield "bound", start, start + len(number[0]), str(int(number[0]) + 1)
-    yield from _numbers(line[found.end("name") :], found.end("name"))
+    yield from _numbers(line[match.end("name") :], match.end("name"))
 
 
 def _numbers(text: str, at: int) -> Iterator[tuple[str, int, int, str]]:
-    for found in NUMBER.finditer(text):
-        value = float(found[0]) if "." in found[0] else int(found[0])
-        negative = text[: found.start()].rstrip().endswith("-")
+    for match in NUMBER.finditer(text):
+        value = float(match[0]) if "." in match[0] else int(match[0])
+        negative = text[: match.start()].rstrip().endswith("-")
         for name, new in numbers(value):
             if not (negative and new.startswith("(")):
-                yield name, at + found.start(), at + found.end(), new.strip("()")
+                yield name, at + match.start(), at + match.end(), new.strip("()")

@@ -1,4 +1,4 @@
-"""A pool of grading workers. Each is a fork server in a cell; it starts on first use, and again after a failure."""
+"""A pool of grading workers. Each is a fork server in a sandbox that starts on first use and again after a failure."""
 
 from __future__ import annotations
 
@@ -25,25 +25,26 @@ from autograder.run.sandbox.process import Ending
 from autograder.run.sandbox.spec import View
 from autograder.run.sandbox.tiers import Tier, require
 
-_TICK = 5.0  # s in which a server that is gone is seen to have ended
+_TICK = 5.0  # s to wait for the exit of a server that no longer replies
 
 
 class WorkerPool:
-    """Grades submissions with a few workers, each in one cell for many submissions; a context manager.
+    """Grades submissions with a fixed number of workers. Each worker grades many submissions in one sandbox.
 
-    It is called as `own_cell.in_own_cell` is. For submissions that are the course's own, see `fork_server`.
+    A pool is a context manager and has the call signature of `own_cell.in_own_cell`. Use it only for the course's own
+    submissions; see `fork_server`.
 
     Args:
-        tier: the isolation of each worker's cell.
-        count: number of workers; as many submissions can be graded at once.
+        tier: the isolation level of each worker sandbox.
+        count: number of workers, which is also the number of submissions graded at the same time.
 
     Raises:
-        IsolationError: this machine cannot give the tier.
+        IsolationError: this machine does not support the isolation level.
     """
 
     def __init__(self, tier: Tier, count: int) -> None:
         self.tier, self.count = require(tier), count
-        # The kernel ends a cell with the thread that started it. This one lives as long as the workers do.
+        # The kernel kills a sandbox when the thread that started it ends. This thread lives as long as the workers.
         self._starter = ThreadPoolExecutor(1)
         self._idle: queue.SimpleQueue[_Worker | None] = queue.SimpleQueue()
         for _ in range(count):
@@ -59,7 +60,7 @@ class WorkerPool:
         self._starter.shutdown()
 
     def __call__(self, job: Job) -> CellReport:
-        """Grade one submission; report the files that its worker left."""
+        """Grade one submission, and return a report with the files that its worker produced."""
         worker = self._idle.get()
         try:
             worker = worker or self._starter.submit(_Worker, self.tier).result()
@@ -73,15 +74,16 @@ class WorkerPool:
 
 
 class _Worker:
-    """A fork server in a cell, which sees the whole course, and one folder for what is handed in."""
+    """A fork server in a sandbox that sees the whole course and one folder for submissions."""
 
     def __init__(self, tier: Tier) -> None:
         self._stack = ExitStack()
         ours, theirs = Pipe()
         self._server, self._tier = self._stack.enter_context(ours), tier
-        # The cell cannot see what comes later, but in a folder that it sees. It has to be open to a user of its own.
-        self._shown = Path(self._stack.enter_context(TemporaryDirectory(prefix="proof-shown-")))
-        self._shown.chmod(0o755)
+        # The sandbox sees later files only in a folder that is mounted from the start, and its user must be able to
+        # read them.
+        self._shared = Path(self._stack.enter_context(TemporaryDirectory(prefix="verification-shared-")))
+        self._shared.chmod(0o755)
 
         def command(scratch: Path) -> list[str]:
             return [
@@ -92,43 +94,43 @@ class _Worker:
                 str(theirs.fileno()),
             ]
 
-        view = View(shown=(*{layout.ROOT, layout.course().root}, self._shown))
+        view = View(shown=(*{layout.ROOT, layout.course().root}, self._shared))
         with theirs:
             cell = in_cell(command, tier, PROOF_CELL, view=view, pass_fds=(theirs.fileno(),))
             self._process, self._scratch = self._stack.enter_context(cell)
 
     def grade(self, job: Job) -> CellReport:
-        """Send one job and wait for its result. If the ending is not `exited`, the worker cannot be used again."""
+        """Send one job and wait for its result. Do not use the worker again unless the exit reason is `exited`."""
         deadline = time.monotonic() + job.seconds + GRACE
-        place = self._scratch / "job"
-        with TemporaryDirectory(dir=self._shown) as folder:
+        scratch = self._scratch / "job"
+        with TemporaryDirectory(dir=self._shared) as folder:
             Path(folder).chmod(0o755)
             path = Path(folder, job.path.name)
             copy_submission(job.path, path)
-            scope = replace(job.scope, built=job.scope.built and str(self._show(Path(job.scope.built))))
-            told = replace(job, path=path, scope=scope, scratch=place, out=place / "out")
+            scope = replace(job.scope, built=job.scope.built and str(self._share(Path(job.scope.built))))
+            sent = replace(job, path=path, scope=scope, scratch=scratch, out=scratch / "out")
             try:
-                self._server.send_bytes(told.to_json().encode())
-                over = lambda: self._process.ending is not None or time.monotonic() > deadline  # noqa: E731
-                files, reply = attend(self._server, self._tier, over)
+                self._server.send_bytes(sent.to_json().encode())
+                is_over = lambda: self._process.ending is not None or time.monotonic() > deadline  # noqa: E731
+                files, reply = attend(self._server, self._tier, is_over)
             except (ParcelError, OSError):
                 files, reply = {}, {}
         return CellReport(Ending.EXITED, reply["status"], reply["output"], files) if reply else self._dead()
 
-    def _show(self, built: Path) -> Path:
-        """Show the fork server a built workspace, which serves many jobs."""
-        shown = self._shown / f"built-{hashlib.sha256(str(built).encode()).hexdigest()[:16]}"
-        if not shown.exists():
-            shutil.copytree(built, shown, symlinks=True)
-        return shown
+    def _share(self, built: Path) -> Path:
+        """Copy a built workspace to the shared folder, once for many jobs, and return the copy."""
+        copy = self._shared / f"built-{hashlib.sha256(str(built).encode()).hexdigest()[:16]}"
+        if not copy.exists():
+            shutil.copytree(built, copy, symlinks=True)
+        return copy
 
     def _dead(self) -> CellReport:
         self._process.wait(_TICK)
         self._process.kill()
-        ending = self._process.ending or Ending.WALL_TIME
-        ending = Ending.KILLED if ending is Ending.EXITED else ending
-        return CellReport(ending, self._process.returncode or 1, self._process.output)
+        exit_reason = self._process.ending or Ending.WALL_TIME
+        exit_reason = Ending.KILLED if exit_reason is Ending.EXITED else exit_reason
+        return CellReport(exit_reason, self._process.returncode or 1, self._process.output)
 
     def close(self) -> None:
-        """End the server and all that is below it."""
+        """End the server and all its child processes."""
         self._stack.close()

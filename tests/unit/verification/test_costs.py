@@ -1,4 +1,4 @@
-"""A named mutant that loses far more than its own check has a reason, or the proof says that it has none."""
+"""A named mutant that costs much more than its own check has a reason, or the report says that it has none."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from autograder.author.verification import costs
-from autograder.author.verification.claims import CaseKind, Claim
+from autograder.author.verification.claims import CaseKind, Verdict
 from autograder.author.verification.costs import Cost
 from autograder.author.verification.mutants import Mutant
 from autograder.diagnosis import OK, Diagnosis, Kind
@@ -29,7 +29,7 @@ CHECKS = {
 }
 
 
-def cost(
+def cost_of(
     make_result: MakeResult,
     monkeypatch: pytest.MonkeyPatch,
     *failed: str,
@@ -37,83 +37,83 @@ def cost(
     fraction: float = 0.0,
     reason: str = "",
     diagnosis: Diagnosis = OK,
-    said: str = "",
+    message: str = "",
 ) -> Cost:
     """Return the cost of a mutant that was written for `turns`."""
     mutant = Mutant("m", "t", (), "turns", reason=reason)
     monkeypatch.setattr(costs, "mutants", lambda assignment: (mutant,))
     outcomes = dict.fromkeys(failed, Outcome.FAILED) | dict.fromkeys(unchecked, Outcome.NOT_CHECKED)
     checks = tuple(
-        CheckResult.of(check, outcomes.get(name, Outcome.PASSED), said or f"{name} is wrong", fraction=fraction)
+        CheckResult.of(check, outcomes.get(name, Outcome.PASSED), message or f"{name} is wrong", fraction=fraction)
         for name, check in CHECKS.items()
     )
     result = make_result(checks=checks, diagnosis=diagnosis, max_score=19.0)
-    (found,) = costs.costs([Claim("02_nodes", CaseKind.MUTANT, "m", result, "")])
-    return found
+    (cost,) = costs.costs([Verdict("02_nodes", CaseKind.MUTANT, "m", result, "")])
+    return cost
 
 
 def test_a_mutant_that_loses_little_needs_no_reason(make_result: MakeResult, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = cost(make_result, monkeypatch, "turns", "edges")
-    assert (found.points, found.lost, found.sentences) == (2.0, 3.0, ("near", "left", "edge"))
-    assert not found.is_dear
-    assert costs.unexplained([found]) == []
+    cost = cost_of(make_result, monkeypatch, "turns", "edges")
+    assert (cost.points, cost.lost, cost.sentences) == (2.0, 3.0, ("near", "left", "edge"))
+    assert not cost.is_expensive
+    assert costs.unexplained([cost]) == []
 
 
 @pytest.mark.parametrize(
     ("failed", "unchecked", "reason"),
     [
-        (("turns", "sector"), (), "3 of the same sentence"),
+        (("turns", "sector"), (), "3 of the same requirement"),
         (("turns", "lidars", "edges"), (), "5 after it"),
         (("turns",), ("drives",), "4 not checked"),
-        (("turns", "sector"), ("drives",), "3 of the same sentence; 4 not checked"),
+        (("turns", "sector"), ("drives",), "3 of the same requirement; 4 not checked"),
         (("turns", "ends"), (), ""),
         (("turns", "sector", "ends"), (), ""),
     ],
-    ids=["a sentence with two checks", "after", "not checked", "both", "nothing", "not all of it"],
+    ids=["a requirement with two checks", "after", "not checked", "both", "nothing", "not all of it"],
 )
-def test_what_the_result_says_is_the_reason(
+def test_the_reason_follows_from_the_result(
     make_result: MakeResult,
     monkeypatch: pytest.MonkeyPatch,
     failed: tuple[str, ...],
     unchecked: tuple[str, ...],
     reason: str,
 ) -> None:
-    found = cost(make_result, monkeypatch, *failed, unchecked=unchecked)
-    assert found.is_dear
-    assert found.reason == reason
-    assert len(costs.unexplained([found])) == (not reason)
+    cost = cost_of(make_result, monkeypatch, *failed, unchecked=unchecked)
+    assert cost.is_expensive
+    assert cost.reason == reason
+    assert len(costs.unexplained([cost])) == (not reason)
 
 
-def test_checks_that_say_the_same_have_one_reason(make_result: MakeResult, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = cost(make_result, monkeypatch, "turns", "ends", "lidars", "edges", said="There is no topic.")
-    assert found.reason == "5 after it; 5 for one and the same reason"
+def test_checks_with_the_same_message_have_one_reason(make_result: MakeResult, monkeypatch: pytest.MonkeyPatch) -> None:
+    cost = cost_of(make_result, monkeypatch, "turns", "ends", "lidars", "edges", message="There is no topic.")
+    assert cost.reason == "5 after it; 5 for the same reason"
 
 
-def test_part_of_a_check_counts_in_part(make_result: MakeResult, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert not cost(make_result, monkeypatch, "turns", "ends", fraction=0.5).is_dear
+def test_partial_credit_reduces_the_cost(make_result: MakeResult, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not cost_of(make_result, monkeypatch, "turns", "ends", fraction=0.5).is_expensive
 
 
-def test_a_program_that_does_not_live_and_a_written_reason_are_reasons(
+def test_a_program_that_does_not_run_and_a_written_reason_are_reasons(
     make_result: MakeResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     dead = Diagnosis(Kind.CRASHED_AT_IMPORT, "It ends.")
-    assert cost(make_result, monkeypatch, "turns", "ends", diagnosis=dead).reason == "crashed at import"
-    assert cost(make_result, monkeypatch, "turns", "ends", reason="it is off").reason == "it is off"
+    assert cost_of(make_result, monkeypatch, "turns", "ends", diagnosis=dead).reason == "crashed at import"
+    assert cost_of(make_result, monkeypatch, "turns", "ends", reason="it is off").reason == "it is off"
 
 
-def test_the_table_and_the_counts_name_who_has_no_reason(
+def test_the_table_and_the_counts_show_mutants_without_a_reason(
     make_result: MakeResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    found = [cost(make_result, monkeypatch, "turns", "ends"), cost(make_result, monkeypatch, "turns")]
-    assert costs.counts(found) == {"mutants_dear": 1, "mutants_dear_unexplained": 1}
-    assert "| 02 | m | turns | 2 | 7 | near, left, ends | **no reason** |" in costs.report(found)
-    assert "| 02 | m | turns | 2 | 2 | near, left |  |" in costs.report(found)
-    assert costs.unexplained(found) == [
-        "02_nodes mutant m: it loses 7 points, turns has 2, and nothing says why",
+    rows = [cost_of(make_result, monkeypatch, "turns", "ends"), cost_of(make_result, monkeypatch, "turns")]
+    assert costs.counts(rows) == {"mutants_dear": 1, "mutants_dear_unexplained": 1}
+    assert "| 02 | m | turns | 2 | 7 | near, left, ends | **no reason** |" in costs.report(rows)
+    assert "| 02 | m | turns | 2 | 2 | near, left |  |" in costs.report(rows)
+    assert costs.unexplained(rows) == [
+        "02_nodes mutant m: it loses 7 points, turns is worth 2, and no reason is given",
     ]
     assert costs.report([]) == ""
 
 
 def test_only_named_mutants_that_were_graded_are_counted(make_result: MakeResult) -> None:
-    claim = Claim("02_nodes", CaseKind.VARIANT, "v", make_result(), "")
-    assert costs.costs([claim, replace(claim, kind=CaseKind.ATTACK)]) == ()
+    verdict = Verdict("02_nodes", CaseKind.VARIANT, "v", make_result(), "")
+    assert costs.costs([verdict, replace(verdict, kind=CaseKind.ATTACK)]) == ()

@@ -1,4 +1,4 @@
-"""A rewritten module does the same in other words, and in lines that the linters of ROS take."""
+"""A rewritten module behaves the same, and its lines are short enough for the ROS linters."""
 
 from __future__ import annotations
 
@@ -57,9 +57,9 @@ def robot(text: str) -> dict[str, Any]:
     return names
 
 
-@pytest.mark.parametrize("restyled", [rewritten, formatted])
-def test_a_rewritten_module_behaves_the_same(restyled: Any) -> None:
-    text = restyled(MODULE)
+@pytest.mark.parametrize("rewrite", [rewritten, formatted])
+def test_a_rewritten_module_behaves_the_same(rewrite: Any) -> None:
+    text = rewrite(MODULE)
     assert text != MODULE
     before, after = robot(MODULE), robot(text)
     for volts in (10.0, 11.0, 12.6, 13.0):
@@ -83,7 +83,7 @@ def test_a_rewritten_module_has_other_names_and_expressions() -> None:
     assert names == ["__init__", "ask", "measure", "empty", "percent"]
 
 
-def test_constructs_whose_rewriting_could_change_the_meaning_stay() -> None:
+def test_constructs_that_cannot_be_rewritten_safely_are_kept() -> None:
     text = rewritten(MODULE)
     assert "return first() < second()" in text  # the order of the calls
     assert "if 0.1 <= readin_ < 10.0" in text  # a chain has no mirror image
@@ -91,7 +91,7 @@ def test_constructs_whose_rewriting_could_change_the_meaning_stay() -> None:
     assert "def turn(left, right)" in text
 
 
-def test_lines_stay_short_and_continued_lines_in_their_columns() -> None:
+def test_lines_stay_short_and_continuation_lines_stay_aligned() -> None:
     wide = (
         f"def area(width, height):\n    result = {'width * ' * 6}height if width < height else 0.0\n    return result\n"
     )

@@ -1,4 +1,4 @@
-"""Hidden text is found in what students get, however it is written."""
+"""Hidden text is found in the files that students get, in any encoding."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from PIL import Image, PngImagePlugin
 
 from autograder import layout
 from autograder.author.verification.claims import hidden_lines
-from autograder.author.verification.leaks import ENCODINGS, found_in, texts_of
+from autograder.author.verification.leaks import ENCODINGS, hidden_text_in, texts_of
 from autograder.probes.leak_markers import draw_marker
 from autograder.suite import suites
 
@@ -20,22 +20,22 @@ LINE = "def test_the_robot_stops_before_the_wall(robot: Robot) -> None:"
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
 def test_a_planted_word_is_found_in_each_encoding(encoding: str) -> None:
-    told = ENCODINGS[encoding](f"return best  # {WORD}")
-    assert found_in(f'{{"message": "2 of 3 tests fail: {told}"}}') == [WORD]
+    encoded = ENCODINGS[encoding](f"return best  # {WORD}")
+    assert hidden_text_in(f'{{"message": "2 of 3 tests fail: {encoded}"}}') == [WORD]
 
 
 @pytest.mark.parametrize("encoding", [name for name in ENCODINGS if name not in ("one test each", "numbers")])
 def test_a_hidden_line_is_found_in_each_encoding(encoding: str) -> None:
-    assert found_in(f"<p>{ENCODINGS[encoding](LINE)}</p>", [LINE, "def test_of_another_kind(robot)"]) == [LINE]
+    assert hidden_text_in(f"<p>{ENCODINGS[encoding](LINE)}</p>", [LINE, "def test_of_another_kind(robot)"]) == [LINE]
 
 
-def test_nothing_is_found_in_what_students_may_read() -> None:
+def test_a_notebook_contains_no_hidden_text() -> None:
     for assignment in suites.graded_assignments():
         text = layout.source_notebook(assignment).read_text(encoding="utf-8")
-        assert found_in(text, hidden_lines(assignment)) == []
+        assert hidden_text_in(text, hidden_lines(assignment)) == []
 
 
-def test_all_files_of_a_result_are_read_and_the_texts_beside_pictures(tmp_path: Path) -> None:
+def test_all_files_of_a_result_and_the_metadata_of_pictures_are_searched(tmp_path: Path) -> None:
     words = [draw_marker(random.Random(seed)) for seed in range(4)]
     (tmp_path / "result.json").write_text(words[0])
     (tmp_path / "pictures").mkdir()
@@ -44,4 +44,4 @@ def test_all_files_of_a_result_are_read_and_the_texts_beside_pictures(tmp_path: 
     info.add_text("Title", words[2], zip=True)
     Image.new("RGB", (2, 2)).save(tmp_path / "track.png", pnginfo=info)
     (tmp_path / "feedback.html").write_text(f"<p>{words[3]}</p>")
-    assert sorted({word for text in texts_of(tmp_path) for word in found_in(text)}) == sorted(words)
+    assert sorted({word for text in texts_of(tmp_path) for word in hidden_text_in(text)}) == sorted(words)

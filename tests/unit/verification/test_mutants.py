@@ -1,4 +1,4 @@
-"""The file of mutants is read as a whole, or refused with the reason."""
+"""`mutants.yaml` is read completely, or rejected with a reason."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def test_every_mutant_of_the_course_fits_the_reference_and_changes_it(assignment
         assert mutant.check in mutant.fails
 
 
-def test_mutants_have_unique_names_and_every_check_is_lost_by_one() -> None:
+def test_mutants_have_unique_names_and_every_check_is_failed_by_one() -> None:
     for assignment in suites.graded_assignments():
         every = mutants(assignment)
         assert len({mutant.id for mutant in every}) == len(every)

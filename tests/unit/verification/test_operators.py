@@ -6,7 +6,7 @@ import ast
 
 import pytest
 
-from autograder.author.verification.population import mutations
+from autograder.author.verification.generated_mutants import mutations
 
 SOURCE = '''
 """A module: 1 < 2."""

@@ -1,4 +1,4 @@
-"""What the named mutants fail is recorded from their results, and a mutant that proves nothing is not recorded."""
+"""The failures of named mutants are recorded, except those of a mutant that passes its own check."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from autograder.author.verification import snapshot
-from autograder.author.verification.claims import CaseKind, Claim
+from autograder.author.verification.claims import CaseKind, Verdict
 from autograder.author.verification.mutants import mutants
-from autograder.author.verification.record import compared_again, record_failures
+from autograder.author.verification.record import compare_again, record_failures
 from autograder.author.verification.snapshot import Record
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.result.model import CheckResult, Status
@@ -33,67 +33,67 @@ def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def graded(make_result: MakeResult) -> Callable[..., Claim]:
-    """Make the claim of a mutant that failed these checks."""
+def graded(make_result: MakeResult) -> Callable[..., Verdict]:
+    """Make the verdict of a mutant that failed these checks."""
 
-    def claim(name: str, *failed: str, status: Status = Status.GRADED) -> Claim:
+    def verdict(name: str, *failed: str, status: Status = Status.GRADED) -> Verdict:
         checks = tuple(
             CheckResult.of(check, Outcome.FAILED if check.id in failed else Outcome.PASSED, "so") for check in CHECKS
         )
-        return Claim(ASSIGNMENT, CaseKind.MUTANT, name, make_result(checks=checks, status=status), "")
+        return Verdict(ASSIGNMENT, CaseKind.MUTANT, name, make_result(checks=checks, status=status), "")
 
-    return claim
+    return verdict
 
 
 @pytest.mark.promise("With `--record`, it writes all checks that each mutant fails to `mutants.snapshot.yaml`.")
-def test_a_graded_mutant_s_record_is_replaced_and_the_others_stay(file: Path, graded: Callable[..., Claim]) -> None:
+def test_grading_a_mutant_replaces_only_its_record(file: Path, graded: Callable[..., Verdict]) -> None:
     before = snapshot.recorded(ASSIGNMENT)
     other = next(check.id for check in CHECKS if check.id not in {FIRST.check, *FIRST.fails})
-    said = record_failures(ASSIGNMENT, [graded(FIRST.id, FIRST.check, other)])
-    assert said == "02_nodes: 1 mutants graded, 1 records changed"
+    summary = record_failures(ASSIGNMENT, [graded(FIRST.id, FIRST.check, other)])
+    assert summary == "02_nodes: 1 mutants graded, 1 records changed"
     assert snapshot.recorded(ASSIGNMENT) == before | {FIRST.id: Record(frozenset({FIRST.check, other}))}
     assert file.read_text().startswith("# All checks that each mutant")
 
 
-def test_a_record_that_has_not_changed_is_written_as_it_was(file: Path, graded: Callable[..., Claim]) -> None:
+def test_an_unchanged_record_leaves_the_file_unchanged(file: Path, graded: Callable[..., Verdict]) -> None:
     before = file.read_bytes()
     record_failures(ASSIGNMENT, [graded(FIRST.id, *FIRST.fails)])
     assert file.read_bytes() == before
 
 
-def test_a_mutant_that_passes_its_own_check_is_not_recorded(graded: Callable[..., Claim]) -> None:
+def test_a_mutant_that_passes_its_own_check_is_not_recorded(graded: Callable[..., Verdict]) -> None:
     before = snapshot.recorded(ASSIGNMENT)
     other = next(check.id for check in CHECKS if check.id != FIRST.check)
-    said = record_failures(ASSIGNMENT, [graded(FIRST.id, other)])
-    assert said.endswith(f"0 records changed; not recorded, because they pass their own check: {FIRST.id}")
+    summary = record_failures(ASSIGNMENT, [graded(FIRST.id, other)])
+    assert summary.endswith(f"0 records changed; not recorded, because they pass their own check: {FIRST.id}")
     assert snapshot.recorded(ASSIGNMENT) == before
 
 
-def test_a_submission_that_was_not_graded_keeps_its_record(graded: Callable[..., Claim]) -> None:
+def test_a_submission_that_was_not_graded_keeps_its_record(graded: Callable[..., Verdict]) -> None:
     before = snapshot.recorded(ASSIGNMENT)
     record_failures(ASSIGNMENT, [graded(SECOND.id, status=Status.NOT_GRADED)])
     assert snapshot.recorded(ASSIGNMENT) == before
 
 
-def test_a_mutant_that_is_gone_loses_its_record(file: Path) -> None:
+def test_the_record_of_a_deleted_mutant_is_removed(file: Path) -> None:
     file.write_text(file.read_text() + "no_such_mutant: all\n")
     record_failures(ASSIGNMENT, [])
     assert "no_such_mutant" not in file.read_text()
 
 
-def test_a_result_that_was_just_recorded_is_as_claimed(graded: Callable[..., Claim]) -> None:
+def test_a_result_that_was_just_recorded_is_as_expected(graded: Callable[..., Verdict]) -> None:
     other = next(check.id for check in CHECKS if check.id not in {FIRST.check, *FIRST.fails})
-    claims = [graded(FIRST.id, FIRST.check, other), graded(SECOND.id, other)]
-    record_failures(ASSIGNMENT, claims)
-    first, second = compared_again(claims)
+    verdicts = [graded(FIRST.id, FIRST.check, other), graded(SECOND.id, other)]
+    record_failures(ASSIGNMENT, verdicts)
+    first, second = compare_again(verdicts)
     assert first.mismatch == ""
     assert second.mismatch.startswith(f"passes {SECOND.check}, for which it was written")
 
 
-def test_the_diagnosis_is_recorded_with_the_failures(graded: Callable[..., Claim]) -> None:
-    claim = graded(FIRST.id, FIRST.check)
-    stuck = replace(claim, result=replace(claim.result, diagnosis=Diagnosis(Kind.STUCK, "It hangs.")))
-    assert compared_again([stuck])[0].mismatch.endswith("is diagnosed stuck instead of ok")
+def test_the_diagnosis_is_recorded_with_the_failures(graded: Callable[..., Verdict]) -> None:
+    verdict = graded(FIRST.id, FIRST.check)
+    stuck = replace(verdict, result=replace(verdict.result, diagnosis=Diagnosis(Kind.STUCK, "It hangs.")))
+    assert compare_again([stuck])[0].mismatch.endswith("is diagnosed stuck instead of ok")
     record_failures(ASSIGNMENT, [stuck])
     assert snapshot.recorded(ASSIGNMENT)[FIRST.id] == Record(frozenset({FIRST.check}), Kind.STUCK)
-    assert compared_again([stuck])[0].mismatch == ""
+    assert compare_again([stuck])[0].mismatch == ""

@@ -1,4 +1,4 @@
-"""The summary of a proof, and when a proof succeeds."""
+"""The summary of a verification, and the conditions for its success."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from autograder.author.verification.cases import cases
-from autograder.author.verification.claims import CaseKind, Claim, verify_full_marks, verify_mutant, verify_zero
+from autograder.author.verification.claims import CaseKind, Verdict, verify_full_marks, verify_mutant, verify_zero
 from autograder.author.verification.mutants import mutants
 from autograder.author.verification.summary import summary
 from autograder.diagnosis import OK
@@ -43,22 +43,22 @@ def result(*lost: str) -> Result:
     )
 
 
-def claim(kind: CaseKind, mismatch: str = "", *lost: str) -> Claim:
-    return Claim(ASSIGNMENT, kind, "x", result(*lost), mismatch)
+def verdict(kind: CaseKind, mismatch: str = "", *lost: str) -> Verdict:
+    return Verdict(ASSIGNMENT, kind, "x", result(*lost), mismatch)
 
 
-def test_a_right_answer_has_every_point() -> None:
+def test_a_correct_answer_has_every_point() -> None:
     assert verify_full_marks(result()) == ""
-    assert verify_full_marks(result("nan")) == "loses nan"
+    assert verify_full_marks(result("nan")) == "fails nan"
 
 
-def test_a_release_gains_nothing() -> None:
+def test_an_untouched_release_gains_no_points() -> None:
     assert verify_zero(result(*(check.id for check in SUITE.checks))) == ""
     assert verify_zero(result("nan")).startswith("it scores")
 
 
 @pytest.mark.promise("Without `--record`, the exit status is 1 if a mutant passes the check that should catch it")
-def test_a_mutant_fails_its_own_check_and_what_is_recorded_and_no_other() -> None:
+def test_a_mutant_fails_its_own_check_and_exactly_the_recorded_ones() -> None:
     mutant = next(m for m in mutants(ASSIGNMENT) if m.id == "minus_inf_dropped")
     assert verify_mutant(mutant, result(*mutant.fails)) == ""
     wrong = verify_mutant(mutant, result("nan"))
@@ -69,16 +69,16 @@ def test_a_mutant_fails_its_own_check_and_what_is_recorded_and_no_other() -> Non
 
 
 def test_the_summary_counts_each_kind() -> None:
-    claims = [
-        claim(CaseKind.REFERENCE),
-        claim(CaseKind.RELEASE, "", *(check.id for check in SUITE.checks)),
-        claim(CaseKind.VARIANT),
-        claim(CaseKind.MUTANT, "", "nan"),
-        claim(CaseKind.MUTANT, "also loses blind", "nan", "blind"),
-        claim(CaseKind.MUTANT, "keeps nan"),
-        claim(CaseKind.ATTACK, "gains nan"),
+    verdicts = [
+        verdict(CaseKind.REFERENCE),
+        verdict(CaseKind.RELEASE, "", *(check.id for check in SUITE.checks)),
+        verdict(CaseKind.VARIANT),
+        verdict(CaseKind.MUTANT, "", "nan"),
+        verdict(CaseKind.MUTANT, "also loses blind", "nan", "blind"),
+        verdict(CaseKind.MUTANT, "keeps nan"),
+        verdict(CaseKind.ATTACK, "gains nan"),
     ]
-    assert summary(claims, 12.34) == {
+    assert summary(verdicts, 12.34) == {
         "reference": 100.0,
         "release": 0.0,
         "variants": [100.0],
@@ -95,14 +95,14 @@ def test_the_summary_counts_each_kind() -> None:
     "`autograder verify --assignment 02_nodes` grades the reference, the untouched student release,",
     "`make verify` grades all of these submissions.",
 )
-def test_the_whole_proof_contains_every_kind_and_each_submission_once() -> None:
-    found = cases(ASSIGNMENT)
-    assert {case.kind for case in found} >= set(CaseKind) - {CaseKind.VARIANT}
-    assert len({case.name for case in found}) == len(found)
+def test_the_cases_contain_every_kind_and_each_submission_once() -> None:
+    chosen = cases(ASSIGNMENT)
+    assert {case.kind for case in chosen} >= set(CaseKind) - {CaseKind.VARIANT}
+    assert len({case.name for case in chosen}) == len(chosen)
 
 
 @pytest.mark.parametrize("assignment", suites.graded_assignments())
-def test_the_quick_proof_fails_every_check(assignment: str) -> None:
+def test_the_quick_mutants_fail_every_check(assignment: str) -> None:
     names = {case.name for case in cases(assignment, quick=True)}
     covered = {name for mutant in mutants(assignment) if mutant.id in names for name in mutant.fails}
     assert covered == {check.id for check in suites.hidden(assignment).checks}

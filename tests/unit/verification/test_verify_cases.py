@@ -1,4 +1,4 @@
-"""The submissions of a proof are graded by all workers at once, and each result has its own place."""
+"""All workers grade test cases at the same time, and each result has its own folder."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 
 from autograder.author.verification.cases import WITHOUT_PICTURES, Case
 from autograder.author.verification.claims import CaseKind, verify_full_marks
-from autograder.author.verification.prove import prove
+from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.grade.job import Job, Scope
@@ -30,7 +30,7 @@ CHAPTERS = ("01_package_structure", "02_nodes", "03_interfaces")
 
 
 class NoGrader:
-    """A pool in which every grading fails, and none before as many as there are workers have begun."""
+    """A pool whose gradings all fail, but not before all workers have started one."""
 
     tier, count = Tier.PROCESS, WORKERS
 
@@ -52,53 +52,57 @@ class OneByOne(NoGrader):
 
 
 class Recorder(OneByOne):
-    """One worker that records a result without points, and counts how often it is asked to."""
+    """One worker that records a result without points and counts its calls."""
 
-    count, asked = 1, 0
+    count, calls = 1, 0
 
     def __call__(self, job: Job) -> CellReport:
-        self.asked += 1
+        self.calls += 1
         digest = read_submission(job.path, job.assignment).sha256
         result = refused(job, Diagnosis(Kind.OK, "It was looked at."))
-        told = replace(result, submission_sha256=digest, status=Status.GRADED).to_json()
-        return CellReport(Ending.EXITED, 0, "", {"result.json": json.dumps(told).encode()})
+        recorded = replace(result, submission_sha256=digest, status=Status.GRADED).to_json()
+        return CellReport(Ending.EXITED, 0, "", {"result.json": json.dumps(recorded).encode()})
 
 
 def case(assignment: str, write: Callable[[Path], None] = Path.mkdir) -> Case:
     return Case(assignment, CaseKind.REFERENCE, "reference", write, verify_full_marks)
 
 
-def run(proof: list[Case], out: Path, **options: Any) -> list[str]:
-    claims = prove(proof, seed=1, out=out, workers=cast(WorkerPool, NoGrader()), **options)
-    return [claim.mismatch for claim in claims]
+def run(cases: list[Case], out: Path, **options: Any) -> list[str]:
+    verdicts = verify_cases(cases, seed=1, out=out, workers=cast(WorkerPool, NoGrader()), **options)
+    return [verdict.mismatch for verdict in verdicts]
 
 
 def test_submissions_of_several_chapters_may_have_the_same_name(tmp_path: Path) -> None:
-    came: list[str] = []
-    said = run([case(name) for name in CHAPTERS], tmp_path, on_claim=lambda claim: came.append(claim.assignment))
-    assert all(said), "what was not graded shows nothing"
-    assert sorted(came) == list(CHAPTERS)
+    graded: list[str] = []
+    mismatches = run(
+        [case(name) for name in CHAPTERS], tmp_path, on_verdict=lambda verdict: graded.append(verdict.assignment)
+    )
+    assert all(mismatches), "an ungraded case is a mismatch"
+    assert sorted(graded) == list(CHAPTERS)
     logs = [(tmp_path / name / "reference" / "grader.log").read_text() for name in CHAPTERS]
     assert all("nobody grades reference" in log for log in logs)
 
 
 def test_chapters_are_graded_at_the_same_time_and_reported_in_order(tmp_path: Path) -> None:
-    made: list[str] = []
+    written: list[str] = []
 
     def named(assignment: str, name: str) -> Case:
         def write(folder: Path) -> None:
             folder.mkdir()
-            made.append(f"{assignment[:2]} {name}")
+            written.append(f"{assignment[:2]} {name}")
 
         return replace(case(assignment, write), name=name)
 
-    proof = [*(named("01_package_structure", name) for name in "abcd"), *(named("02_nodes", name) for name in "ab")]
-    claims = prove(proof, seed=1, out=tmp_path, workers=cast(WorkerPool, OneByOne()))
-    assert [(claim.assignment, claim.name) for claim in claims] == [(case.assignment, case.name) for case in proof]
-    assert made == ["01 a", "01 b", "02 a", "01 c", "01 d", "02 b"]
+    cases = [*(named("01_package_structure", name) for name in "abcd"), *(named("02_nodes", name) for name in "ab")]
+    verdicts = verify_cases(cases, seed=1, out=tmp_path, workers=cast(WorkerPool, OneByOne()))
+    assert [(verdict.assignment, verdict.name) for verdict in verdicts] == [
+        (case.assignment, case.name) for case in cases
+    ]
+    assert written == ["01 a", "01 b", "02 a", "01 c", "01 d", "02 b"]
 
 
-def test_a_submission_that_cannot_be_made_ends_the_proof(tmp_path: Path) -> None:
+def test_a_submission_that_cannot_be_written_ends_the_verification(tmp_path: Path) -> None:
     def fails(folder: Path) -> None:
         raise FileNotFoundError("no such reference")
 
@@ -106,25 +110,25 @@ def test_a_submission_that_cannot_be_made_ends_the_proof(tmp_path: Path) -> None
         run([case(CHAPTERS[0], fails)], tmp_path)
 
 
-def test_a_result_counts_again_only_for_the_same_files_and_submission_and_the_whole_suite(
+def test_a_result_is_reused_only_for_the_same_files_submission_and_whole_suite(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     worker = Recorder()
 
-    def asked(text: str, scope: Scope = WITHOUT_PICTURES, seed: int = 1) -> int:
+    def gradings(text: str, scope: Scope = WITHOUT_PICTURES, seed: int = 1) -> int:
         def write(folder: Path) -> None:
             (folder / "src").mkdir(parents=True)
             (folder / "src" / "package.xml").write_text(text)
 
-        before = worker.asked
-        prove(
+        before = worker.calls
+        verify_cases(
             [replace(case(CHAPTERS[0], write), scope=scope)], seed=seed, out=tmp_path, workers=cast(WorkerPool, worker)
         )
-        return worker.asked - before
+        return worker.calls - before
 
     part = replace(WITHOUT_PICTURES, only=("found",))
-    assert [asked("one"), asked("one")] == [1, 0]
-    assert [asked("one", seed=2), asked("two"), asked("two")] == [1, 1, 0]
-    assert [asked("two", part), asked("two", part), asked("two")] == [1, 1, 0]
+    assert [gradings("one"), gradings("one")] == [1, 0]
+    assert [gradings("one", seed=2), gradings("two"), gradings("two")] == [1, 1, 0]
+    assert [gradings("two", part), gradings("two", part), gradings("two")] == [1, 1, 0]
     monkeypatch.setattr(Suite, "files_digest", property(lambda suite: "of another comment"))
-    assert [asked("two"), asked("two")] == [1, 0]
+    assert [gradings("two"), gradings("two")] == [1, 0]

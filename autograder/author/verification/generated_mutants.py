@@ -1,4 +1,4 @@
-"""The population of mutants of a chapter: every mutation by every operator in everything that its students write."""
+"""Generates the mutants of a chapter: every operator at every place in the files that students write."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ PAIRS = 20  # mutants of second order in a chapter
 
 @dataclass(frozen=True)
 class GeneratedMutant:
-    """A mutant: what it replaces in the reference, file by file.
+    """A mutant of the reference.
 
     Attributes:
-        id: names the file, the function, the operator and a digest of the change; it outlives changes elsewhere.
-        operator: the operator's name; "pair" for a mutant of second order.
+        id: names the file, the function, the operator and a digest of the change; stable when other code changes.
+        operator: the operator's name; "pair" for a second-order mutant.
         function: the qualified name of the changed function, or "".
-        changes: what is replaced, by the path of the file below `solutions/`.
+        changes: the replacements in each file, whose path is relative to `solutions/`.
     """
 
     id: str
@@ -57,30 +57,30 @@ class GeneratedMutant:
         }
 
     def diff(self) -> str:
-        """Return the lines that differ, with the line's number, as a person reads them."""
-        shown: list[str] = []
+        """Return the lines that differ, with their line numbers, in a readable form."""
+        diff_lines: list[str] = []
         for file, text in self.texts().items():
             old, new = (layout.SOLUTIONS / file).read_text(encoding="utf-8").splitlines(), text.splitlines()
             matcher = difflib.SequenceMatcher(None, old, new, autojunk=False)
             for tag, first, last, new_first, new_last in matcher.get_opcodes():
                 if tag != "equal":
-                    shown += [f"{file}:{first + 1}"]
-                    shown += [f"- {line.strip()}" for line in old[first:last]]
-                    shown += [f"+ {line.strip()}" for line in new[new_first:new_last]]
-        return "\n".join(shown)
+                    diff_lines += [f"{file}:{first + 1}"]
+                    diff_lines += [f"- {line.strip()}" for line in old[first:last]]
+                    diff_lines += [f"+ {line.strip()}" for line in new[new_first:new_last]]
+        return "\n".join(diff_lines)
 
 
 @dataclass(frozen=True)
-class Population:
-    """A chapter's mutants, those of second order last, and how many were left out as equivalent or duplicate."""
+class GeneratedMutants:
+    """A chapter's mutants, with second-order ones last, and how many were omitted as equivalent or duplicate."""
 
     mutants: tuple[GeneratedMutant, ...]
     left_out: int
 
 
-def population(assignment: str) -> Population:
-    """Return the mutants of a chapter, always the same for one reference."""
-    found: dict[str, GeneratedMutant] = {}
+def generated_mutants(assignment: str) -> GeneratedMutants:
+    """Return the mutants of a chapter. They depend only on its reference."""
+    mutants: dict[str, GeneratedMutant] = {}
     left_out = 0
     for file, functions, given in written_by_students(assignment):
         text = (layout.SOLUTIONS / file).read_text(encoding="utf-8")
@@ -94,13 +94,13 @@ def population(assignment: str) -> Population:
                 continue
             seen.add(meaning)
             mutant = _named(file, function, operator, changes, text)
-            assert mutant.id not in found, f"two mutants are called {mutant.id}"
-            found[mutant.id] = mutant
-    return Population((*found.values(), *_pairs(list(found.values()))), left_out)
+            assert mutant.id not in mutants, f"two mutants are called {mutant.id}"
+            mutants[mutant.id] = mutant
+    return GeneratedMutants((*mutants.values(), *_pairs(list(mutants.values()))), left_out)
 
 
 def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None, frozenset[bytes]]]:
-    """Yield (path, functions, given lines) of each file that students write or correct; no functions means all."""
+    """Yield (path, functions, given lines) for each file that students write or correct. None means all functions."""
     packages, chapter = suites.hidden(assignment).sources, Chapter(layout.chapter(assignment))
     copies = [(cell, copied) for cell in chapter.read().cells if (copied := copied_file(cell))]
     for cell, copied in copies:
@@ -112,7 +112,7 @@ def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] |
             )
     given = chapter.folder / "ws" / "src"
     written = {copied.source.parts[0] for _, copied in copies}
-    for package in set(packages) - written:  # students get it with faults, and correct it
+    for package in set(packages) - written:  # students get a faulty version and correct it
         for path in sorted((given / package).rglob("*")):
             right = layout.SOLUTIONS / path.relative_to(given)
             if right.is_file() and path.is_file() and right.read_bytes() != path.read_bytes():
@@ -120,7 +120,7 @@ def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] |
 
 
 def mutations(file: str, text: str, functions: frozenset[str] | None) -> Iterator[tuple[str, Mutation]]:
-    """Yield (function, mutation) of a file; the function is the name of the one that is changed."""
+    """Yield (name of the changed function, mutation) for a file."""
     if not file.endswith(".py"):
         yield from (("", mutation) for mutation in text_mutations(file, text))
         return
@@ -138,20 +138,20 @@ def mutations(file: str, text: str, functions: frozenset[str] | None) -> Iterato
 
 
 def _named(file: str, function: str, operator: str, changes: tuple[Replacement, ...], text: str) -> GeneratedMutant:
-    """Name a mutant by what stands around its change, so that it keeps its name when other lines move."""
+    """Name a mutant after the context of its change, so that its name is stable when other lines move."""
     data = text.encode()
     name_digest = hashlib.sha256(f"{file} {function} {operator}".encode())
     for start, end, new in changes:
         begin, stop = data.rfind(b"\n", 0, start) + 1, data.find(b"\n", end)
         before, old = data[begin:start], data[start:end]
         name_digest.update(b"\0".join((before, old, new.encode(), data[end:stop])))
-        name_digest.update(data[:begin].count(data[begin:stop]).to_bytes(2, "big"))  # the same lines may stand twice
+        name_digest.update(data[:begin].count(data[begin:stop]).to_bytes(2, "big"))  # the same lines may occur twice
     where = ".".join(filter(None, (file.rpartition("/")[2], function)))
     return GeneratedMutant(f"{where} {operator} {name_digest.hexdigest()[:6]}", operator, function, ((file, changes),))
 
 
 def _pairs(mutants: list[GeneratedMutant]) -> Iterator[GeneratedMutant]:
-    """Yield mutants of second order: drawn pairs of mutants of different functions or files."""
+    """Yield second-order mutants: pseudo-random pairs of mutants that do not overlap."""
     ranked = sorted(mutants, key=lambda mutant: hashlib.sha256(mutant.id.encode()).digest())
     for one, other in itertools.islice(zip(ranked[::2], ranked[1::2], strict=False), PAIRS):
         changes = dict(one.changes)
@@ -165,14 +165,14 @@ def _pairs(mutants: list[GeneratedMutant]) -> Iterator[GeneratedMutant]:
 
 
 def _lines(data: bytes, changes: tuple[Replacement, ...]) -> Iterator[bytes]:
-    """Yield the lines in which something is replaced."""
+    """Yield the lines that contain replacements."""
     for start, end, _ in changes:
         last = start + len(data[start:end].rstrip())
         yield from data[data.rfind(b"\n", 0, start) + 1 : data.find(b"\n", last)].splitlines()
 
 
 def _meaning(file: str, text: str) -> object:
-    """Return what two texts have in common that mean the same to the interpreter or to the build."""
+    """Return a key that is equal for texts with the same meaning to the interpreter or the build."""
     if file.endswith(".py"):
         return _code(compile(text, file, "exec", optimize=0))
     return "\n".join(filter(None, (line.split("#")[0].strip() for line in text.splitlines())))

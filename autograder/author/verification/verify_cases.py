@@ -1,0 +1,91 @@
+"""Grades test cases and compares each result with the expected one."""
+
+from __future__ import annotations
+
+import tempfile
+from collections import Counter
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from autograder.author.verification.cases import Case
+from autograder.author.verification.claims import CaseKind, Verdict, hidden_lines
+from autograder.author.verification.leaks import hidden_text_in, texts_of
+from autograder.author.verification.worker_pool import WorkerPool
+from autograder.grade.batch import stored
+from autograder.grade.job import Job
+from autograder.grade.own_cell import in_own_cell
+from autograder.grade.parallel import map_parallel
+from autograder.grade.pipeline import grade_submission
+from autograder.grade.store import LOG
+from autograder.report import feedback
+from autograder.result.model import Result, Status
+
+SUBMISSION = "submission"
+PART = "part"  # folder for the result of a partial suite
+
+
+def verify_cases(
+    cases: Sequence[Case],
+    *,
+    seed: int,
+    out: Path,
+    workers: WorkerPool,
+    on_verdict: Callable[[Verdict], None] = lambda verdict: None,
+) -> tuple[Verdict, ...]:
+    """Grade test cases with all workers of a pool.
+
+    Args:
+        cases: test cases of one or several assignments, from the module `cases`.
+        seed: seed of every hidden input.
+        out: folder of the results; each result goes to `out`/ASSIGNMENT/NAME. A stored result is reused if the whole
+            suite was run, and submission, seed and grader files are unchanged.
+        workers: the pool that grades.
+        on_verdict: function that is called with each verdict as soon as it is known, in any order.
+
+    Returns:
+        The verdicts, in the order of `cases`.
+    """
+
+    def grade(case: Case) -> Verdict:
+        with tempfile.TemporaryDirectory(prefix="verification-") as name:
+            path, folder = _write(case, Path(name) / case.name), out / case.assignment / case.name
+            is_whole_suite = not case.scope.only
+            folder = folder if is_whole_suite else folder / PART
+            job = Job(path, case.assignment, case.name, seed, folder, workers.tier, case.scope)
+            result = stored(job) if is_whole_suite else None
+            if result is None or result.files_digest != job.suite.files_digest:  # only these very files are verified
+                result = grade_submission(job, in_own_cell if case.kind is CaseKind.ATTACK else workers)
+        mismatch = case.verify(result) if result.status is Status.GRADED else result.diagnosis.sentence
+        if case.kind is CaseKind.ATTACK:
+            mismatch = "; ".join(filter(None, (mismatch, _leak(result, folder))))
+        if result.unjudged:
+            mismatch = f"checks raised errors: {', '.join(result.unjudged)}; {folder / LOG} has the details"
+        return Verdict(case.assignment, case.kind, case.name, result, mismatch)
+
+    verdicts = map_parallel(grade, _interleaved(cases), jobs=workers.count, on_done=on_verdict)
+    by_name = {(verdict.assignment, verdict.name): verdict for verdict in verdicts}
+    return tuple(by_name[case.assignment, case.name] for case in cases)
+
+
+def _leak(result: Result, folder: Path) -> str:
+    """Describe hidden text that reaches the student: in the result, the feedback page or the files beside them."""
+    feedback.write(result, folder)
+    lines = hidden_lines(result.assignment)
+    leaked = [word for text in texts_of(folder) for word in hidden_text_in(text, lines)]
+    return f"shows hidden text: {leaked[0]}" if leaked else ""
+
+
+def _interleaved(cases: Sequence[Case]) -> list[Case]:
+    """Return the cases with the assignments interleaved, so that waiting ones leave the CPU to others."""
+    totals, counts = Counter(case.assignment for case in cases), Counter[str]()
+    positions = []
+    for case in cases:
+        counts[case.assignment] += 1
+        positions.append(counts[case.assignment] / totals[case.assignment])
+    return [case for _, case in sorted(zip(positions, cases, strict=True), key=lambda pair: pair[0])]
+
+
+def _write(case: Case, folder: Path) -> Path:
+    """Write a case to `folder`, and return the path of its submission."""
+    case.write(folder)
+    return folder / SUBMISSION if (folder / SUBMISSION).is_dir() else folder
