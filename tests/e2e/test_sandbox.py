@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import os
+import re
 import resource
 import shutil
 import signal
@@ -21,6 +23,7 @@ import pytest
 
 from autograder.doctor import security
 from autograder.doctor.escapes import CANARY, ESCAPES
+from autograder.exceptions import GraderError
 from autograder.run.fork_server import seccomp
 from autograder.run.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier, cgroup, procfs
 from autograder.run.sandbox.launcher import launch, warm_up
@@ -200,6 +203,36 @@ print(subprocess.run([sys.executable, "-Ic", "print('a program')"], capture_outp
     wanted = ["[]", "True True", str(set(map(int, seccomp.FAMILIES))), "a thread", "a program"]
     assert _out("calls") == []
     assert _run(code)["output"].splitlines() == wanted
+
+
+def unmade(scratch: Path) -> list[str]:
+    """Start programs in sandboxes that cannot be made, as when a system's update replaces what they show; say why."""
+    said = []
+    for name in ("gone", "beside"):
+        spec = Sandbox(scratch, mounts=(Mount(scratch, writable=True), Mount(scratch / name)))
+        with launch([sys.executable, "-c", "pass"], spec) as process, pytest.raises(GraderError) as raised:
+            process.wait(10)
+        said.append(str(raised.value))
+    return said
+
+
+def pretends(scratch: Path) -> list[Any]:
+    """Run a program that ends as bubblewrap does that cannot make a sandbox; return its end and its descriptors."""
+    code = "import os, sys; print('bwrap: No such file:', os.listdir('/proc/self/fd')); sys.exit(1)"
+    with run(code, Sandbox(scratch, mounts=(Mount(scratch, writable=True),))) as process:
+        process.wait(10)
+        return [process.returncode, process.output]
+
+
+def test_a_sandbox_that_cannot_be_made_is_no_failure_of_the_program() -> None:
+    for said in in_cell(unmade):
+        assert re.match("The sandbox could not be made: bwrap: Can't find source path /.*: No such file", said), said
+
+
+def test_a_program_cannot_pretend_that_its_sandbox_was_not_made() -> None:
+    status, said = in_cell(pretends)
+    descriptors = set(ast.literal_eval(said.partition("file: ")[2].strip()))
+    assert (status, descriptors - {"0", "1", "2", "3"}) == (1, set()), said  # 3 is the folder that is listed
 
 
 def signalled(scratch: Path, code: str) -> list[Any]:

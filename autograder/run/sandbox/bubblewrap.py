@@ -127,14 +127,19 @@ def _grader() -> tuple[Path, ...]:
     return (*code, *course, *(ros.prefixes if ros.kind == "sourced" else ()))
 
 
-def sandbox(command: list[str], spec: Sandbox, filter_fd: int | None) -> list[str]:
+def sandbox(command: list[str], spec: Sandbox, filter_fd: int | None, status_fd: int | None = None) -> list[str]:
     """Return the command line that runs `command` in the sandbox that `spec` describes.
 
-    `filter_fd` is a descriptor from which bubblewrap reads the filter of system calls; None for a trial without.
+    Args:
+        command: what is run in it.
+        spec: the sandbox.
+        filter_fd: a descriptor from which bubblewrap reads the filter of system calls; None for a trial without.
+        status_fd: a descriptor to which bubblewrap writes how the command ended; the command does not inherit it.
     """
     arguments = [
         *("bwrap", "--die-with-parent", "--new-session", "--clearenv", "--cap-drop", "ALL"),
         *(() if filter_fd is None else ("--seccomp", str(filter_fd))),
+        *(() if status_fd is None else ("--json-status-fd", str(status_fd))),
         *("--unshare-user", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--unshare-cgroup-try"),
         *(() if spec.network else ("--unshare-net",)),
         *("--hostname", "robot"),

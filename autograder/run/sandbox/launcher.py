@@ -10,6 +10,7 @@ import socket
 import subprocess
 import tempfile
 import threading
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
@@ -89,24 +90,29 @@ def _started(
     is_placeholder: bool = False,
 ) -> Process:
     contained = current_tier() is Tier.BUBBLEWRAP
-    with tempfile.TemporaryFile() as calls:
+    with tempfile.TemporaryFile() as calls, ExitStack() as stack:
         calls.write(seccomp.program())
         calls.seek(0)
+        status: int | None = None
         if contained:
-            command = bubblewrap.sandbox(command, spec, calls.fileno())
+            status, theirs = os.pipe()
+            stack.callback(os.close, theirs)
+            command = bubblewrap.sandbox(command, spec, calls.fileno(), theirs)
+            pass_fds = (*pass_fds, calls.fileno(), theirs)
         else:
             command = [*bubblewrap.rlimits(spec.limits), *command]
         return Process(
             group.enter(command),
             spec.limits,
             environment={"PATH": os.defpath, **({} if contained else spec.environment)},
-            pass_fds=(*pass_fds, calls.fileno()) if contained else pass_fds,
+            pass_fds=pass_fds,
             cwd=None if contained else spec.workdir,
             contained=contained,
             writable=(Path("/tmp"), Path("/dev/shm"), spec.workdir) if contained else (),
             group=group,
             stdin=stdin,
             is_placeholder=is_placeholder,
+            status=status,
         )
 
 

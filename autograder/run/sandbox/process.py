@@ -14,12 +14,15 @@ from contextlib import suppress
 from enum import Enum
 from pathlib import Path
 
+from autograder.exceptions import GraderError
 from autograder.run.sandbox.cgroup import ControlGroup
 from autograder.run.sandbox.limits import Limits
 from autograder.run.sandbox.procfs import Tree, children, cpu_seconds, measure, name
 
 _TICK = 0.1  # s between two looks at the clock while the process is silent
 _MEASURE = 0.25  # s between two measurements of the tree
+_REPORT = 4096  # bytes; bubblewrap's report has some hundred
+_EXIT = b'"exit-code"'  # in the report of a command that was run
 _MANY = 8  # at least so many processes fill the memory together: then it is their number, not what one of them holds
 
 
@@ -51,6 +54,12 @@ class Process:
         writable: folders as it sees them, on whose file systems `Limits.files` more files may come.
         stdin: its standard input.
         is_placeholder: the command stands in for a program that is adopted later; the time counts from then.
+        status: a descriptor from which bubblewrap's report is read, and that is closed at the end. It names the exit
+            status of what ran, or nothing if the sandbox could not be made.
+
+    Raises:
+        GraderError: in `wait`, `ending` and `returncode`, the sandbox could not be made. What a student wrote did not
+            run, so this is no failure of theirs.
     """
 
     def __init__(
@@ -66,8 +75,11 @@ class Process:
         writable: tuple[Path, ...] = (),
         stdin: int = subprocess.DEVNULL,
         is_placeholder: bool = False,
+        status: int | None = None,
     ) -> None:
         self._group = group
+        self._status = status
+        self._is_made = True  # as far as is known
         self._contained = contained
         self._writable = writable
         self._limits = limits
@@ -111,16 +123,24 @@ class Process:
     @property
     def ending(self) -> Ending | None:
         """Why it ended, or None while it runs."""
-        return self._ending if self._ended.is_set() else None
+        return self._ending if self._has_ended() else None
 
     @property
     def returncode(self) -> int | None:
         """The exit status; negative for a signal. None while it runs."""
-        return self._popen.returncode if self._ended.is_set() else None
+        return self._popen.returncode if self._has_ended() else None
 
     def wait(self, timeout: float | None) -> bool:
         """Wait until it has ended, at most `timeout` seconds if given; return whether it has."""
-        return self._ended.wait(timeout)
+        self._ended.wait(timeout)
+        return self._has_ended()
+
+    def _has_ended(self) -> bool:
+        if not self._ended.is_set():
+            return False
+        if not self._is_made:
+            raise GraderError(f"The sandbox could not be made: {self.output.strip()}")
+        return True
 
     def cpu_seconds(self) -> float:
         """Return the processor time that its processes of now have used."""
@@ -220,6 +240,11 @@ class Process:
             self._popen.stdout.close()
         self._popen.wait()
         self._ending = self._ending or (Ending.MEMORY if self._ran_out() else Ending.EXITED)
+        if self._status is not None:
+            reported = os.read(self._status, _REPORT)
+            os.close(self._status)
+            # bubblewrap exits with 1. A negative status is a signal, such as that of a kernel without memory.
+            self._is_made = self._ending is not Ending.EXITED or self._popen.returncode <= 0 or _EXIT in reported
         self._ended.set()
         if self._group is not None:
             self._group.close()
