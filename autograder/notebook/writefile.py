@@ -1,5 +1,6 @@
 """The course's `%%writefile`: it writes a file as IPython's does, and never destroys a student's work.
 
+It makes the folders of a file that are missing, and says so, because a misspelt name would make one, too.
 A cell that still holds an exercise's stub does not replace a file that the student has written by other means. A file
 that was changed since a cell last wrote it is copied to `replaced/` in its workspace before a cell replaces it.
 """
@@ -16,6 +17,7 @@ from IPython.core import magic_arguments
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.display import display
 
+from autograder.exceptions import UsageError
 from autograder.notebook.notices import Notice
 from autograder.result.model import write_json
 
@@ -56,6 +58,7 @@ def write(line: str, cell: str, original: Any) -> None:
     path = Path(arguments.filename.strip("'\"")).expanduser()
     home = _workspace(path)
     record, name, on_disk = read_record(home), os.path.relpath(path, home), _text(path)
+    _make_folder(path.parent)
     if arguments.append:
         original(line, cell)
         if on_disk is None or record.get(name) == digest(on_disk):  # cells alone have written it
@@ -72,6 +75,19 @@ def write(line: str, cell: str, original: Any) -> None:
             _show(f"{path} was changed outside of this cell. Its old text is kept in {_keep_copy(path, home)}.")
     original(line, cell)
     write_json(home / RECORD, {**record, name: digest(cell)})
+
+
+def _make_folder(folder: Path) -> None:
+    """Make a folder, and say so if it is not there. Raises UsageError if a file is in its place or above it."""
+    if folder.is_dir():
+        return
+    try:
+        folder.mkdir(parents=True)
+    except (FileExistsError, NotADirectoryError):
+        parts = (folder, *folder.parents)
+        file = next(part for part in parts if part.exists())
+        raise UsageError(f"{file} is a file, so the folder {folder} cannot be made: rename one of them") from None
+    print(f"Made the folder {folder}")
 
 
 def _show(sentence: str) -> None:

@@ -10,6 +10,7 @@ from IPython.core.interactiveshell import InteractiveShell
 from IPython.testing.globalipapp import start_ipython
 
 from autograder.author.course.forms import CODE_STUB
+from autograder.exceptions import UsageError
 from autograder.notebook.writefile import RECORD, REPLACED, STUB, register
 
 UNSOLVED = f"def main():\n    {CODE_STUB}\n"
@@ -124,6 +125,22 @@ def test_appending_and_names_in_quotes_work_as_before(run: Run) -> None:
     assert run(SOLVED) == f"Overwriting {FILE}\n"  # no editor has touched what cells appended
     assert run(SOLVED, '"ws/a file.py"') == "Writing ws/a file.py\n"
     assert Path("ws/a file.py").read_text() == SOLVED
+
+
+def test_a_cell_makes_the_missing_folders_of_its_file_and_says_so(run: Run) -> None:
+    file = "ws/src/new_pkg/launch/robot.launch.py"
+    assert run(SOLVED, file) == f"Made the folder ws/src/new_pkg/launch\nWriting {file}\n"
+    assert Path(file).read_text() == SOLVED
+    assert run(SOLVED, file) == f"Overwriting {file}\n"
+    assert run("# end\n", "-a ws/src/new_pkg/config/more.yaml").startswith("Made the folder ws/src/new_pkg/config\n")
+
+
+@pytest.mark.parametrize("below", ["robot.launch.py", "deep/er/robot.launch.py"])
+def test_a_file_in_the_place_of_a_folder_is_named(run: Run, below: str) -> None:
+    Path("ws/src/pkg/launch").write_text("a file\n")
+    with pytest.raises(UsageError, match=r"^ws/src/pkg/launch is a file, so the folder .* cannot be made: rename one"):
+        run(SOLVED, f"ws/src/pkg/launch/{below}")
+    assert Path("ws/src/pkg/launch").read_text() == "a file\n"
 
 
 def test_registering_the_magic_without_a_shell_does_nothing() -> None:
