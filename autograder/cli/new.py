@@ -16,14 +16,21 @@ def new() -> None:
 
 @new.command()
 @click.argument("assignment", metavar="ID")
-def chapter(assignment: str) -> None:
+@click.option(
+    "--package", metavar="NAME", default="", help="The students' package. The default is the ID without its number."
+)
+@click.option(
+    "--node", metavar="NAME", default="nearest", show_default=True, help="Its node, its executable and their module."
+)
+def chapter(assignment: str, package: str, node: str) -> None:
     """Write the chapter ID, such as 10_mapping: a small one that works, and that passes the proof.
 
-    It has a notebook with a contract, a reference, visible and hidden checks, mutants and a variant.
+    It has a notebook with a contract, a reference, visible and hidden checks, mutants and a variant. Names that Python,
+    pip or ROS uses are refused.
     """
     from autograder.author.course.new import write_chapter
 
-    for folder in write_chapter(assignment):
+    for folder in write_chapter(assignment, package, node):
         echo(folder)
     echo(f"\nProve it:        autograder verify --assignment {assignment}")
     echo(f"After a change:  autograder course sync {assignment}, and autograder course tables")

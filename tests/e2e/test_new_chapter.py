@@ -24,9 +24,11 @@ def shell(script: str, folder: Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="module")
 def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A new course with a new chapter."""
+    """A new course with two new chapters, one of them with other names than its own."""
     folder = tmp_path_factory.mktemp("new")
-    done = shell("autograder new course mine\nautograder --course mine new chapter 10_mapping", folder)
+    new = "autograder --course mine new chapter"
+    script = f"autograder new course mine\n{new} 10_mapping\n{new} 18_launch --package launch_lab --node watcher"
+    done = shell(script, folder)
     assert done.returncode == 0, done.stderr
     return folder / "mine"
 
@@ -52,22 +54,23 @@ def test_a_new_chapter_keeps_every_rule(course: Path) -> None:
 def test_a_new_chapter_contains_no_placeholder_of_the_template(course: Path) -> None:
     files = (path for path in course.rglob("*") if path.is_file() and not {".build", "__pycache__"} & set(path.parts))
     texts = {path: path.read_text() for path in files}
-    assert len(texts) > 25
+    assert len(texts) > 50
     assert [path for path, text in texts.items() if "NEW_" in f"{path}{text}" or "TODO" in text] == []
 
 
 @pytest.mark.promise("Without `--only`, `verify` also generates small errors in everything that students write")
 @pytest.mark.nightly
-def test_every_mutant_of_a_new_chapter_is_killed(course: Path) -> None:
+def test_every_mutant_of_new_chapters_is_killed(course: Path) -> None:
     done = on(course, "verify -j 2")
     assert done.returncode == 0, done.stdout + done.stderr
-    for name in ("reference", "release", "variant loop", "mutant farthest"):
-        assert re.search(f"^10_mapping {name} .* as expected$", done.stdout, re.MULTILINE), done.stdout
+    for chapter in ("10_mapping", "18_launch"):
+        for name in ("reference", "release", "variant loop", "mutant farthest"):
+            assert re.search(f"^{chapter} {name} .* as expected$", done.stdout, re.MULTILINE), done.stdout
     assert "0 without a reason" in done.stdout
 
 
 def test_the_notebook_of_a_new_chapter_runs_as_source_and_as_released(course: Path) -> None:
-    done = on(course, "notebooks --source --released -j 2")
+    done = on(course, "notebooks --source --released -j 2 18_launch")
     assert done.returncode == 0, done.stdout + done.stderr
 
 
@@ -77,10 +80,15 @@ def test_the_notebook_of_a_new_chapter_runs_as_source_and_as_released(course: Pa
         ("chapter mapping", "'mapping' is no name for a chapter: take two digits and a name, such as 10_mapping"),
         ("chapter 11_import", "'11_import' is no name for a chapter"),
         ("chapter 11_mapping", "solutions/mapping exists already: take another name"),
+        (
+            "chapter 19_launch",
+            "a package cannot be called 'launch', which is a package of ROS. "
+            "Choose another name: autograder new chapter 19_launch --package my_launch",
+        ),
         ("course mine", "mine exists already: take another name"),
     ],
     # One that names a chapter would be made a course for on another worker.
-    ids=["no number", "a keyword", "the package exists", "the course exists"],
+    ids=["no number", "a keyword", "the package exists", "a package of ROS", "the course exists"],
 )
 def test_an_invalid_name_of_a_new_chapter_is_refused_and_nothing_is_written(
     course: Path, words: str, said: str
@@ -90,6 +98,16 @@ def test_an_invalid_name_of_a_new_chapter_is_refused_and_nothing_is_written(
     assert done.returncode == 2
     assert said in done.stderr
     assert {*course.rglob("*")} == before
+
+
+def test_the_package_and_the_node_of_a_new_chapter_have_the_given_names(course: Path) -> None:
+    package = course / "solutions" / "launch_lab"
+    assert "'watcher = launch_lab.watcher:main'" in (package / "setup.py").read_text()
+    program = (package / "launch_lab" / "watcher.py").read_text()
+    assert "class Watcher(Node):" in program
+    assert "super().__init__('watcher')" in program
+    assert (course / "chapters" / "18_launch" / "ws" / "src" / "launch_lab" / "package.xml").is_file()
+    assert "  launch_lab: Launch\n" in (course / "syllabus.yaml").read_text()
 
 
 @pytest.mark.promise(

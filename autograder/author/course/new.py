@@ -7,34 +7,55 @@ variant, which pass the proof. Its author makes it into another one, step by ste
 from __future__ import annotations
 
 import importlib
-import keyword
 import re
 from collections.abc import Mapping
 from pathlib import Path
 
 from autograder import layout
+from autograder.author.course.package_names import is_package_name, taken_by
 from autograder.author.course.sync import Chapter, sync_chapter
 from autograder.author.course.tables import titles
 from autograder.author.course.workload import effort, time_sentence
 from autograder.exceptions import UsageError
 
 TEMPLATES = layout.ROOT / "assets" / "new"
-NAME = re.compile(r"\d\d_([a-z][a-z0-9_]*)")
+NAME = re.compile(r"\d\d_(.+)")
 OBJECTIVES = "objectives:\n"
+NODE = "nearest"
+IMPORTED_CLASSES = {"Node", "LaserScan", "Float32", "ExternalShutdownException"}  # by the reference of a new chapter
 
 
-def write_chapter(assignment: str) -> tuple[Path, ...]:
+def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple[Path, ...]:
     """Write a chapter of this name into the course, and return its folders: notebook, checks and reference.
 
-    Raises UsageError if the name is not like `10_mapping` or one of the folders is there. Nothing is written then.
+    Args:
+        assignment: two digits and a name, such as `10_mapping`.
+        package: the name of the students' package, by default the chapter's without its number.
+        node: the name of the package's node, of its executable and of its module.
+
+    Raises:
+        UsageError: a name is not of its form or is taken, or one of the folders is there. Nothing is written then.
     """
     named = NAME.fullmatch(assignment)
-    if named is None or keyword.iskeyword(named[1]):
+    if named is None or not is_package_name(named[1]):
         raise UsageError(f"{assignment!r} is no name for a chapter: take two digits and a name, such as 10_mapping")
-    package = named[1]
-    title = package.replace("_", " ").capitalize()
+    title = named[1].replace("_", " ").capitalize()
+    package = package or named[1]
+    _require_free("package", package, f"autograder new chapter {assignment} --package my_{named[1]}")
+    _require_free("node", node, f"autograder new chapter {assignment} --node my_{node}")
+    node_class = node.title().replace("_", "")
+    if node_class in IMPORTED_CLASSES:
+        raise UsageError(
+            f"a node {node!r} would have the class {node_class}, which its module imports, too. Choose another name"
+        )
     folders = (layout.CHAPTERS / assignment, layout.CHECKS / f"ch{assignment}", layout.SOLUTIONS / package)
-    words = {"NEW_CHAPTER": assignment, "NEW_PACKAGE": package, "NEW_TITLE": title}
+    words = {
+        "NEW_CHAPTER": assignment,
+        "NEW_PACKAGE": package,
+        "NEW_NODE": node,
+        "NEW_CLASS": node_class,
+        "NEW_TITLE": title,
+    }
     _require_new(*folders)
     for part, folder in zip(("chapter", "checks", "solution"), folders, strict=True):
         _write(TEMPLATES / "chapter" / part, folder, words)
@@ -51,6 +72,13 @@ def write_course(folder: Path) -> None:
     _require_new(folder)
     title = folder.name.replace("_", " ").replace("-", " ").capitalize()
     _write(TEMPLATES / "course", folder, {"NEW_COURSE": folder.name, "NEW_TITLE": title})
+
+
+def _require_free(what: str, name: str, instead: str) -> None:
+    if not is_package_name(name):
+        raise UsageError(f"{name!r} is no name for a {what}: take small letters, digits and single underscores")
+    if whose := taken_by(name):
+        raise UsageError(f"a {what} cannot be called {name!r}, which is {whose}. Choose another name: {instead}")
 
 
 def _require_new(*folders: Path) -> None:

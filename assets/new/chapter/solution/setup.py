@@ -14,5 +14,5 @@ setup(
     maintainer_email='robot.course@example.com',
     description='Says how near the nearest thing is',
     license='Apache-2.0',
-    entry_points={'console_scripts': ['nearest = NEW_PACKAGE.nearest:main']},
+    entry_points={'console_scripts': ['NEW_NODE = NEW_PACKAGE.NEW_NODE:main']},
 )

@@ -1,6 +1,6 @@
 """The names and numbers of the contract. The sentences themselves stand in the notebook."""
 
 PACKAGE = "NEW_PACKAGE"
-EXECUTABLE = "nearest"
+EXECUTABLE = "NEW_NODE"
 RANGE_MIN, RANGE_MAX = 0.12, 3.5  # m
 TOLERANCE = 1e-5  # m: a reading is a 32-bit float

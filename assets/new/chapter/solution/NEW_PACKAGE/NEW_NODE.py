@@ -17,11 +17,11 @@ def nearest(scan):
     return min(filter(counts, scan.ranges), default=None)
 
 
-class Nearest(Node):
+class NEW_CLASS(Node):
     """Publishes how near the nearest thing is."""
 
     def __init__(self):
-        super().__init__('nearest')
+        super().__init__('NEW_NODE')
         self.publisher = self.create_publisher(Float32, 'nearest', 10)
         self.create_subscription(LaserScan, 'scan', self.on_scan, qos_profile_sensor_data)
 
@@ -35,7 +35,7 @@ class Nearest(Node):
 def main(args=None):
     """Run the node until it is stopped."""
     rclpy.init(args=args)
-    node = Nearest()
+    node = NEW_CLASS()
     try:
         rclpy.spin(node)
     except (KeyboardInterrupt, ExternalShutdownException):

@@ -10,7 +10,7 @@ from std_msgs.msg import Float32
 
 class Watch(Node):
     def __init__(self):
-        super().__init__('nearest')
+        super().__init__('NEW_NODE')
         say = self.create_publisher(Float32, 'nearest', 10)
 
         def look(scan):

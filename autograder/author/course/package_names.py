@@ -1,0 +1,59 @@
+"""The names that a new package or node may not have, because Python, pip, ROS or colcon uses them.
+
+A student's package is found before what is installed. One that is called `launch` would take the place of ROS's own,
+and programs that import that would fail for a reason that no student can see.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import keyword
+import re
+import sys
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+
+FORM = re.compile(r"[a-z](?:_?[a-z0-9]+)*")
+# Released packages of ROS. Most are not installed here, but they are where a student goes on.
+ROS_PACKAGES = Path(__file__).with_name("ros_packages.json")
+USED_BY_TOOLS = {"build", "install", "log", "src", "ws", "setup", "conftest", "tests", "docs"}
+
+
+def is_package_name(name: str) -> bool:
+    """Return whether a name has the form that ROS wants of a package, and Python of a module."""
+    return FORM.fullmatch(name) is not None and not keyword.iskeyword(name)
+
+
+def taken_by(name: str) -> str:
+    """Return what has a name already, such as "a package of ROS", or "" if the name is free."""
+    if name in sys.stdlib_module_names:
+        return "a module of Python's standard library"
+    if name in _ros_packages():
+        return "a package of ROS"
+    if name in USED_BY_TOOLS:
+        return "a name that colcon, setuptools or pytest uses"
+    if name.replace("_", "-") in _pip_packages():
+        return "a package that pip installed"
+    if _is_importable(name):
+        return "a module that Python can import already"
+    return ""
+
+
+@cache
+def _ros_packages() -> frozenset[str]:
+    return frozenset(json.loads(ROS_PACKAGES.read_text(encoding="utf-8"))["names"])
+
+
+@cache
+def _pip_packages() -> frozenset[str]:
+    """Return the names of what pip installed, as pip compares them."""
+    named = (str(found.metadata["Name"]) for found in metadata.distributions())
+    return frozenset(re.sub(r"[-_.]+", "-", name).lower() for name in named)
+
+
+def _is_importable(name: str) -> bool:
+    """Return whether a module has this name. A mere folder on Python's path, which has no file of Python, is none."""
+    spec = importlib.util.find_spec(name)
+    return spec is not None and spec.origin is not None

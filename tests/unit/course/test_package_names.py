@@ -1,0 +1,64 @@
+"""The names that a new package or node may not have."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.author.course.new import write_chapter
+from autograder.author.course.package_names import is_package_name, taken_by
+from autograder.exceptions import UsageError
+
+
+@pytest.mark.parametrize(
+    ("name", "whose"),
+    [
+        ("json", "a module of Python's standard library"),
+        ("launch", "a package of ROS"),
+        ("rclpy", "a package of ROS"),
+        ("std_msgs", "a package of ROS"),
+        ("slam_toolbox", "a package of ROS"),  # which has no wheel: a student meets it later
+        ("pyyaml", "a package that pip installed"),
+        ("import_linter", "a package that pip installed"),
+        ("yaml", "a module that Python can import already"),
+        ("autograder", "a module that Python can import already"),
+        ("install", "a name that colcon, setuptools or pytest uses"),
+    ],
+)
+def test_a_name_that_something_else_has_is_taken(name: str, whose: str) -> None:
+    assert taken_by(name) == whose
+
+
+@pytest.mark.parametrize("name", ["nearest", "mapping", "launch_lab", "my_robot_package"])
+def test_other_names_are_free(name: str) -> None:
+    assert taken_by(name) == ""
+
+
+def test_a_mere_folder_on_the_path_takes_no_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "mapping").mkdir()
+    monkeypatch.syspath_prepend(tmp_path)
+    assert taken_by("mapping") == ""
+
+
+@pytest.mark.parametrize("name", ["", "2d", "Robot", "a-b", "a__b", "a_", "import", "café", "a/b"])
+def test_a_name_has_the_form_that_ros_and_python_want(name: str) -> None:
+    assert not is_package_name(name)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (
+            {"package": "02_json"},
+            "'02_json' is no name for a package: take small letters, digits and single underscores",
+        ),
+        ({"package": "json"}, "Choose another name: autograder new chapter 40_reading --package my_reading"),
+        ({"node": "rclpy"}, "a node cannot be called 'rclpy', which is a package of ROS"),
+        ({"node": "laser_scan"}, "a node 'laser_scan' would have the class LaserScan, which its module imports, too."),
+    ],
+)
+def test_a_package_or_a_node_with_a_name_that_is_taken_is_refused(options: dict[str, str], said: str) -> None:
+    with pytest.raises(UsageError) as raised:
+        write_chapter("40_reading", **options)
+    assert said in str(raised.value)
