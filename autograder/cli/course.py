@@ -7,16 +7,12 @@ import sys
 import click
 
 from autograder import layout
-from autograder.author.course.cells import is_graded
-from autograder.author.course.contract_rules import broken_contract
-from autograder.author.course.findings import Finding
-from autograder.author.course.notebook_rules import broken_rules
-from autograder.author.course.sync import Chapter, chapters, find_outdated, sync_chapter
+from autograder.author.course.chapter_rules import read_chapter
+from autograder.author.course.course_rules import broken_course, broken_course_file
+from autograder.author.course.sync import chapters, sync_chapter
 from autograder.author.course.tables import course_page, titles
-from autograder.author.course.workload import outdated_time_sentence
 from autograder.author.verification.checks_page import checks_page
 from autograder.cli.terminal import echo
-from autograder.suite import suites
 
 _names = click.argument("names", nargs=-1, metavar="[ID]...")
 
@@ -38,21 +34,18 @@ def sync(names: tuple[str, ...]) -> None:
 @course.command()
 @_names
 def check(names: tuple[str, ...]) -> None:
-    """Say what is stale and which rules for notebooks are broken. If there is anything, the exit status is 1."""
-    found = [finding for chapter in chapters(names) for finding in findings(chapter)]
-    for finding in found:
-        echo(str(finding))
+    """Say all that is wrong with chapters, their checks, mutants and reference, each with its file and line.
+
+    Nothing is graded: `autograder verify` does that. Without an ID, the course is looked at as a whole. If there is
+    anything, the exit status is 1.
+    """
+    if not (found := list(broken_course_file())):
+        read = {chapter.assignment: read_chapter(chapter) for chapter in chapters(names)}
+        found = [finding for each in read.values() for finding in each.findings]
+        found += broken_course(read, whole=not names)
+    for line in dict.fromkeys(map(str, found)):
+        echo(line)
     sys.exit(1 if found else 0)
-
-
-def findings(chapter: Chapter) -> list[Finding]:
-    """Return everything that is wrong with a chapter."""
-    notebook, name = chapter.read(), chapter.notebook_path.name
-    found = [*find_outdated(chapter), *broken_rules(name, notebook), *outdated_time_sentence(name, notebook)]
-    if any(map(is_graded, notebook.cells)):
-        hidden, visible = suites.hidden(chapter.assignment), suites.visible(chapter.assignment)
-        found += broken_contract(name, notebook, (*visible.checks, *hidden.checks))
-    return found
 
 
 @course.command()

@@ -115,7 +115,8 @@ def test_the_package_and_the_node_of_a_new_chapter_have_the_given_names(course: 
     "The reference and the variant get all points, the untouched student release gets none",
     "`--record` writes all checks that the error fails to `mutants.snapshot.yaml`.",
     "`autograder verify --assignment 02_nodes --only index_zero_is_forward` grades a single mutant",
-    "`sync` updates it, and `check` reports inconsistencies",
+    "`sync` updates it",
+    "`course check` says in a second all that is wrong with a chapter",
     "`graded/ada/feedback.html` shows the check, your hint, and the requirement from the notebook.",
     "This command creates the student release, which has no hidden checks and no answers:",
 )

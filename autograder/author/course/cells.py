@@ -11,20 +11,24 @@ Sources are paths in `solutions/`, targets are paths in the chapter's folder.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from jsonschema import Draft202012Validator, ValidationError
+from jsonschema import Draft202012Validator
 from nbformat import NotebookNode
 
 from autograder import layout
 from autograder.author.course.exceptions import CourseError
+from autograder.author.course.findings import Finding
+from autograder.author.course.schema_sentences import broken_schema
 from autograder.author.course.solution_markers import mark_functions, mark_lines
 from autograder.probes.given_files import strip_licence
 
-_METADATA = Draft202012Validator(json.loads(Path(__file__).with_name("metadata.schema.json").read_text("utf-8")))
+_SCHEMA = json.loads(Path(__file__).with_name("metadata.schema.json").read_text("utf-8"))
+_METADATA = Draft202012Validator(_SCHEMA)
+WHOLE = "`course`"
 
 
 @dataclass(frozen=True)
@@ -87,12 +91,17 @@ def is_solution(cell: NotebookNode) -> bool:
 def metadata(node: NotebookNode) -> Mapping[str, Any]:
     """Return the `course` part of a cell's or a notebook's metadata. Raises CourseError if it breaks the schema."""
     course: Mapping[str, Any] = node.metadata.get("course", {})
-    try:
-        _METADATA.validate(course)
-    except ValidationError as error:
-        place = error.json_path.replace("$", "course", 1)
-        raise CourseError(f"the metadata {place} are wrong: {error.message}") from error
+    if not _METADATA.is_valid(course):
+        wrong = "; ".join(sentence for _, sentence in broken_schema(course, _SCHEMA, WHOLE))
+        raise CourseError(f"the metadata are wrong: {wrong}")
     return course
+
+
+def broken_metadata(name: str, notebook: NotebookNode) -> Iterator[Finding]:
+    """Yield what is wrong with the `course` part of the metadata of a notebook of this name, and of its cells."""
+    for cell, node in ((None, notebook), *((cell.id, cell) for cell in notebook.cells)):
+        for _, sentence in broken_schema(node.metadata.get("course", {}), _SCHEMA, WHOLE):
+            yield Finding(name, cell, f"the metadata are wrong: {sentence}")
 
 
 def read_solution(source: PurePosixPath) -> str:

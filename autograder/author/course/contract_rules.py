@@ -7,7 +7,7 @@ of each function that the student writes has to contain one of these sentences, 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from nbformat import NotebookNode
 
@@ -24,24 +24,35 @@ def broken_contract(name: str, notebook: NotebookNode, checks: Sequence[Check]) 
 
     Findings call the notebook by `name`. `checks` are all of its chapter, visible and hidden.
     """
-    found = []
+    return [*broken_cells(name, notebook), *broken_holding(name, notebook, checks, {})]
+
+
+def broken_cells(name: str, notebook: NotebookNode) -> Iterator[Finding]:
+    """Yield the cells whose contract is not what a student reads there."""
     for cell in in_form(notebook, Form.RELEASED).cells:
-        found += [Finding(name, cell.id, message) for message in _cell(cell)]
+        yield from (Finding(name, cell.id, message) for message in _cell(cell))
+
+
+def broken_holding(
+    name: str, notebook: NotebookNode, checks: Sequence[Check], places: Mapping[str, tuple[str, int]]
+) -> Iterator[Finding]:
+    """Yield the sentences without a check, and the checks without a sentence.
+
+    `places` has the file and line of checks, by `VISIBILITY ID`. A check whose place is not known is the notebook's.
+    """
     known = sentences(notebook.cells)
     held = {sentence for check in checks for sentence in check.holds}
     for sentence in known.values():
         if not sentence.unchecked and sentence.id not in held:
-            found.append(Finding(name, None, f"no check holds the sentence {sentence.id!r} of the contract"))
+            yield Finding(name, None, f"no check holds the sentence {sentence.id!r} of the contract")
         if sentence.unchecked and sentence.id in held:
-            found.append(
-                Finding(name, None, f"the sentence {sentence.id!r} is said to be unchecked, and a check holds it")
-            )
+            yield Finding(name, None, f"the sentence {sentence.id!r} is said to be unchecked, and a check holds it")
     for check in checks:
         unknown = ", ".join(repr(each) for each in check.holds if each not in known)
         if unknown or not check.holds:
             message = f"holds {unknown}, which no cell names" if unknown else "holds no sentence of the contract"
-            found.append(Finding(name, None, f"the {check.visibility.value} check {check.id!r} {message}"))
-    return found
+            file, line = places.get(f"{check.visibility.value} {check.id}", (name, None))
+            yield Finding(file, None, f"the {check.visibility.value} check {check.id!r} {message}", line)
 
 
 def _cell(cell: NotebookNode) -> Iterator[str]:

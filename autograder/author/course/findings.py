@@ -1,4 +1,4 @@
-"""A problem in a notebook, with the place where its author finds it."""
+"""A problem in a file of a course, with the place where its author finds it."""
 
 from __future__ import annotations
 
@@ -8,14 +8,23 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Finding:
-    """A problem in a notebook: what is wrong and what to do. `cell` is None if it concerns no single cell."""
+    """A problem in a file: what is wrong and what to do.
 
-    notebook: str
+    Attributes:
+        file: the name of the notebook, or the path of another file, below the course's folder.
+        cell: the id of the notebook's cell, or None if it concerns no single cell.
+        message: what is wrong and what to do.
+        line: the line of the file, from 1, or None if it concerns no single line.
+    """
+
+    file: str
     cell: str | None
     message: str
+    line: int | None = None
 
     def __str__(self) -> str:
-        where = self.notebook if self.cell is None else f"{self.notebook}, cell {self.cell!r}"
+        place = self.file if self.line is None else f"{self.file}:{self.line}"
+        where = place if self.cell is None else f"{place}, cell {self.cell!r}"
         return f"{where}: {self.message}"
 
 

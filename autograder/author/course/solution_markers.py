@@ -28,7 +28,7 @@ def mark_functions(text: str, hide: Sequence[str]) -> str:
     try:
         functions = list(_functions(ast.parse(text)))
     except SyntaxError as error:
-        raise CourseError(f"the source does not parse: {error}") from error
+        raise CourseError(f"the source does not parse: {error.msg} in line {error.lineno}") from error
     regions = []
     for name in hide:
         found = [function for qualified, function in functions if qualified == name]

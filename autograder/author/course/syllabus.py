@@ -42,9 +42,9 @@ class Syllabus:
         """Read a YAML file, that of the course by default."""
         path = path or layout.course().root / layout.course().syllabus
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
-        items = {key: text for part in PARTS for key, text in data.get(part, {}).items()}
-        errata = data.get("errata", {}).items()
-        return cls(data["objectives"], items, {n: (wrong, right) for n, (wrong, right) in errata})
+        items = {key: text for part in PARTS for key, text in (data.get(part) or {}).items()}
+        errata = (data.get("errata") or {}).items()
+        return cls(data["objectives"] or {}, items, {n: (wrong, right) for n, (wrong, right) in errata})
 
 
 @dataclass(frozen=True)

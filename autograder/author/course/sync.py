@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -68,10 +68,18 @@ def chapters(names: Sequence[str] = ()) -> list[Chapter]:
     return [Chapter(layout.chapter(name)) for name in names or layout.assignments()]
 
 
-def find_outdated(chapter: Chapter) -> list[Finding]:
-    """Return the cells and files that differ from the reference or the suite, and those with wrong metadata."""
-    notebook = chapter.read()
-    return [finding for finding, _ in _differences(chapter, notebook)]
+def find_outdated(
+    chapter: Chapter, notebook: NotebookNode | None = None, points: Mapping[str, float] | None = None
+) -> list[Finding]:
+    """Return the cells and files that differ from the reference or the suite, and those with wrong metadata.
+
+    Args:
+        chapter: the chapter.
+        notebook: its notebook, which is read if it is not given.
+        points: the points of each group of its hidden suite, or None if they are not known, and not compared.
+    """
+    notebook = chapter.read() if notebook is None else notebook
+    return [finding for finding, _ in _differences(chapter, notebook, points)]
 
 
 def sync_chapter(chapter: Chapter) -> list[Finding]:
@@ -80,7 +88,9 @@ def sync_chapter(chapter: Chapter) -> list[Finding]:
     Raises CourseError for what only an author can correct. Nothing is written then.
     """
     notebook = chapter.read()
-    differences = list(_differences(chapter, notebook))
+    graded = any(map(is_graded, notebook.cells))
+    points = suites.hidden(chapter.assignment).groups if graded else None
+    differences = list(_differences(chapter, notebook, points))
     for finding, correct in differences:
         if correct is None:
             raise CourseError(str(finding))
@@ -92,10 +102,10 @@ def sync_chapter(chapter: Chapter) -> list[Finding]:
     return [finding for finding, _ in differences]
 
 
-def _differences(chapter: Chapter, notebook: NotebookNode) -> Iterator[Difference]:
+def _differences(chapter: Chapter, notebook: NotebookNode, points: Mapping[str, float] | None) -> Iterator[Difference]:
     name = chapter.notebook_path.name
-    if any(map(is_graded, notebook.cells)):
-        yield from point_differences(name, notebook, suites.hidden(chapter.assignment).groups)
+    if points is not None:
+        yield from point_differences(name, notebook, points)
     for cell in notebook.cells:
         try:
             source = copied_file(cell)

@@ -14,6 +14,7 @@ from typing import Any
 
 import yaml
 
+from autograder.author.course.mutant_rules import read_or_raise
 from autograder.diagnosis import Kind
 from autograder.result.model import write_atomically
 from autograder.suite import suites
@@ -47,12 +48,11 @@ def snapshot_file(assignment: str) -> Path:
 def recorded(assignment: str) -> dict[str, Record]:
     """Return the record of each mutant, by the mutant's id.
 
-    Checks that the suite no longer has are omitted.
+    Checks that the suite no longer has are omitted. Raises CourseError if the file is not YAML, or breaks its schema.
     """
     path = snapshot_file(assignment)
     known = frozenset(check.id for check in suites.hidden(assignment).checks)
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-    rows = yaml.load(path.read_text(encoding="utf-8"), loader) or {} if path.is_file() else {}
+    rows = (read_or_raise(path) if path.is_file() else None) or {}
     return {name: _read(row, known) for name, row in rows.items()}
 
 

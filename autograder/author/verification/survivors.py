@@ -14,9 +14,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-import yaml
-
 from autograder.author.course.markdown_table import table
+from autograder.author.course.mutant_rules import read_or_raise
 from autograder.author.verification.generated_mutants import GeneratedMutants
 from autograder.author.verification.mutation_run import FAILED, MutantResult
 from autograder.exceptions import GraderError
@@ -70,15 +69,16 @@ def reasons(assignment: str, generated: GeneratedMutants) -> dict[str, str]:
     """Return the reasons why generated mutants of a chapter may survive, by their ids.
 
     Raises:
-        GraderError: a reason does not have exactly one kind, or a mutant does not exist or has two reasons.
+        CourseError: the file is not YAML, or breaks its schema.
+        GraderError: a mutant does not exist, or has two reasons.
     """
     path = suites.hidden(assignment).folder / "survivors.yaml"
-    entries = yaml.safe_load(path.read_text(encoding="utf-8")) if path.is_file() else []
+    entries = (read_or_raise(path) if path.is_file() else None) or []
     by_mutant: dict[str, str] = {}
     for entry in entries:
         kinds = [kind for kind in KINDS if entry.get(kind)]
-        if len(kinds) != 1 or by_mutant.keys() & entry["mutants"]:
-            raise GraderError(f"{path}: each mutant has one reason, which is {' or '.join(KINDS)}: correct {entry}")
+        if twice := by_mutant.keys() & entry["mutants"]:
+            raise GraderError(f"{path}: there are two reasons for {', '.join(sorted(twice))}: keep one")
         by_mutant |= dict.fromkeys(entry["mutants"], f"{kinds[0]}: {entry[kinds[0]]}")
     for pair in (mutant.id for mutant in generated.mutants if mutant.operator == "pair"):
         halves = [by_mutant[name] for name in pair.split(" + ") if name in by_mutant]

@@ -25,14 +25,26 @@ from tests.unit.course.notebooks import chapter, code, grade, notebook, prose, s
 
 CHECKS = (Check("named", "It has its name.", 2.0, "graph", Visibility.HIDDEN, (), None, (), ("runs",)),)
 
+SUITE = 'PACKAGES = ("pkg",)\nMODULES = ()\n'
+FILES = {
+    "syllabus.yaml": "objectives:\n  graph: Graphs\n",
+    "solutions/node.py": 'def main():\n    """Run."""\n    return 0\n',
+    "solutions/pkg/package.xml": "<package><name>pkg</name></package>\n",
+    "checks/ch01_small/hidden/__init__.py": SUITE,
+    "checks/ch01_small/visible/__init__.py": SUITE,
+    "checks/ch01_small/mutants.yaml": "file: pkg/package.xml\nmutants:\n"
+    "- {id: other, title: other name, edits: [{find: <name>pkg, replace: <name>other}], check: named}\n",
+}
+
 
 @pytest.fixture
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(suites, "hidden", lambda assignment: SimpleNamespace(checks=CHECKS, groups={"graph": 2.0}))
     monkeypatch.setattr(suites, "visible", lambda assignment: SimpleNamespace(checks=()))
     monkeypatch.setattr(layout, "course", lambda: Course(tmp_path, "small", "A small course"))
-    (tmp_path / "solutions").mkdir()
-    (tmp_path / "solutions/node.py").write_text('def main():\n    """Run."""\n    return 0\n')
+    for name, text in FILES.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
     origin = {"source": "node.py", "target": "ws/node.py", "hide": ["main"], "contract": {"runs": "Run."}}
     chapter(
         tmp_path,
@@ -40,6 +52,7 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
             prose("# Title\n\n*5 minutes to read and run, 5 minutes for the exercises.*", "title"),
             code("", "node", course=origin, nbgrader=solution("node")),
             code("grade()", "g", course={"group": "graph"}, nbgrader=grade("g", 1)),
+            objectives=[{"objective": "graph", "exercise": "title", "groups": ["graph"]}],
         ),
     )
     return tmp_path
@@ -49,7 +62,7 @@ def run(verb: str, *names: str) -> Result:
     return CliRunner().invoke(command.course, [verb, *names])
 
 
-@pytest.mark.promise("`autograder course check` finds differences")
+@pytest.mark.promise("`autograder course check` reports what is wrong with a chapter")
 def test_course_check_names_all_findings_and_exits_with_1(course: Path) -> None:
     result = run("check")
     assert result.exit_code == 1

@@ -85,10 +85,10 @@ def test_a_cell_is_cut_as_its_metadata_says_and_its_release_holds_no_answer(
 @pytest.mark.parametrize(
     ("course", "words"),
     [
-        ({"cut": "a"}, r"course\.cut are wrong: 'a' is not of type 'array'"),
-        ({"cut": [["a"]]}, r"course\.cut\[0\] are wrong: \['a'\] is too short"),
-        ({"cut": [["a", 1]]}, r"course\.cut\[0\]\[1\] are wrong"),
-        ({"cut": [["a", "b"]], "hide": ["main"]}, "should not be valid under .*'hide', 'cut'"),
+        ({"cut": "a"}, "`cut` must be a list, not a text"),
+        ({"cut": [["a"]]}, r"`cut\[0\]` needs 2 entries, and has 1"),
+        ({"cut": [["a", 1]]}, r"`cut\[0\]\[1\]` must be a text, not a number: put it in quotes"),
+        ({"cut": [["a", "b"]], "hide": ["main"]}, "a cell hides functions by `hide` or lines by `cut`, not both"),
     ],
 )
 def test_invalid_metadata_for_cuts_are_an_error(course: dict[str, object], words: str) -> None:

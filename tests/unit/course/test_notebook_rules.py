@@ -92,7 +92,7 @@ def old_format() -> NotebookNode:
         ),
         (
             notebook(prose("# T", "t"), code("", "g", nbgrader=grade("g", 1), course={"group": 3})),
-            "cell 'g': the metadata course.group are wrong: 3 is not of type 'string'",
+            "cell 'g': the metadata are wrong: `group` must be a text, not a number",
         ),
         (
             notebook(prose("# T", "t"), code("# BEGIN SOLUTION", "s")),

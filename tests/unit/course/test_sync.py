@@ -85,12 +85,12 @@ def test_a_given_file_is_copied_and_compared(tmp_path: Path, solutions: Path) ->
     ("course", "message"),
     [
         ({"source": "pkg/gone.py"}, "the reference has no file pkg/gone.py"),
-        ({"source": "../secret"}, "the metadata course.source are wrong: '../secret' does not match"),
-        ({"source": "pkg/../../secret"}, "the metadata course.source are wrong"),
-        ({"target": "/etc/passwd"}, "the metadata course.target are wrong"),
-        ({"target": None}, "the metadata course.target are wrong: None is not of type 'string'"),
-        ({"hide": "main"}, "the metadata course.hide are wrong: 'main' is not of type 'array'"),
-        ({"hied": ["main"]}, "('hied' was unexpected)"),
+        ({"source": "../secret"}, "the metadata are wrong: `source`: must be a relative path"),
+        ({"source": "pkg/../../secret"}, "`source`: must be a relative path that stays inside its folder"),
+        ({"target": "/etc/passwd"}, "`target`: must be a relative path that stays inside its folder"),
+        ({"target": None}, "the metadata are wrong: `target` must be a text, not empty"),
+        ({"hide": "main"}, "the metadata are wrong: `hide` must be a list, not a text"),
+        ({"hied": ["main"]}, "the metadata are wrong: `course` has an unknown key `hied`: did you mean `hide`?"),
         ({"hide": ["mian"]}, "pkg/node.py: function 'mian' occurs 0 times"),
     ],
 )
@@ -109,13 +109,13 @@ def test_metadata_that_sync_cannot_correct_are_an_error_and_nothing_is_written(
 def test_given_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
     made = chapter(tmp_path, notebook(given=["pkg/setup.cfg"]))
     (found,) = find_outdated(made)
-    assert "course.given are wrong: ['pkg/setup.cfg'] is not of type 'object'" in found.message
+    assert "the metadata are wrong: `given` must be a mapping, not a list" in found.message
 
 
 def test_course_metadata_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
     made = chapter(tmp_path, notebook(code("", "odd", course="pkg/node.py")))
     (found,) = find_outdated(made)
-    assert "the metadata course are wrong: 'pkg/node.py' is not of type 'object'" in found.message
+    assert "the metadata are wrong: `course` must be a mapping, not a text" in found.message
 
 
 def test_a_folder_without_its_notebook_is_named(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from autograder.author.verification import survivors
 from autograder.author.verification.generated_mutants import GeneratedMutants, generated_mutants
 from autograder.author.verification.mutation_run import FAILED, MutantResult
 from autograder.author.verification.survivors import ChapterMutationResult, faults, mutant_counts, reasons, report
-from autograder.exceptions import GraderError
+from autograder.exceptions import AutograderError
 from autograder.suite import suites
 from autograder.suite.suites import Suite
 
@@ -133,12 +133,13 @@ def test_a_mutant_that_was_not_graded_fails_the_verification(monkeypatch: pytest
     ("text", "message"),
     [
         ("- {equivalent: x, mutants: [no such mutant]}", "these mutants no longer exist: no such mutant"),
-        ("- {mutants: []}", "equivalent or outside"),
-        ("- {equivalent: x, outside: y, mutants: []}", "equivalent or outside"),
+        ("- {mutants: [a]}", "each entry has one reason, `equivalent` or `outside`"),
+        ("- {equivalent: x, outside: y, mutants: [a]}", "each entry has one reason, `equivalent` or `outside`"),
+        ("- {equivalent: x, mutants: [a]}\n- {outside: y, mutants: [a]}", "there are two reasons for a: keep one"),
     ],
 )
 def test_a_reason_that_matches_no_mutant_is_refused(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, message: str
 ) -> None:
-    with pytest.raises(GraderError, match=message):
+    with pytest.raises(AutograderError, match=message):
         with_reason(ChapterMutationResult(ASSIGNMENT, generated_mutants(ASSIGNMENT), {}), monkeypatch, text, tmp_path)

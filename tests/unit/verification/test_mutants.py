@@ -44,13 +44,13 @@ def test_a_mutant_is_read_with_defaults_for_missing_fields(described: Path) -> N
 
 
 def test_a_mutant_for_an_unknown_check_is_refused(described: Path) -> None:
-    described.write_text(HEAD + "  - {id: a, title: t, check: flies, edits: []}\n")
+    described.write_text(HEAD + "  - {id: a, title: t, check: flies, edits: [{find: x, replace: y}]}\n")
     with pytest.raises(GraderError, match="mutant a: the suite has no check flies"):
         mutants("02_nodes")
 
 
 def test_a_recorded_diagnosis_that_does_not_exist_is_refused(described: Path) -> None:
-    described.write_text(HEAD + "  - {id: a, title: t, check: nan, edits: []}\n")
+    described.write_text(HEAD + "  - {id: a, title: t, check: nan, edits: [{find: x, replace: y}]}\n")
     described.with_name("mutants.snapshot.yaml").write_text("a: {diagnosis: tired, fails: [nan]}\n")
     with pytest.raises(ValueError, match="tired"):
         mutants("02_nodes")

@@ -1,0 +1,172 @@
+"""All rules for a chapter, applied at once: a mistake in one file hides none in another.
+
+Nothing is graded. What can be read is read, and only suites without a mistake are imported.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import traceback
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from nbformat import NotebookNode
+
+from autograder import layout
+from autograder.author.course.cells import broken_metadata, is_graded
+from autograder.author.course.contract_rules import broken_cells, broken_holding
+from autograder.author.course.exceptions import CourseError
+from autograder.author.course.findings import Finding
+from autograder.author.course.mutant_rules import broken_mutants, unproven_checks
+from autograder.author.course.notebook_rules import broken_rules
+from autograder.author.course.reference_rules import broken_packages, broken_python, broken_variants
+from autograder.author.course.suite_rules import read_suite, shown
+from autograder.author.course.sync import Chapter, find_outdated
+from autograder.author.course.workload import outdated_time_sentence
+from autograder.exceptions import AutograderError
+from autograder.suite import Check, Visibility, suites
+
+KINDS = (suites.VISIBLE, suites.HIDDEN)
+
+
+@dataclass(frozen=True)
+class ReadChecks:
+    """The checks of a chapter with all files around them.
+
+    Attributes:
+        findings: what is wrong with these files.
+        checks: the visible and the hidden checks, or None if they cannot be imported.
+        points: the points of each group of hidden checks, or None if they cannot be imported.
+        places: file and line of each check, by `VISIBILITY ID`.
+    """
+
+    findings: tuple[Finding, ...]
+    checks: tuple[Check, ...] | None
+    points: dict[str, float] | None
+    places: dict[str, tuple[str, int]]
+
+
+@dataclass(frozen=True)
+class ReadChapter:
+    """A chapter with all that is wrong with it.
+
+    Attributes:
+        findings: what is wrong with it.
+        notebook: its notebook, or None if that cannot be read, or has wrong metadata.
+        hidden: its hidden checks, or None if they cannot be imported.
+    """
+
+    findings: tuple[Finding, ...]
+    notebook: NotebookNode | None
+    hidden: tuple[Check, ...] | None
+
+
+def read_chapter(chapter: Chapter) -> ReadChapter:
+    """Read a chapter, its checks and its reference, and apply all rules to them."""
+    notebook, unreadable = _notebook(chapter)
+    folder = layout.CHECKS / f"ch{chapter.assignment}"
+    graded = (folder / suites.HIDDEN).is_dir() or (notebook is not None and any(map(is_graded, notebook.cells)))
+    read = read_checks(chapter.assignment) if graded else ReadChecks((), (), None, {})
+    name, path = chapter.notebook_path.name, shown(chapter.notebook_path)
+    found = [*unreadable]
+    if notebook is not None:
+        text = chapter.notebook_path.read_text(encoding="utf-8")
+        usable = not (wrong := [*broken_metadata(name, notebook)])
+        more = _broken_notebook(chapter, notebook, read) if usable else [*wrong, *broken_rules(name, notebook)]
+        found += [placed(each, text) if each.file == name else each for each in more]
+        notebook = notebook if usable else None
+    hidden = None if read.checks is None else tuple(c for c in read.checks if c.visibility is Visibility.HIDDEN)
+    findings = [replace(each, file=path) if each.file == name else each for each in found]
+    unproven = unproven_checks(folder, shown(folder), [check.id for check in hidden]) if hidden else ()
+    return ReadChapter((*read.findings, *unproven, *findings), notebook, hidden)
+
+
+def read_checks(assignment: str) -> ReadChecks:
+    """Read the checks of a chapter, the mutants and variants beside them, and the packages that they grade."""
+    folder = layout.CHECKS / f"ch{assignment}"
+    read = {kind: read_suite(assignment, kind) for kind in KINDS}
+    found = [finding for kind in KINDS for finding in read[kind].findings]
+    found += broken_python(folder)
+    places = {f"{kind} {id}": place for kind in KINDS for id, place in read[kind].places.items()}
+    checks, points = None, None
+    if not found:
+        try:
+            hidden, visible = suites.hidden(assignment), suites.visible(assignment)
+            checks, points = (*visible.checks, *hidden.checks), hidden.groups
+        except Exception as error:  # whatever the module of an author raises
+            found.append(_import_error(error, folder))
+    written = read[suites.HIDDEN]
+    sources = written.sources
+    if not all((layout.SOLUTIONS / source).is_dir() for source in sources):
+        sources = ()  # one of the names is wrong, which is said already
+    known = None if checks is None else [check.id for check in checks if check.visibility is Visibility.HIDDEN]
+    ids = [*written.places] if known is None and written.is_complete else known
+    found += broken_packages(sources)
+    found += broken_mutants(folder, shown(folder), ids, sources)
+    found += broken_variants(folder / "variants", sources)
+    return ReadChecks(tuple(found), checks, points, places)
+
+
+def _import_error(error: Exception, folder: Path) -> Finding:
+    """Return the finding of a suite that raises an error, at the last line of the chapter's that took part."""
+    frames = [each for each in traceback.extract_tb(error.__traceback__) if Path(each.filename).is_relative_to(folder)]
+    top = folder / (suites.VISIBLE if suites.VISIBLE in str(error) else suites.HIDDEN) / "__init__.py"
+    file, line = (shown(Path(frames[-1].filename)), frames[-1].lineno) if frames else (shown(top), 1)
+    known = isinstance(error, AutograderError)
+    message = str(error) if known else f"cannot be imported: {type(error).__name__}: {error}"
+    return Finding(file, None, message, line)
+
+
+def _notebook(chapter: Chapter) -> tuple[NotebookNode | None, list[Finding]]:
+    """Return the notebook of a chapter, or None and why it cannot be read."""
+    try:
+        return chapter.read(), []
+    except CourseError as error:
+        name, message, line = chapter.notebook_path.name, str(error), 1
+        try:
+            json.loads(chapter.notebook_path.read_text(encoding="utf-8"))
+        except json.JSONDecodeError as wrong:
+            message, line = f"is not JSON: {wrong.msg}", wrong.lineno
+        return None, [Finding(name, None, message.removeprefix(f"{name} ").removeprefix(f"{name}: "), line)]
+
+
+def _broken_notebook(chapter: Chapter, notebook: NotebookNode, read: ReadChecks) -> list[Finding]:
+    """Return what is wrong with a notebook. Rules that need its checks are left out if these are wrong."""
+    if not notebook.cells:
+        return broken_rules(chapter.notebook_path.name, notebook)
+    name = chapter.notebook_path.name
+    rules: Sequence[Callable[[], Iterable[Finding]]] = (
+        lambda: find_outdated(chapter, notebook, read.points),
+        lambda: broken_rules(name, notebook),
+        lambda: outdated_time_sentence(name, notebook),
+        lambda: broken_cells(name, notebook),
+        lambda: () if not read.checks else broken_holding(name, notebook, read.checks, read.places),
+    )
+    return [finding for rule in rules for finding in _applied(name, rule)]
+
+
+def _applied(name: str, rule: Callable[[], Iterable[Finding]]) -> Iterator[Finding]:
+    """Yield the findings of a rule; nbgrader has errors of its own for cells that it cannot release."""
+    try:
+        yield from rule()
+    except (CourseError, RuntimeError) as error:
+        yield Finding(name, None, str(error))
+
+
+def placed(finding: Finding, text: str) -> Finding:
+    """Return a finding in a notebook with its line: of what it names, or of its cell, or the first."""
+    if finding.line is not None:
+        return finding
+    lines = text.splitlines()
+    first = _line(lines, f'"id": "{finding.cell}"', 0) if finding.cell else None
+    named = re.findall(r"(?:['`]|given file )([^'` ]+)", finding.message.partition("\n")[0])
+    after = (_line(lines, f'"{name}"', first or 0) for name in named)
+    end = len(lines) if first is None else _line(lines, '"cell_type":', first) or len(lines)
+    inside = next((line for line in after if line is not None and line < end), first)
+    return replace(finding, line=1 if inside is None else inside + 1)
+
+
+def _line(lines: Sequence[str], wanted: str, start: int) -> int | None:
+    return next((index for index in range(start, len(lines)) if wanted in lines[index]), None)

@@ -1,0 +1,82 @@
+"""The rules for a course as a whole: its `course.yaml`, syllabus and worlds, and folders that belong to no chapter."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from autograder import layout
+from autograder.author.course.chapter_rules import KINDS, ReadChapter, placed
+from autograder.author.course.findings import Finding
+from autograder.author.course.suite_rules import shown
+from autograder.author.course.syllabus import Syllabus, find_coverage
+from autograder.author.course.sync import Chapter
+from autograder.author.course.yaml_files import read_yaml
+from sim import WorldError, load_world
+
+
+def broken_course_file() -> tuple[Finding, ...]:
+    """Return what is wrong with the `course.yaml` of this process. Nothing else of a course can be read without it."""
+    root = Path(os.environ.get(layout.COURSE_VARIABLE) or layout.ROOT)
+    path = root / layout.COURSE_FILE
+    return read_yaml(path, str(path)).findings if path.is_file() else ()
+
+
+def broken_course(read: Mapping[str, ReadChapter], *, whole: bool) -> list[Finding]:
+    """Return what is wrong with the course besides its chapters.
+
+    Args:
+        read: chapters by their names.
+        whole: whether these are all chapters. What only a part of them shows is not looked at otherwise.
+    """
+    found = list(_coverage(read, whole))
+    return [*_folders(), *_worlds(), *found] if whole else found
+
+
+def _folders() -> Iterator[Finding]:
+    """Yield folders that have the place of a chapter's and not its name, so that nothing would look at them."""
+    known = layout.assignments()
+    for folder in sorted(path for path in layout.CHAPTERS.glob("*") if path.is_dir() and path.name[:1] not in "._"):
+        if folder.name not in known and (books := sorted(path.name for path in folder.glob("*.ipynb"))):
+            message = f"is no chapter: it has no {folder.name}.ipynb, and it has {', '.join(books)}"
+            yield Finding(shown(folder), None, message)
+    for folder in sorted(path for path in layout.CHECKS.glob("ch*") if path.is_dir()):
+        name = folder.name.removeprefix("ch")
+        if name not in known and any((folder / kind).is_dir() for kind in KINDS):
+            yield Finding(shown(folder), None, f"holds checks of {name!r}, and there is no such chapter")
+
+
+def _worlds() -> Iterator[Finding]:
+    for path in sorted(layout.WORLDS.glob("*.yaml")) if layout.WORLDS.is_dir() else ():
+        try:
+            if "image:" not in path.read_text(encoding="utf-8"):  # a map for map_server
+                load_world(path)
+        except WorldError as error:
+            yield Finding(shown(path), None, f"{error.problem}. {error.remedy}", error.line)
+
+
+def _coverage(read: Mapping[str, ReadChapter], whole: bool) -> Iterator[Finding]:
+    """Yield what differs between the syllabus and the chapters that can be read."""
+    path = layout.course().root / layout.course().syllabus
+    if not path.is_file():
+        yield Finding(shown(path), None, "is missing: it names the objectives of the course")
+        return
+    file = read_yaml(path, shown(path), "syllabus.yaml")
+    yield from file.findings
+    if file.findings:
+        return
+    usable = [(name, each.notebook, each.hidden) for name, each in read.items()]
+    covered = find_coverage(
+        Syllabus.read(path), [(name, book, hidden) for name, book, hidden in usable if book and hidden is not None]
+    )
+    complete = whole and all(each.notebook and each.hidden is not None for each in read.values())
+    lines = {place[-1]: line for place, line in file.lines.items() if len(place) == 2}
+    for finding in covered.findings:
+        if finding.file != layout.course().syllabus:
+            chapter = Chapter(layout.CHAPTERS / finding.file.removesuffix(".ipynb"))
+            text = chapter.notebook_path.read_text(encoding="utf-8")
+            yield replace(placed(finding, text), file=shown(chapter.notebook_path))
+        elif complete:
+            yield replace(finding, line=next((n for key, n in lines.items() if repr(key) in finding.message), 1))

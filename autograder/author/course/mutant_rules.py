@@ -1,0 +1,122 @@
+"""The rules for `mutants.yaml` and the files beside it: each edit fits the reference, and each check has a mutant."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from pathlib import Path
+from typing import Any
+
+from autograder import layout
+from autograder.author.course.exceptions import CourseError
+from autograder.author.course.findings import Finding
+from autograder.author.course.schema_sentences import Place, meant
+from autograder.author.course.yaml_files import YamlFile, read_yaml
+
+MUTANTS, SURVIVORS, SNAPSHOT = "mutants.yaml", "survivors.yaml", "mutants.snapshot.yaml"
+
+
+def read_or_raise(path: Path) -> Any:
+    """Return the data of one of these files.
+
+    Raises:
+        CourseError: it is not YAML, or breaks its schema. The message has all that is wrong, line by line.
+    """
+    read = read_yaml(path, str(path))
+    if read.findings:
+        raise CourseError("\n".join(map(str, read.findings)))
+    return read.data
+
+
+def broken_mutants(
+    folder: Path, shown: str, checks: Collection[str] | None, sources: Collection[str]
+) -> Iterator[Finding]:
+    """Yield what is wrong with the files of mutants of a chapter.
+
+    Args:
+        folder: the folder of the chapter's checks.
+        shown: the path by which findings name this folder.
+        checks: the ids of the hidden checks; None if they are not known.
+        sources: the folders of the reference that an answer is made of; none if they are not known.
+    """
+    for name in (SURVIVORS, SNAPSHOT):
+        if (folder / name).is_file():
+            yield from read_yaml(folder / name, f"{shown}/{name}").findings
+    file = _read_mutants(folder, shown)
+    yield from file.findings
+    seen: set[str] = set()
+    for place, entry in _entries(file):
+        if (id := str(entry.get("id"))) in seen:
+            yield file.finding((*place, "id"), f"two mutants are called `{id}`")
+        seen.add(id)
+        check = str(entry.get("check"))
+        if checks is not None and "check" in entry and check not in checks:
+            yield file.finding((*place, "check"), f"the hidden suite has no check `{check}`: {meant(check, [*checks])}")
+        yield from _edits(file, place, entry, sources)
+
+
+def unproven_checks(folder: Path, shown: str, checks: Collection[str]) -> Iterator[Finding]:
+    """Yield the hidden checks for which no mutant was written, and which none is recorded to fail."""
+    file = _read_mutants(folder, shown)
+    entries = [entry for _, entry in _entries(file)]
+    proven = {str(entry.get("check")) for entry in entries}
+    if (folder / SNAPSHOT).is_file():
+        snapshot = read_yaml(folder / SNAPSHOT, f"{shown}/{SNAPSHOT}")
+        rows = {} if snapshot.findings else snapshot.data or {}
+        proven |= {check for entry in entries for check in _recorded(rows.get(entry.get("id"), ()), checks)}
+    for check in checks:
+        if check not in proven:
+            yield file.finding((), f"no mutant fails the check `{check}`: add one with an error that it finds")
+
+
+def _read_mutants(folder: Path, shown: str) -> YamlFile:
+    if (path := folder / MUTANTS).is_file():
+        return read_yaml(path, f"{shown}/{MUTANTS}")
+    missing = Finding(f"{shown}/{MUTANTS}", None, "is missing: it holds flawed versions of the reference", 1)
+    return YamlFile(missing.file, None, {}, (missing,))
+
+
+def _entries(file: YamlFile) -> Iterator[tuple[Place, dict[str, Any]]]:
+    """Yield the place of each mutant of a file, and what the file says of it; its schema says what is none."""
+    listed = file.data.get("mutants") if isinstance(file.data, dict) else None
+    for index, entry in enumerate(listed if isinstance(listed, list) else ()):
+        if isinstance(entry, dict):
+            yield ("mutants", str(index)), entry
+
+
+def _recorded(row: Any, checks: Collection[str]) -> Collection[str]:
+    """Return the checks that a row of the snapshot says are failed."""
+    failed = row["fails"] if isinstance(row, dict) else row
+    return checks if failed == "all" else failed
+
+
+def _edits(file: YamlFile, place: Place, entry: dict[str, Any], sources: Collection[str]) -> Iterator[Finding]:
+    """Yield what is wrong with the edits of a mutant, each of which changes what the ones before it left."""
+    texts: dict[str, str | None] = {}
+    edits = entry.get("edits")
+    for index, edit in enumerate(edits if isinstance(edits, list) else ()):
+        if not isinstance(edit, dict):
+            continue
+        here = (*place, "edits", str(index))
+        name = edit.get("file", file.data.get("file"))
+        if not isinstance(name, str):
+            yield file.finding(here, "says no `file`, and there is none for all mutants at the top of the file")
+            continue
+        at = (*here, "file") if "file" in edit else ("file",)
+        path = layout.SOLUTIONS / name
+        if sources and name.partition("/")[0] not in sources:
+            yield file.finding(at, f"`{name}` is in no package of the suite: {meant(name, [*sources])}")
+            continue
+        if name not in texts:
+            texts[name] = path.read_text(encoding="utf-8") if path.is_file() else None
+        text, find, put = texts[name], edit.get("find"), edit.get("replace")
+        if "write" in edit:
+            texts[name] = str(edit["write"])
+        elif text is None:
+            yield file.finding(at, f"the reference has no file {layout.course().solutions}/{name}")
+        elif isinstance(find, str) and isinstance(put, str):
+            if text.count(find) != 1:
+                times = f"{text.count(find)} times" if text.count(find) else "nowhere"
+                yield file.finding((*here, "find"), f"{find!r} stands {times} in {name}, and has to stand there once")
+            elif find == put:
+                yield file.finding((*here, "replace"), f"the edit puts {put!r} in the place of itself")
+            texts[name] = text.replace(find, put)

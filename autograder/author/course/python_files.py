@@ -1,0 +1,85 @@
+"""Reads the Python files of a course without running them: their syntax, their names, and the checks in them."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from autograder.author.course.findings import Finding
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+@dataclass(frozen=True)
+class PythonFile:
+    """A Python file.
+
+    Attributes:
+        shown: the path by which findings name it.
+        tree: what it holds, or nothing if it does not parse.
+        findings: why it does not parse.
+    """
+
+    shown: str
+    tree: ast.Module = field(default_factory=lambda: ast.Module([], []))
+    findings: tuple[Finding, ...] = ()
+
+    def finding(self, node: ast.AST | None, message: str) -> Finding:
+        """Return a finding at a node, or in the first line."""
+        return Finding(self.shown, None, message, getattr(node, "lineno", 1))
+
+    def functions(self) -> list[Function]:
+        """Return the functions at the top of the file."""
+        return [node for node in self.tree.body if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
+
+    def constants(self) -> Iterator[tuple[str, ast.expr]]:
+        """Yield the names in capitals that the file sets at its top, with their values."""
+        for node in self.tree.body:
+            targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+            value = getattr(node, "value", None)
+            for target in targets:
+                if isinstance(target, ast.Name) and target.id.isupper() and value is not None:
+                    yield target.id, value
+
+
+def read_python(path: Path, shown: str) -> PythonFile:
+    """Read a Python file that is there."""
+    try:
+        return PythonFile(shown, ast.parse(path.read_bytes(), filename=shown))
+    except SyntaxError as error:
+        return PythonFile(shown, findings=(Finding(shown, None, f"is not Python: {error.msg}", error.lineno or 1),))
+    except ValueError as error:  # a null byte
+        return PythonFile(shown, findings=(Finding(shown, None, f"is not Python: {error}", 1),))
+
+
+def decorator_name(decorator: ast.expr) -> str:
+    """Return the name of a decorator, without its module and its arguments."""
+    function = decorator.func if isinstance(decorator, ast.Call) else decorator
+    return function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
+
+
+def decorators(function: Function) -> dict[str, ast.expr]:
+    """Return the decorators of a function by their names."""
+    return {decorator_name(each): each for each in function.decorator_list}
+
+
+def declaration(function: Function) -> ast.Call | None:
+    """Return the decorator that declares a function a check, or None: it is called `check`, or says points."""
+    calls = (each for each in function.decorator_list if isinstance(each, ast.Call))
+    return next((call for call in calls if decorator_name(call) == "check" or argument(call, "points")), None)
+
+
+def argument(call: ast.Call, name: str) -> ast.expr | None:
+    """Return the value of a named argument of a call, or None."""
+    return next((word.value for word in call.keywords if word.arg == name), None)
+
+
+def literal(node: ast.expr | None) -> Any:
+    """Return the value of an expression without names and calls, or None."""
+    try:
+        return None if node is None else ast.literal_eval(node)
+    except ValueError:
+        return None

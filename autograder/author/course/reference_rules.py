@@ -1,0 +1,55 @@
+"""The rules for the packages of the reference, and for what lies beside a chapter's suites."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Collection, Iterator
+from pathlib import Path
+
+from autograder import layout
+from autograder.author.course.findings import Finding
+from autograder.author.course.python_files import read_python
+from autograder.author.course.schema_sentences import meant
+from autograder.author.course.suite_rules import shown
+
+MANIFEST = "package.xml"
+
+
+def broken_packages(packages: Collection[str]) -> Iterator[Finding]:
+    """Yield what is wrong with these folders of the reference. One without a manifest is none of ROS's packages."""
+    for name in packages:
+        folder = layout.SOLUTIONS / name
+        if (folder / MANIFEST).is_file():
+            yield from _manifest(folder / MANIFEST, name)
+        for path in sorted(folder.rglob("*.py")):
+            yield from read_python(path, shown(path)).findings
+
+
+def broken_python(folder: Path) -> Iterator[Finding]:
+    """Yield the Python files of a chapter's checks that do not parse, besides those of the suites themselves."""
+    for path in sorted([*folder.glob("*.py"), *folder.glob("support/**/*.py"), *folder.glob("*/conftest.py")]):
+        yield from read_python(path, shown(path)).findings
+
+
+def broken_variants(folder: Path, packages: Collection[str]) -> Iterator[Finding]:
+    """Yield the variants of a chapter that change nothing that is graded."""
+    for variant in sorted(path for path in folder.glob("*") if path.is_dir()):
+        for package in sorted(path.name for path in variant.iterdir()):
+            if packages and package not in packages:
+                yield Finding(
+                    shown(variant / package),
+                    None,
+                    f"`{package}` is in no package of the suite: {meant(package, [*packages])}",
+                )
+
+
+def _manifest(path: Path, package: str) -> Iterator[Finding]:
+    try:
+        name = ET.parse(path).getroot().findtext("name")
+    except ET.ParseError as error:
+        yield Finding(shown(path), None, f"is not XML: {error}", error.position[0])
+        return
+    if name != package:
+        lines = path.read_text(encoding="utf-8").splitlines()
+        line = next((number for number, text in enumerate(lines, 1) if "<name>" in text), 1)
+        yield Finding(shown(path), None, f"names the package {name!r}, and its folder is called {package!r}", line)

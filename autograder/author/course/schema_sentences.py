@@ -1,0 +1,99 @@
+"""Says in a sentence what breaks a JSON schema, and where.
+
+The sentence of `anyOf`, `pattern` and the like is the `description` that stands beside them in the schema.
+"""
+
+from __future__ import annotations
+
+import difflib
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from jsonschema import Draft202012Validator, ValidationError
+
+Place = tuple[str, ...]  # keys and indices from the top of the data to a part of them
+SCHEMAS = Path(__file__).with_name("files.schema.json")
+IN_WORDS = {
+    "object": "a mapping",
+    "array": "a list",
+    "string": "a text",
+    "integer": "a whole number",
+    "boolean": "true or false",
+}
+KINDS = ((bool, "true or false"), (str, "a text"), ((int, float), "a number"), (Mapping, "a mapping"), (list, "a list"))
+
+
+def broken_schema(data: Any, schema: Mapping[str, Any], whole: str = "the file") -> Iterator[tuple[Place, str]]:
+    """Yield each place of plain data that breaks a schema, with what is wrong there. A sentence comes once.
+
+    Sentences call the data `whole`, and a part of them by its place.
+    """
+    told: dict[tuple[Place, str], None] = {}
+    for error in sorted(Draft202012Validator(schema).iter_errors(data), key=lambda each: [*map(str, each.path)]):
+        place = tuple(map(str, error.absolute_path))
+        here = f"`{_named(place)}`{_id(data, error)}" if place else whole
+        for more, sentence in _sentences(error, here):
+            told.setdefault(((*place, *more), sentence))
+    yield from told
+
+
+@cache
+def file_schema(name: str) -> dict[str, Any]:
+    """Return the schema of the file of this name, such as `mutants.yaml`."""
+    schemas: dict[str, Any] = json.loads(SCHEMAS.read_text(encoding="utf-8"))
+    return {"$ref": f"#/$defs/{name}", "$defs": schemas["$defs"]}
+
+
+def meant(name: str, known: Iterable[str]) -> str:
+    """Return the end of a sentence about an unknown name: what its author may have meant, or what there is."""
+    known = list(known)
+    close = difflib.get_close_matches(name, known, n=1)
+    return f"did you mean `{close[0]}`?" if close else f"there are: {', '.join(known) or 'none'}"
+
+
+def _sentences(error: Any, here: str) -> Iterator[tuple[Place, str]]:
+    """Yield what is wrong at an error of jsonschema's, which may be several keys below its place, called `here`."""
+    schema, rule, wanted, instance = error.schema, error.validator, error.validator_value, error.instance
+    if rule == "additionalProperties" and wanted is False:
+        known = list(schema["properties"])
+        for key in (str(each) for each in instance if each not in known):
+            yield (key,), f"{here} has an unknown key `{key}`: {meant(key, known)}"
+    elif rule == "required":
+        for key in wanted:
+            if key not in instance:
+                yield (), f"{here} has no `{key}`"
+    elif rule == "dependentRequired":
+        for key, others in wanted.items():
+            for other in others if key in instance else ():
+                if other not in instance:
+                    yield (), f"{here} has `{key}`, and no `{other}`"
+    elif rule == "type":
+        names = [IN_WORDS[name] for name in ([wanted] if isinstance(wanted, str) else wanted)]
+        quoted = ": put it in quotes" if "string" in wanted and not isinstance(instance, (Mapping, list)) else ""
+        yield (), f"{here} must be {' or '.join(names)}, not {_kind(instance)}{'' if instance is None else quoted}"
+    elif rule == "minItems":
+        yield (), f"{here} needs {wanted} entries, and has {len(instance)}"
+    else:
+        yield (), f"{here}: {schema.get('description', error.message)}"
+
+
+def _named(place: Place) -> str:
+    """Return a place as a person writes it: `mutants[2].edits[0].find`."""
+    return "".join(f"[{part}]" if part.isdigit() else f".{part}" for part in place).lstrip(".")
+
+
+def _id(data: Any, error: ValidationError) -> str:
+    """Return the `id` of the innermost mapping around an error that has one, in brackets, or an empty string."""
+    found, inside = "", data
+    for part in error.absolute_path:
+        inside = inside[part]
+        if isinstance(inside, Mapping) and isinstance(inside.get("id"), str):
+            found = f" ({inside['id']})"
+    return found
+
+
+def _kind(value: object) -> str:
+    return next((name for kind, name in KINDS if isinstance(value, kind)), "empty")

@@ -1,0 +1,194 @@
+"""The rules for the modules of a suite, which are read and not run: what `__init__.py` says, how checks are declared.
+
+`autograder.suite.suites` ends at the first mistake, and Python has its own words for many. Here each one is a sentence
+with its file and line, all at once.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from autograder import layout
+from autograder.author.course.findings import Finding
+from autograder.author.course.fixture_rules import unknown_fixtures
+from autograder.author.course.python_files import (
+    Function,
+    PythonFile,
+    argument,
+    declaration,
+    decorator_name,
+    decorators,
+    literal,
+    read_python,
+)
+from autograder.author.course.schema_sentences import meant
+from autograder.suite.declaration import PREFIX
+
+TEXTS = ("PACKAGES", "MODULES", "GROUPS", "FOLDERS", "READS", "OWN_TESTS")
+KNOWN = (*TEXTS, "BUILD_MAY_FAIL")
+NEEDED = ("PACKAGES", "MODULES")
+ARGUMENTS = ("points", "group", "holds", "needs", "after", "doc")  # of `check`
+HELPERS = ("__init__.py", "conftest.py")
+
+
+@dataclass(frozen=True)
+class ReadSuite:
+    """A suite as it is written, whether it can be run or not.
+
+    Attributes:
+        findings: what is wrong with it.
+        places: file and line of each check, by its id.
+        sources: the folders of the reference that it grades, as far as they can be told.
+        is_complete: whether `places` has every check.
+    """
+
+    findings: tuple[Finding, ...]
+    places: dict[str, tuple[str, int]]
+    sources: tuple[str, ...]
+    is_complete: bool = False
+
+
+def shown(path: Path) -> str:
+    """Return the path by which findings name a file: below the course's folder, where it lies there."""
+    root = layout.course().root
+    return str(path.relative_to(root) if path.is_relative_to(root) else path)
+
+
+def read_suite(assignment: str, kind: str) -> ReadSuite:
+    """Read the suite of an assignment of this kind, "visible" or "hidden"."""
+    folder = layout.CHECKS / f"ch{assignment}" / kind
+    top = folder / "__init__.py"
+    if not top.is_file():
+        missing = Finding(shown(top), None, f"there are no {kind} checks: the file has to name PACKAGES and MODULES")
+        return ReadSuite((missing,), {}, ())
+    described = read_python(top, shown(top))
+    said = {name: literal(value) for name, value in described.constants()}
+    files = {
+        path.stem: read_python(path, shown(path)) for path in sorted(folder.glob("*.py")) if path.name not in HELPERS
+    }
+    found = [*described.findings, *(finding for file in files.values() for finding in file.findings)]
+    if not described.findings:
+        found += _described(described, folder, files)
+    listed = _texts(said.get("MODULES"))
+    ordered = [name for name in listed if name in files] or list(files)
+    broken = [name for name in ordered if files[name].findings or _has_tables(files[name])]
+    places: dict[str, tuple[str, int]] = {}
+    for name in ordered:
+        found += _checks(files[name], places, any(map(_has_tables, files.values())))
+    found += unknown_fixtures(folder, [files[name] for name in ordered])
+    sources = _texts(said.get("PACKAGES")) + _texts(said.get("FOLDERS"))
+    return ReadSuite(tuple(found), places, sources, len(ordered) == len(listed) and not broken)
+
+
+def _described(file: PythonFile, folder: Path, modules: dict[str, PythonFile]) -> Iterator[Finding]:
+    """Yield what is wrong with the `__init__.py` of a suite."""
+    values = dict(file.constants())
+    for name, value in values.items():
+        said = literal(value)
+        if name not in KNOWN:
+            yield file.finding(value, f"`{name}` is nothing that a suite says: {meant(name, list(KNOWN))}")
+        elif name in TEXTS and isinstance(said, str):
+            yield file.finding(value, f"`{name}` is a text, and not a tuple: write {name} = ({said!r},), with a comma")
+        elif name in TEXTS and said and not _texts(said):
+            yield file.finding(value, f"`{name}` must be a tuple of texts, such as {name} = ('one', 'two')")
+        elif name == "BUILD_MAY_FAIL" and said not in (True, False):
+            yield file.finding(value, "`BUILD_MAY_FAIL` must be True or False")
+    yield from (file.finding(None, f"has no `{name}`") for name in NEEDED if name not in values)
+    listed, packages, folders, read = (
+        _texts(literal(values.get(name))) for name in ("MODULES", "PACKAGES", "FOLDERS", "READS")
+    )
+    for name in listed:
+        if name not in modules:
+            yield file.finding(values["MODULES"], f"`MODULES` names {name!r}, and there is no {name}.py beside it")
+    for name in packages + folders:
+        if not (layout.SOLUTIONS / name).is_dir():
+            where = values["PACKAGES" if name in packages else "FOLDERS"]
+            yield file.finding(
+                where, f"names {name!r}, and the reference has no folder {layout.course().solutions}/{name}"
+            )
+    for name in read:
+        if not (layout.course().root / name).exists():
+            yield file.finding(values["READS"], f"`READS` names {name!r}, and the course has no such file or folder")
+    if listed:
+        for name, module in modules.items():
+            if name not in listed and (first := next(_declared(module), None)):
+                message = f"no check of this file counts: `MODULES` in {folder.name}/__init__.py does not name {name!r}"
+                yield module.finding(first, message)
+
+
+def _checks(file: PythonFile, places: dict[str, tuple[str, int]], has_tables: bool) -> Iterator[Finding]:
+    """Yield what is wrong with the checks that a module declares, and write down where each stands."""
+    for node in file.tree.body:
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
+            yield from _dependencies(file, node.value, places, None, has_tables)
+    for function in file.functions():
+        call = declaration(function)
+        if call is None:
+            if function.name.startswith(PREFIX):
+                places.setdefault(function.name.removeprefix(PREFIX), (file.shown, function.lineno))
+                message = (
+                    f"`{function.name}` is no check, and its points count for nothing: put @check(points=...) above"
+                )
+                yield file.finding(function, message)
+            continue
+        if not function.name.startswith(PREFIX):
+            yield file.finding(function, f"the check `{function.name}` must have a name that begins with {PREFIX!r}")
+        id = function.name.removeprefix(PREFIX)
+        if not (ast.get_docstring(function) or "").strip():
+            yield file.finding(function, f"the check `{id}` has no docstring, the sentence that the student reads")
+        for word in call.keywords:
+            if word.arg not in ARGUMENTS:
+                message = f"`{word.arg}` is no argument of @check: {meant(str(word.arg), ARGUMENTS)}"
+                yield file.finding(word.value, message)
+        points = literal(argument(call, "points"))
+        if argument(call, "points") is None:
+            yield file.finding(call, f"the check `{id}` does not say its `points`")
+        if isinstance(points, (int, float)) and points <= 0:
+            yield file.finding(call, f"the check `{id}` is worth {points}: points are above 0")
+        above = function.decorator_list[: function.decorator_list.index(call)]
+        if any(decorator_name(each) == "hint" for each in above):
+            yield file.finding(above[0], f"the hints of the check `{id}` must stand below @check, not above")
+        if id in places:
+            other = "{}:{}".format(*places[id])
+            yield file.finding(function, f"two checks are called `{id}`: the other one is in {other}")
+        yield from _dependencies(file, call, places, id, has_tables)
+        places.setdefault(id, (file.shown, function.lineno))
+
+
+def _dependencies(
+    file: PythonFile, call: ast.Call, places: dict[str, tuple[str, int]], id: str | None, has_tables: bool
+) -> Iterator[Finding]:
+    """Yield the names of other checks that a declaration has, and that do not stand before it."""
+    whose = "the group" if id is None else f"the check `{id}`"
+    for name in ("needs", "after"):
+        said = literal(argument(call, name))
+        if isinstance(said, str):
+            message = f"`{name}` of {whose} is a text, and not a tuple: write {name}=({said!r},), with a comma"
+            yield file.finding(argument(call, name), message)
+        elif id is not None:
+            for other in _texts(said):
+                if other not in places and not has_tables:
+                    message = (
+                        f"the check `{id}` names `{other}` in `{name}`, and no check of this name stands before it"
+                    )
+                    yield file.finding(argument(call, name), message)
+
+
+def _declared(module: PythonFile) -> Iterator[Function]:
+    """Yield the functions of a module that are checks, or that pytest would take for one."""
+    for function in module.functions():
+        if function.name.startswith(PREFIX) or declaration(function) or "check_each_row" in decorators(function):
+            yield function
+
+
+def _has_tables(file: PythonFile) -> bool:
+    """Return whether a module declares checks by the rows of a table, whose names cannot be read."""
+    return any("check_each_row" in decorators(function) for function in file.functions())
+
+
+def _texts(value: object) -> tuple[str, ...]:
+    """Return a tuple or list of texts as a tuple, and nothing for any other value."""
+    return tuple(value) if isinstance(value, (tuple, list)) and all(isinstance(each, str) for each in value) else ()

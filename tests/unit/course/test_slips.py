@@ -1,0 +1,223 @@
+"""An author's slips: each is a sentence with its file and line, and `autograder course check` says all at once."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from autograder import layout
+from tests.unit.course.check_server import END
+
+CHECKS = "checks/ch10_mapping"
+SUITE = f"{CHECKS}/hidden/__init__.py"
+READINGS = f"{CHECKS}/hidden/readings.py"
+MUTANTS = f"{CHECKS}/mutants.yaml"
+NOTEBOOK = "chapters/10_mapping/10_mapping.ipynb"
+CheckCourse = Callable[[], str]
+EXTRA_MODULE = '''"""More."""
+
+from autograder.suite import expect, group
+
+check = group("readings")
+
+
+@check(points=1, holds="counts")
+def test_more():
+    """It does more."""
+    expect(True, "no")
+'''
+
+# The file, the text in it, the text in its place, the line of the finding (and its file, if that is another one), and
+# the beginning of its sentence. A file that the chapter does not have is made.
+SLIPS = [
+    (MUTANTS, "    check: nearest\n\n  - id: first", "\n  - id: first", "5", "`mutants[0]` (farthest) has no `check`"),
+    (MUTANTS, "find: min(filter, ", "", "7", "`mutants[0].edits[0]` (farthest) has `replace`, and no `find`"),
+    (
+        MUTANTS,
+        "find: min(filter",
+        "find: min(filer",
+        "7",
+        "'min(filer' stands nowhere in mapping/mapping/nearest.py, and",
+    ),
+    (
+        MUTANTS,
+        "title: takes the l",
+        "title: takes: the l",
+        "6",
+        "cannot be read as YAML: mapping values are not allowed",
+    ),
+    (
+        MUTANTS,
+        "title: takes the l",
+        "titel: takes the l",
+        "6",
+        "`mutants[0]` (farthest) has an unknown key `titel`: did",
+    ),
+    (
+        MUTANTS,
+        "mapping/nearest.py",
+        "mapping/nearset.py",
+        "3",
+        "the reference has no file solutions/mapping/mapping/near",
+    ),
+    (MUTANTS, "id: first", "id: farthest", "10", "two mutants are called `farthest`"),
+    (MUTANTS, "check: counts", "check: count", "25", "the hidden suite has no check `count`: did you mean `counts`?"),
+    (MUTANTS, "mutants:\n", "mutants: []\nold:\n", "1", "no mutant fails the check `nearest`: add one with an error"),
+    (f"{CHECKS}/survivors.yaml", None, "- because: it is\n  mutants: [a]\n", "1", "`[0]` has an unknown key `because`"),
+    (
+        SUITE,
+        '("readings",)',
+        '("readings")',
+        "4",
+        "`MODULES` is a text, and not a tuple: write MODULES = ('readings',)",
+    ),
+    (SUITE, '("readings",)', '("reading",)', "4", "`MODULES` names 'reading', and there is no reading.py beside it"),
+    (
+        SUITE,
+        "MODULES",
+        "BUILD_MAY = True\nMODULES",
+        "4",
+        "`BUILD_MAY` is nothing that a suite says: did you mean `BUILD_",
+    ),
+    (SUITE, '("mapping",)', '("maping",)', "3", "names 'maping', and the reference has no folder solutions/maping"),
+    (f"{CHECKS}/hidden/more.py", None, EXTRA_MODULE, "9", "no check of this file counts: `MODULES` in hidden/__init__"),
+    (
+        READINGS,
+        'after=("nearest",)',
+        'after=("nearest")',
+        "23",
+        "`after` of the check `counts` is a text, and not a tuple",
+    ),
+    (
+        READINGS,
+        'after=("nearest",)',
+        'after=("near",)',
+        "23",
+        "the check `counts` names `near` in `after`, and no check",
+    ),
+    (
+        READINGS,
+        'holds="silent"',
+        'holds="silence"',
+        "38",
+        "the hidden check 'silent' holds 'silence', which no cell names",
+    ),
+    (READINGS, "silent(robot:", "silent(robt:", "38", "`test_silent` asks for a fixture `robt`: did you mean `robot`?"),
+    (READINGS, "check(points=1", "check(point=1", "36", "`point` is no argument of @check: did you mean `points`?"),
+    (
+        READINGS,
+        '    """It publishes nothing',
+        "    # It publishes nothing",
+        "38",
+        "the check `silent` has no docstring, the",
+    ),
+    (READINGS, "shuffle(readings)", "shuffle(readings", "30", "is not Python: '(' was never closed"),
+    (READINGS, "import math", "import maths", "3", "cannot be imported: ModuleNotFoundError: No module named 'maths'"),
+    ("course.yaml", "title:", "titel:", "3", "the file has an unknown key `titel`: did you mean `title`?"),
+    ("syllabus.yaml", "objectives:", "objectives:\n  drive: Drive", "3", "no hidden check covers 'drive': Drive"),
+    (
+        "solutions/mapping/package.xml",
+        "<name>mapping",
+        "<name>maping",
+        "4",
+        "names the package 'maping', and its folder",
+    ),
+    (
+        NOTEBOOK,
+        '"hide": [',
+        '"hid": [',
+        "127, cell 'nearest'",
+        "the metadata are wrong: `course` has an unknown key `hid`",
+    ),
+    (NOTEBOOK, '"nbformat": 4,', '"nbformat": 4', "328", "is not JSON: Expecting ',' delimiter"),
+    (NOTEBOOK, '"exercise": "exercise"', '"exercise": "exercises"', "310", "there is no cell 'exercises'"),
+    ("worlds/hall.yaml", None, "name: hall\nboxs: []\n", "2", "the world has no field 'boxs'. Did you mean 'boxes'?"),
+]
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A new course with a new chapter."""
+    folder = tmp_path_factory.mktemp("slips") / "mine"
+    script = f"""if True:
+        import os
+        from pathlib import Path
+        from autograder.author.course.new import write_chapter, write_course
+        write_course(Path({str(folder)!r}))
+        os.environ["AUTOGRADER_COURSE"] = {str(folder)!r}
+        write_chapter("10_mapping")
+    """
+    subprocess.run([sys.executable, "-c", script], check=True, cwd=layout.ROOT)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def check(course: Path) -> Iterator[CheckCourse]:
+    """Run `autograder course check` on the course, and return what it says, with its exit status in the last line."""
+    command = [sys.executable, "-m", "tests.unit.course.check_server"]
+    environment = {**os.environ, "AUTOGRADER_COURSE": str(course)}
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, cwd=layout.ROOT, env=environment, stdin=pipe, stdout=pipe, text=True) as server:
+        assert server.stdin is not None
+        assert server.stdout is not None
+        asked, answers = server.stdin, server.stdout
+
+        def run() -> str:
+            asked.write("\n")
+            asked.flush()
+            said = ""
+            while not said.rpartition("\n")[2].startswith(END):
+                line = answers.readline()
+                assert line, said
+                said += f"\n{line.rstrip()}"
+            return said
+
+        yield run
+        asked.close()
+
+
+def slip(course: Path, file: str, text: str | None, put: str) -> Callable[[], None]:
+    """Make a slip in a file of the course, and return what undoes it."""
+    path = course / file
+    if text is None:
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(put)
+        return path.unlink
+    whole = path.read_text()
+    assert text in whole
+    path.write_text(whole.replace(text, put, 1))
+    return lambda: path.write_text(whole) and None
+
+
+@pytest.mark.promise("every slip is a sentence with its file and line")
+@pytest.mark.parametrize(("file", "text", "put", "line", "sentence"), SLIPS, ids=[each[4][:40] for each in SLIPS])
+def test_a_slip_is_a_sentence_with_its_file_and_line(
+    course: Path, check: CheckCourse, file: str, text: str | None, put: str, line: str, sentence: str
+) -> None:
+    undo = slip(course, file, text, put)
+    try:
+        said = check()
+    finally:
+        undo()
+    named = course / file if file == "course.yaml" else file
+    assert f"\n{named}:{line}: {sentence}" in said
+    assert said.endswith(f"\n{END} 1")
+    assert "Traceback" not in said
+
+
+def test_slips_in_several_files_are_all_said_at_once(course: Path, check: CheckCourse) -> None:
+    chosen = [SLIPS[index] for index in (0, 10, 17, 25, 26, 29)]
+    undo = [slip(course, *each[:3]) for each in chosen]
+    try:
+        said = check()
+    finally:
+        for each in undo:
+            each()
+    missing = [sentence for *_, sentence in chosen if sentence not in said]
+    assert missing == [SLIPS[17][4]]  # what a check holds is known where its suite can be imported
+    assert check() == f"\n{END} 0"
