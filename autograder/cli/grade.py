@@ -200,8 +200,8 @@ class Progress:
     def __exit__(self, *error: object) -> None:
         self._bar.render_finish()
 
-    def show(self, result: Result, name: str = "") -> None:
-        """Count one more result. A line names it by `name`, or else by its student."""
+    def show(self, result: Result, name: str = "", marks: str = "") -> None:
+        """Count one more result. A line names it by `name`, or else by its student; `marks` stands for its score."""
         self._bar.update(1)
         if self._plain:
-            echo(f"[{self._bar.pos}/{self._total}] {on_line(name or result.student)}: {score_text(result)}")
+            echo(f"[{self._bar.pos}/{self._total}] {on_line(name or result.student)}: {marks or score_text(result)}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import textwrap
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,9 +12,10 @@ from pathlib import Path
 import click
 
 from autograder import layout
+from autograder.author.course.chapter_rules import read_checks
 from autograder.author.verification import costs
 from autograder.author.verification.cases import cases
-from autograder.author.verification.claims import CaseKind, Verdict
+from autograder.author.verification.claims import CaseKind, Verdict, lost_checks
 from autograder.author.verification.generated_mutants import GeneratedMutant, generated_mutants
 from autograder.author.verification.mutation_run import MutantResult, run_mutants
 from autograder.author.verification.record import compare_again, record_failures
@@ -25,7 +27,7 @@ from autograder.cli.grade import Progress
 from autograder.cli.options import isolation_option, jobs_option, json_option, seed_option
 from autograder.cli.terminal import echo
 from autograder.cli.text_tables import score_text, table
-from autograder.result.model import write_atomically, write_json
+from autograder.result.model import Status, write_atomically, write_json
 from autograder.run.sandbox import Tier
 from autograder.suite import suites
 from autograder.suite.contract import counts
@@ -89,12 +91,19 @@ def verify(
     unchanged. The file mutants.md in the folder for the results contains the tables. It lists each named mutant that
     loses more than twice the points of its own check, unless its result or its entry in mutants.yaml gives a reason.
 
+    Nothing is graded if checks, mutants or the reference have mistakes that `autograder course check` also reports.
+
     The exit status is 0 if all of these requirements are met, and 1 otherwise.
     """
     if record and quick:
         raise click.UsageError("--record needs complete gradings: remove --quick")
     began = time.monotonic()
     chapters = assignments or tuple(suites.graded_assignments())
+    known = {*suites.graded_assignments()}.intersection(chapters)
+    if problems := [finding for name in sorted(known) for finding in read_checks(name).findings]:
+        for line in dict.fromkeys(map(str, problems)):
+            echo(line, err=True)
+        sys.exit(1)
     all_cases = [] if mutants_only else [case for name in chapters for case in cases(name, quick=quick)]
     chosen = [case for case in all_cases if not names or case.name in names]
     generated = {} if quick or record else {name: generated_mutants(name) for name in chapters}
@@ -107,7 +116,7 @@ def verify(
     with Progress(len(chosen)) as progress, WorkerPool(Tier(isolation), jobs) as workers:
 
         def show(verdict: Verdict) -> None:
-            progress.show(verdict.result, _name(verdict))
+            progress.show(verdict.result, _name(verdict), _marks(verdict))
 
         verdicts = verify_cases(chosen, seed=seed, out=out, workers=workers, on_verdict=show)
         chapter_results = [
@@ -121,7 +130,7 @@ def verify(
         for chapter in dict.fromkeys(verdict.assignment for verdict in verdicts):
             echo(record_failures(chapter, verdicts), err=True)
         verdicts = compare_again(verdicts)
-    rows = [(_name(each), score_text(each.result), each.mismatch or "as expected") for each in verdicts]
+    rows = [(_name(each), _marks(each), each.mismatch or "as expected") for each in verdicts]
     echo("\n" + table(rows, HEADINGS))
     mutant_costs = () if quick else costs.costs(verdicts)
     figures = summary(verdicts, time.monotonic() - began) | counts(chapters) | costs.counts(mutant_costs)
@@ -150,10 +159,12 @@ def _run_mutants(
     out: Path,
 ) -> ChapterMutationResult:
     """Grade the mutants of a chapter. Those that may survive are only graded if they were `named`."""
+    diffs = {mutant.id: mutant.diff for mutant in mutants}
 
     def show(result: MutantResult) -> None:
         if not result.killed:
             echo(f"{chapter.assignment} mutant {result.id} {result.killer or 'survives'}")
+            echo(textwrap.indent(diffs[result.id](), "    "))
 
     cache = out / chapter.assignment / "mutants.jsonl"
     skipped = {} if named else chapter.reasons
@@ -170,6 +181,13 @@ def _name(verdict: Verdict) -> str:
     is_unique = verdict.kind in (CaseKind.REFERENCE, CaseKind.RELEASE)
     kind = "" if is_unique else f"{verdict.kind.value} "
     return f"{verdict.assignment} {kind}{verdict.name}"
+
+
+def _marks(verdict: Verdict) -> str:
+    """Return the score of a submission, or how many checks it fails if only a part of them was run."""
+    if not verdict.only or verdict.result.status is not Status.GRADED:
+        return score_text(verdict.result)
+    return f"fails {len(lost_checks(verdict.result) & {*verdict.only})} of {len(verdict.only)} checks"
 
 
 def _to_json(verdict: Verdict) -> dict[str, str]:

@@ -20,6 +20,12 @@ from autograder.result.model import Result
 from autograder.suite import Outcome, suites
 
 RECORD = "`autograder verify --record`"
+# Diagnoses of a release that students cannot begin with. A suite may let them begin with packages that do not build.
+BROKEN = {
+    *(Kind.UNSAFE_ARCHIVE, Kind.UNREADABLE, Kind.UNCLEAR, Kind.NOTHING_SUBMITTED, Kind.NOTEBOOK_FAILED),
+    Kind.RESERVED_NAME,
+}
+NOT_BUILT = {Kind.SYNTAX_ERROR, Kind.BUILD_FAILED, Kind.MISSING_PACKAGE, Kind.HALF_WRITTEN_PACKAGE}
 
 
 class CaseKind(str, Enum):
@@ -36,7 +42,8 @@ class CaseKind(str, Enum):
 class Verdict:
     """The result of a test case, and a description of how it differs from the expected result.
 
-    `mismatch` is empty if the result is the expected one.
+    `mismatch` is empty if the result is the expected one. `only` names the checks that were run; empty means every
+    check. The points of a part of the checks are no marks.
     """
 
     assignment: str
@@ -44,6 +51,7 @@ class Verdict:
     name: str
     result: Result
     mismatch: str
+    only: tuple[str, ...] = ()
 
     @property
     def is_expected(self) -> bool:
@@ -60,8 +68,11 @@ def verify_full_marks(result: Result) -> str:
 
 
 def verify_zero(result: Result) -> str:
-    """Describe why an untouched student release does not have 0 points."""
-    return "" if result.score == 0 else f"it scores {result.score:g}"
+    """Describe why an untouched student release does not have 0 points, or has them because it is broken."""
+    if result.score:
+        return f"it scores {result.score:g}"
+    broken = BROKEN if suites.hidden(result.assignment).build_may_fail else BROKEN | NOT_BUILT
+    return f"students get it broken: {result.diagnosis.sentence}" if result.diagnosis.kind in broken else ""
 
 
 def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozenset()) -> str:

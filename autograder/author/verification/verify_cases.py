@@ -60,7 +60,7 @@ def verify_cases(
             mismatch = "; ".join(filter(None, (mismatch, _leak(result, folder))))
         if result.unjudged:
             mismatch = f"checks raised errors: {', '.join(result.unjudged)}; {folder / LOG} has the details"
-        return Verdict(case.assignment, case.kind, case.name, result, mismatch)
+        return Verdict(case.assignment, case.kind, case.name, result, mismatch, case.scope.only)
 
     verdicts = map_parallel(grade, _interleaved(cases), jobs=workers.count, on_done=on_verdict)
     by_name = {(verdict.assignment, verdict.name): verdict for verdict in verdicts}

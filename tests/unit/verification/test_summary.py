@@ -11,7 +11,7 @@ from autograder.author.verification.cases import cases
 from autograder.author.verification.claims import CaseKind, Verdict, verify_full_marks, verify_mutant, verify_zero
 from autograder.author.verification.mutants import mutants
 from autograder.author.verification.summary import summary
-from autograder.diagnosis import OK
+from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.result.model import CheckResult, Result
 from autograder.suite import Outcome, suites
 
@@ -55,6 +55,17 @@ def test_a_correct_answer_has_every_point() -> None:
 def test_an_untouched_release_gains_no_points() -> None:
     assert verify_zero(result(*(check.id for check in SUITE.checks))) == ""
     assert verify_zero(result("nan")).startswith("it scores")
+
+
+def test_a_release_that_students_cannot_begin_with_is_not_as_expected() -> None:
+    nothing = result(*(check.id for check in SUITE.checks))
+    unbuilt = replace(nothing, diagnosis=Diagnosis(Kind.BUILD_FAILED, "setup.py fails."))
+    assert verify_zero(unbuilt) == "students get it broken: setup.py fails."
+    assert verify_zero(replace(unbuilt, assignment="01_package_structure")) == ""  # whose students correct a build
+    unread = replace(nothing, assignment="01_package_structure", diagnosis=Diagnosis(Kind.NOTEBOOK_FAILED, "It ends."))
+    assert verify_zero(unread) == "students get it broken: It ends."
+    unfinished = replace(nothing, diagnosis=Diagnosis(Kind.UNFINISHED, "A part is still to be written."))
+    assert verify_zero(unfinished) == ""
 
 
 @pytest.mark.promise("Without `--record`, the exit status is 1 if a mutant passes the check that should catch it")
