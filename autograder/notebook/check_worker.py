@@ -62,12 +62,17 @@ def _drive(
     seconds: float,
     options: list[str],
     parameter_file: str,
+    published: dict[str, Any] | None,
 ) -> dict[str, Any]:
     from autograder.building.build import build_workspace
     from autograder.harness import SteppedHarness, drive
     from autograder.harness.drive import LISTENS, OFFERS
+    from autograder.notebook.publishing import messages_at, types_of
+    from sim import State
     from sim.codec import from_json
 
+    plan = published or {"types": {}, "steps": []}
+    types = types_of(plan)
     if parameter_file:
         path = workspace.scratch / "parameters.yaml"  # where the sandbox sees it
         path.write_text(parameter_file)
@@ -76,9 +81,16 @@ def _drive(
     try:
         build_workspace(workspace, (package,))
         with SteppedHarness(
-            workspace, package, executable, offers=OFFERS, listens=LISTENS, arguments=arguments
+            workspace, package, executable, offers={**OFFERS, **types}, listens=LISTENS, arguments=arguments
         ) as harness:
-            done = drive(harness, from_json(simulation), seconds)
+
+            def publish(state: State) -> bool:
+                """Publish what is planned for the end of the step that begins, as scans are; the drive goes on."""
+                for topic, message in messages_at(plan, types, state.time_ns + harness.tick_ns).items():
+                    harness.publish(topic, message)
+                return False
+
+            done = drive(harness, from_json(simulation), seconds, until=publish)
     except StudentError as error:
         return {"diagnosis": asdict(error.diagnosis)}
     done.recording.save(out / RECORDING)

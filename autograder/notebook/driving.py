@@ -13,6 +13,7 @@ from autograder import layout
 from autograder.diagnosis import Kind
 from autograder.exceptions import UsageError
 from autograder.notebook.notices import TROUBLE, Notice
+from autograder.notebook.publishing import EachStep, planned
 from autograder.notebook.worker_client import RECORDING, run_in_worker
 from sim import (
     DeadSector,
@@ -96,6 +97,7 @@ def drive(
     seed: int = 0,
     name: str | None = None,
     parameters: Parameters | None = None,
+    each_step: EachStep | None = None,
     workspace: str | Path = "ws",
 ) -> DriveReport | Notice:
     """Build the workspace, let a program steer the robot, and show the track.
@@ -113,13 +115,17 @@ def drive(
         seed: of the simulator's noise.
         name: what the node is called, instead of the name in its code.
         parameters: values by name, or the path of a parameter file.
+        each_step: what else is published: a function that is called for each 0.1 s of the drive, before it begins,
+            with the seconds since its start (0.1, 0.2, ...). It returns messages by topic, such as
+            `{"/mode": String(data="fast")}`, or None.
         workspace: the colcon workspace.
 
     Returns:
         The drive, or a notice that says in a sentence why the robot could not move.
 
     Raises:
-        UsageError: there is no such world, fault, parameter file or workspace.
+        UsageError: there is no such world, fault, parameter file or workspace, or what `each_step` returns cannot be
+            published.
     """
     if grading():
         return Notice("The robot stays in its dock while the notebook is graded.")
@@ -135,6 +141,7 @@ def drive(
         seconds=float(seconds),
         options=["-r", f"__node:={name}"] if name else [],
         parameter_file="" if parameters is None else _parameter_file(parameters),
+        published=None if each_step is None else planned(each_step, float(seconds), Path(workspace)),
     ) as (answer, folder):
         diagnosis = answer["diagnosis"]
         if diagnosis["kind"] != Kind.OK.value:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from std_msgs.msg import Float32
 
 from autograder.author.verification.mutants import write_reference
 from autograder.exceptions import UsageError
@@ -73,3 +74,47 @@ def test_a_missing_parameter_file_is_named(tmp_path: Path) -> None:
 def test_a_value_that_no_parameter_can_have_is_named() -> None:
     with pytest.raises(UsageError, match="a parameter is a bool, int, float, str or a list of these, not a complex"):
         drive(*PROGRAM, parameters={"speed": 1j})
+
+
+LISTENER = '''"""Drive as fast as /limit says."""
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+from std_msgs.msg import Float32
+
+
+class Listener(Node):
+    def __init__(self):
+        super().__init__('listener')
+        self.publisher = self.create_publisher(Twist, 'cmd_vel', 10)
+        self.create_subscription(Float32, 'limit', self.on_limit, 10)
+
+    def on_limit(self, limit):
+        command = Twist()
+        command.linear.x = limit.data
+        self.publisher.publish(command)
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Listener())
+'''
+
+
+def test_each_step_publishes_what_the_notebook_returns_at_its_instant(right: Path) -> None:
+    package = right / "src" / PROGRAM[0] / PROGRAM[0]
+    (package / "listener.py").write_text(LISTENER)
+    setup = package.parent / "setup.py"
+    text = setup.read_text()
+    assert text.count("'console_scripts': [") == 1
+    setup.write_text(
+        text.replace("'console_scripts': [", f"'console_scripts': ['listener = {PROGRAM[0]}.listener:main',")
+    )
+
+    def limit(t: float) -> dict[str, Float32] | None:
+        return {"/limit": Float32(data=0.25)} if 1.0 <= t < 2.0 else None
+
+    report = drive(PROGRAM[0], "listener", seconds=3, each_step=limit, workspace=right)
+    assert isinstance(report, DriveReport), report
+    assert [(round(t, 1), v) for t, v, _ in report.commands] == [(round(1 + n / 10, 1), 0.25) for n in range(10)]

@@ -1,0 +1,89 @@
+"""What a drive publishes besides the simulator: messages that a function of the notebook gives for each step.
+
+The function runs in the notebook's kernel, before the drive: the process that drives runs no code of a notebook. So it
+knows the time, and not what the robot does. Its messages travel as the bytes that ROS sends.
+"""
+
+from __future__ import annotations
+
+import base64
+import importlib
+import re
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from autograder.exceptions import UsageError
+
+STEP_SECONDS = 0.1  # of ROS time, between two calls: the simulator's scans come at the same instants
+TAKEN = ("/scan", "/odom", "/clock", "/cmd_vel")  # topics of the simulator and of the program that steers
+_TOPIC = re.compile(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
+
+EachStep = Callable[[float], "Mapping[str, Any] | None"]
+"""Gets the seconds since the start, and returns the messages to publish then, by topic, or None for no message."""
+
+
+def planned(each_step: EachStep, seconds: float, workspace: Path) -> dict[str, Any]:
+    """Call a function for each step of a drive, and return its messages as JSON: types by topic, and steps.
+
+    Args:
+        each_step: the function.
+        seconds: of ROS time, the length of the drive.
+        workspace: the colcon workspace of the program.
+
+    Raises:
+        UsageError: what it returned cannot be published. The message says when, and what to do.
+    """
+    from rclpy.serialization import serialize_message
+
+    types: dict[str, str] = {}
+    steps: list[dict[str, str]] = []
+    for number in range(1, round(seconds / STEP_SECONDS) + 1):
+        at = round(number * STEP_SECONDS, 1)
+        messages = each_step(at)
+        if not isinstance(messages or {}, Mapping):
+            raise UsageError(
+                f"at {at} s, each_step returned {messages!r}: return messages by topic, such as {{'/mode': String()}}"
+            )
+        step = {}
+        for name, message in (messages or {}).items():
+            topic = "/" + str(name).lstrip("/")
+            kind = _type_of(topic, message, workspace)
+            if types.setdefault(topic, kind) != kind:
+                raise UsageError(f"at {at} s, each_step returned a {kind} for {topic}, and before a {types[topic]}")
+            step[topic] = base64.b64encode(serialize_message(message)).decode("ascii")
+        steps.append(step)
+    return {"types": types, "steps": steps}
+
+
+def types_of(plan: Mapping[str, Any]) -> dict[str, type]:
+    """Return the message classes of a plan by topic."""
+    parts = {topic: kind.split("/") for topic, kind in plan["types"].items()}
+    return {topic: getattr(importlib.import_module(f"{part[0]}.msg"), part[-1]) for topic, part in parts.items()}
+
+
+def messages_at(plan: Mapping[str, Any], types: Mapping[str, type], time_ns: int) -> dict[str, Any]:
+    """Return the messages of a plan for an instant of the drive, in ns since its start; none between two steps."""
+    from rclpy.serialization import deserialize_message
+
+    number, rest = divmod(time_ns, round(STEP_SECONDS * 1e9))
+    step = plan["steps"][number - 1] if rest == 0 and 0 < number <= len(plan["steps"]) else {}
+    return {topic: deserialize_message(base64.b64decode(text), types[topic]) for topic, text in step.items()}
+
+
+def _type_of(topic: str, message: Any, workspace: Path) -> str:
+    """Return the ROS name of a message's type. Raises UsageError if it cannot be published on this topic."""
+    if not _TOPIC.fullmatch(topic):
+        raise UsageError(f"each_step names the topic {topic!r}, which is no name for a topic")
+    if topic in TAKEN:
+        raise UsageError(f"each_step cannot publish on {topic}: the simulator and your program use it")
+    package, _, _ = type(message).__module__.partition(".")
+    if not hasattr(type(message), "get_fields_and_field_types"):
+        raise UsageError(f"each_step returned {message!r} for {topic}: return a message, such as String(data='fast')")
+    where = getattr(sys.modules.get(package), "__file__", None)
+    if where is not None and Path(where).resolve().is_relative_to(workspace.resolve()):
+        raise UsageError(
+            f"each_step returned a message of {package}, which your workspace builds: use an installed type"
+        )
+    return f"{package}/msg/{type(message).__name__}"

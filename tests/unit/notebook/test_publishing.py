@@ -1,0 +1,54 @@
+"""What a function of the notebook lets a drive publish, step by step."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from std_msgs.msg import Int32, String
+
+from autograder.exceptions import UsageError
+from autograder.notebook.publishing import messages_at, planned, types_of
+
+
+def test_messages_arrive_at_their_steps_as_they_were(tmp_path: Path) -> None:
+    plan = planned(lambda t: {"mode": String(data=f"é {t}"), "/n": Int32(data=-7)} if t >= 0.2 else None, 0.4, tmp_path)
+    types = types_of(plan)
+    assert types == {"/mode": String, "/n": Int32}
+    assert messages_at(plan, types, 100_000_000) == {}
+    assert messages_at(plan, types, 200_000_000) == {"/mode": String(data="é 0.2"), "/n": Int32(data=-7)}
+    assert messages_at(plan, types, 250_000_000) == {}
+    assert messages_at(plan, types, 400_000_000) == {"/mode": String(data="é 0.4"), "/n": Int32(data=-7)}
+    assert messages_at(plan, types, 500_000_000) == messages_at(plan, types, 0) == {}  # after and before the drive
+
+
+@pytest.mark.parametrize(
+    ("returned", "said"),
+    [
+        ("fast", r"at 0.1 s, each_step returned 'fast': return messages by topic, such as {'/mode': String\(\)}"),
+        ({"/mode": "fast"}, r"each_step returned 'fast' for /mode: return a message, such as String\(data='fast'\)"),
+        ({"/scan": String()}, "each_step cannot publish on /scan: the simulator and your program use it"),
+        ({"a b": String()}, "each_step names the topic '/a b', which is no name for a topic"),
+    ],
+)
+def test_what_cannot_be_published_is_named(tmp_path: Path, returned: Any, said: str) -> None:
+    with pytest.raises(UsageError, match=said):
+        planned(lambda t: returned, 1.0, tmp_path)
+
+
+def test_a_topic_has_one_type(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"at 0.2 s, each_step returned a std_msgs/msg/Int32 for /n, and before a"):
+        planned(lambda t: {"/n": Int32() if t > 0.15 else String()}, 1.0, tmp_path)
+
+
+def test_a_type_that_the_workspace_builds_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "ws" / "install" / "own_msgs"
+    package.mkdir(parents=True)
+    text = "class Own:\n    get_fields_and_field_types = None\n"
+    (package / "__init__.py").write_text(text)
+    monkeypatch.syspath_prepend(package.parent)
+    import own_msgs
+
+    with pytest.raises(UsageError, match="a message of own_msgs, which your workspace builds: use an installed type"):
+        planned(lambda t: {"/own": own_msgs.Own()}, 1.0, tmp_path / "ws")
