@@ -21,7 +21,8 @@ class CheckView:
 
     Attributes:
         result: its result.
-        contract: the sentences that a program broke, by which it failed the check.
+        contract: the sentences that a program broke, by which it failed the check; of a check that failed with another
+            one, those that are not quoted above it.
         pictures: its pictures.
         also: the checks that failed as well.
         not_checked: the line about what could not be checked, or an empty string.
@@ -146,15 +147,18 @@ def page_view(result: Result, folder: Path | None, contract: Mapping[str, Senten
             pictures.setdefault(artifact.check if artifact.check in known else "", []).append(picture)
     found = causes(result.checks, result.diagnosis.sentence)
 
-    def view(check: CheckResult, cause: Cause | None = None) -> CheckView:
+    def view(check: CheckResult, cause: Cause | None = None, quoted: tuple[str, ...] = ()) -> CheckView:
         judged = check.outcome is Outcome.FAILED and check.message != result.diagnosis.sentence
         held = check.holds if judged else ()  # a program that does not run has broken none of them in particular
         sentences = dict.fromkeys(contract[name].text for name in held if name in contract)
-        shown = CheckView(check, tuple(sentences), tuple(pictures.get(check.id, ())))
+        told = tuple(sentence for sentence in sentences if sentence not in quoted)
+        shown = CheckView(check, told, tuple(pictures.get(check.id, ())))
         if cause is None:
             return shown
-        also = tuple(view(one) for one in cause.failed)
-        return replace(shown, also=also, not_checked=cause.not_checked, unnamed=cause.unnamed)
+        also: list[CheckView] = []
+        for one in cause.failed:
+            also.append(view(one, quoted=(*told, *(sentence for seen in also for sentence in seen.contract))))
+        return replace(shown, also=tuple(also), not_checked=cause.not_checked, unnamed=cause.unnamed)
 
     groups = []
     for name in dict.fromkeys(check.group for check in result.checks):

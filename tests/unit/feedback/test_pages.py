@@ -143,6 +143,16 @@ def test_a_failed_check_quotes_its_sentence_of_the_contract(
         assert "The contract:" not in Page(feedback.write(other, tmp_path)).text
 
 
+def test_a_sentence_of_the_contract_is_quoted_once_for_failures_with_one_cause(
+    make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
+) -> None:
+    first = make_check("first", "It stops.", 1, "graph", holds=("stale",))
+    others = [make_check(id, "It turns.", 1, "graph", holds=("stale", "near"), after=("first",)) for id in "ab"]
+    checks = tuple(CheckResult.of(check, Outcome.FAILED, "it drove") for check in (first, *others))
+    text = Page(feedback.write(make_result(checks=checks), tmp_path)).text
+    assert [text.count(f"The contract: {contract('02_nodes')[name].text}") for name in ("stale", "near")] == [1, 1]
+
+
 def test_a_link_that_is_no_web_address_is_not_followed(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
