@@ -11,22 +11,23 @@ Students' programs run in processes of their own, never in the kernel.
 
 from __future__ import annotations
 
+import importlib
 import os
+from typing import TYPE_CHECKING, Any
 
-from IPython.core.getipython import get_ipython
-
-from autograder.notebook import writefile
-from autograder.notebook.checking import check
-from autograder.notebook.driving import drive, side_by_side
-from autograder.notebook.graph import graph
 from autograder.notebook.notices import NotGraded
-from autograder.notebook.scoring import score
-from autograder.notebook.simulator_session import simulator
-from autograder.notebook.sourcing import source
 from autograder.ros import activate
 from autograder.ros.domains import Domain
 from autograder.ros.environment import LOGS_TO_STDOUT
 from sim.grading import grading
+
+if TYPE_CHECKING:
+    from autograder.notebook.checking import check
+    from autograder.notebook.driving import drive, side_by_side
+    from autograder.notebook.node_graph import graph
+    from autograder.notebook.scoring import score
+    from autograder.notebook.simulator_session import simulator
+    from autograder.notebook.sourcing import source
 
 __all__ = [
     "check",
@@ -39,6 +40,24 @@ __all__ = [
     "simulator",
     "source",
 ]
+# Imported when a notebook asks for them: a worker and the command line need few, and pay for each.
+_MODULES = {
+    "check": "checking",
+    "drive": "driving",
+    "graph": "node_graph",
+    "score": "scoring",
+    "side_by_side": "driving",
+    "simulator": "simulator_session",
+    "source": "sourcing",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import one of the functions that notebooks use."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    found = globals()[name] = getattr(importlib.import_module(f"{__name__}.{_MODULES[name]}"), name)
+    return found
 
 
 def ros() -> None:
@@ -53,6 +72,10 @@ def ros() -> None:
         RosError: there is no usable ROS 2; the message says how to fix it.
     """
     if not grading():
+        from IPython.core.getipython import get_ipython
+
+        from autograder.notebook import writefile
+
         writefile.register(get_ipython())
         # Where it is set, setuptools warns, and colcon shows a block "stderr" for a build without a fault.
         os.environ.pop("PYTHONDONTWRITEBYTECODE", None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 
-from autograder.notebook.writefile import digest, read_record
+from autograder.notebook.written_record import digest, read_record
 from autograder.submission.exercise_stubs import STILL_TO_BE_WRITTEN
 from autograder.submission.intake.counting import differs
 from autograder.submission.intake.exercises import SOURCE, text_of

@@ -7,8 +7,6 @@ that was changed since a cell last wrote it is copied to `replaced/` in its work
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 from pathlib import Path
 from typing import Any
@@ -19,16 +17,11 @@ from IPython.display import display
 
 from autograder.exceptions import UsageError
 from autograder.notebook.notices import Notice
+from autograder.notebook.written_record import RECORD, digest, read_record
 from autograder.result.model import write_json
 
 STUB = "YOUR CODE HERE"  # what a released cell holds where an answer belongs
-RECORD = ".writefile.json"  # in a workspace: by path, a digest of what a cell wrote last
 REPLACED = "replaced"
-
-
-def digest(text: str) -> str:
-    """Return the SHA-256 of a text, in hexadecimal digits."""
-    return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()
 
 
 def register(shell: InteractiveShell | None) -> None:
@@ -117,12 +110,3 @@ def _keep_copy(path: Path, home: Path) -> Path:
         number += 1
     copy.write_bytes(path.read_bytes())
     return copy
-
-
-def read_record(home: Path) -> dict[str, str]:
-    """Read what cells wrote last; nothing where there is no record, or none that can be read."""
-    try:
-        record = json.loads((home / RECORD).read_text())
-    except (OSError, ValueError):
-        return {}
-    return record if isinstance(record, dict) else {}

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from autograder.notebook.cells_and_files import differences
-from autograder.notebook.writefile import RECORD, digest
+from autograder.notebook.written_record import RECORD, digest
 from autograder.submission.exercise_stubs import CODE_STUB
 
 FILE = "src/robot/robot/node.py"

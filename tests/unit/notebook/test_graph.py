@@ -12,7 +12,7 @@ from rclpy.node import Node
 from std_msgs.msg import String
 
 from autograder.notebook import graph
-from autograder.notebook.graph import Graph
+from autograder.notebook.node_graph import Graph
 from autograder.notebook.notices import Notice
 
 

@@ -11,7 +11,8 @@ from IPython.testing.globalipapp import start_ipython
 
 from autograder.author.course.forms import CODE_STUB
 from autograder.exceptions import UsageError
-from autograder.notebook.writefile import RECORD, REPLACED, STUB, register
+from autograder.notebook.writefile import REPLACED, STUB, register
+from autograder.notebook.written_record import RECORD
 
 UNSOLVED = f"def main():\n    {CODE_STUB}\n"
 HALF = f"def main():\n    return 0\n\n\ndef other():\n    {CODE_STUB}\n"
