@@ -12,17 +12,17 @@ from __future__ import annotations
 import json
 import shutil
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import asdict
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from autograder import layout
-from autograder.diagnosis import OK
+from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import GraderError, StudentError
-from autograder.notebook.worker_client import RECORDING, REPLY_FILE
-from autograder.result.model import write_json
+from autograder.notebook.worker_client import EARLY_FILE, RECORDING, REPLY_FILE
+from autograder.result.model import structure, write_json
 from autograder.ros import activate
 from autograder.ros.domains import Domain
 from autograder.run.sandbox import line
@@ -98,27 +98,65 @@ def _drive(
     return {"diagnosis": asdict(OK), "output": done.output, "commands": commands}
 
 
-def _check(workspace: Workspace, out: Path, assignment: str) -> dict[str, Any]:
+def _check(
+    workspace: Workspace,
+    out: Path,
+    assignment: str,
+    exercises: list[dict[str, Any]],
+    part: str,
+    first: list[str],
+) -> dict[str, Any]:
+    """Run the checks of a chapter, or of the exercise whose name is `part`; those with the ids `first` before others.
+
+    What became of these is written to `out` at once.
+    """
     from autograder.building.build import build_workspace
+    from autograder.building.colcon import StoppedBuildError
+    from autograder.grade.job import Scope
     from autograder.grade.plugin import GradingPlugin, run
+    from autograder.notebook.exercises import Exercise, checks_of
     from autograder.result.artifacts import Gallery
     from autograder.result.model import CheckResult
     from autograder.suite import Outcome, suites
 
     suite = suites.visible(assignment)
+    there = [structure(Exercise, exercise) for exercise in exercises]
+    chosen = [exercise for exercise in there if exercise.name == part]
+    asked = checks_of(chosen[0], there, suite.checks) if chosen else tuple(check.id for check in suite.checks)
     results: dict[str, CheckResult] = {}
+
+    def answer(found: Diagnosis, ids: Collection[str], *, lasting: bool = True) -> dict[str, Any]:
+        """Return what became of checks, and of those that they need and that did not pass."""
+        lost = {name for name, result in results.items() if result.outcome is not Outcome.PASSED}
+        shown = [check for check in suite.checks if check.id in ids or check.id in lost]
+        lines = [results.get(check.id) or CheckResult.of(check, Outcome.NOT_CHECKED) for check in shown]
+        return {
+            "diagnosis": asdict(found),
+            "checks": [asdict(line) for line in lines],
+            "sources": suite.sources,
+            "reads": suite.reads,
+            "lasting": lasting,
+        }
+
+    early = [name for name in asked if name in first]
+    others = [name for name in asked if name not in first]
     try:
         observed = build_workspace(workspace, suite.packages, may_fail=suite.build_may_fail)
-        plugin = GradingPlugin(workspace, SEED, Gallery(out), observed.diagnoses)
-        run(suite.files, plugin)
-        if plugin.failures:
-            raise GraderError("\n".join(plugin.failures))
-        results = plugin.results
-        diagnosis = plugin.diagnosis if observed.diagnosis is OK else observed.diagnosis
+        diagnosis = observed.diagnosis
+        for ids in filter(None, (early, others)):
+            is_all = len(ids) == len(suite.checks)
+            scope = Scope(only=() if is_all else suite.with_dependencies(*ids))
+            plugin = GradingPlugin(workspace, SEED, Gallery(out), observed.diagnoses, scope)
+            run(suite.files, plugin)
+            if plugin.failures:
+                raise GraderError("\n".join(plugin.failures))
+            results |= plugin.results
+            diagnosis = plugin.diagnosis if diagnosis is OK else diagnosis
+            if ids is early and others:
+                write_json(out / EARLY_FILE, answer(diagnosis, early))
     except StudentError as error:
-        diagnosis = error.diagnosis
-    checks = [results.get(check.id) or CheckResult.of(check, Outcome.NOT_CHECKED) for check in suite.checks]
-    return {"diagnosis": asdict(diagnosis), "checks": [asdict(check) for check in checks]}
+        return answer(error.diagnosis, asked, lasting=not isinstance(error, StoppedBuildError))
+    return answer(diagnosis, asked)
 
 
 VERBS: dict[str, Callable[..., dict[str, Any]]] = {"drive": _drive, "check": _check}

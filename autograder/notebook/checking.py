@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import html
 import json
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 from autograder import layout
 from autograder.exceptions import UsageError
 from autograder.notebook.cells_and_files import differences
+from autograder.notebook.exercises import KINDS, Exercise, exercises, find
+from autograder.notebook.kept_results import Kept, keep, load, take_inputs
 from autograder.notebook.notices import INFO, STYLE, TROUBLE, Notice
 from autograder.notebook.worker_client import run_in_worker
 from autograder.result.causes import FAILED_AS_WELL, Cause, causes
@@ -19,8 +24,19 @@ from sim.grading import grading
 
 SYMBOLS = {Outcome.PASSED: "✔", Outcome.FAILED: "✘", Outcome.NOT_CHECKED: "○"}
 HIDDEN_CHECKS_HEADING = "After you hand in, {count} more checks judge, with inputs of their own:"
+UNCHANGED = "Unchanged since {since}, so nothing was run."
+FAILED_BEFORE = "what failed before"
 INDENT = 'style="margin-left:2em"'
 COLOURS = {Outcome.PASSED: "#009e73", Outcome.FAILED: TROUBLE, Outcome.NOT_CHECKED: "#767676"}
+
+
+@dataclass(frozen=True)
+class Part:
+    """A chapter to check, or one of its exercises: its name, and all exercises of the chapter."""
+
+    assignment: str
+    name: str = ""
+    exercises: tuple[Exercise, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -29,6 +45,8 @@ class CheckReport:
 
     `trouble` is what kept the package from being built or the node from running. `later` holds the titles of the checks
     that judge the packages after they are handed in. `notices` are sentences about files that differ from their cells.
+    `part` is what was checked of the chapter, if not all. `since` is when the checks were run, if nothing has changed
+    and they were not run again.
     """
 
     assignment: str
@@ -36,6 +54,8 @@ class CheckReport:
     trouble: Notice | None = None
     later: tuple[str, ...] = ()
     notices: tuple[str, ...] = ()
+    part: str = ""
+    since: str = ""
 
     @property
     def passed(self) -> bool:
@@ -46,7 +66,9 @@ class CheckReport:
     def summary(self) -> str:
         """The count in words."""
         good = sum(line.outcome is Outcome.PASSED for line in self.lines)
-        return f"{self.assignment}: {good} of {len(self.lines)} visible checks passed."
+        checked = ", ".join(filter(None, (self.assignment, self.part)))
+        unchanged = f" {UNCHANGED.format(since=self.since)}" if self.since else ""
+        return f"{checked}: {good} of {len(self.lines)} visible checks passed.{unchanged}"
 
     @property
     def causes(self) -> tuple[Cause, ...]:
@@ -84,26 +106,107 @@ class CheckReport:
         return f'{trouble}<div style="{STYLE.format(colour=colour)}"><b>{html.escape(self.summary)}</b>{rows}</div>'
 
 
-def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice:
-    """Run the visible checks on the packages of a workspace.
+def check(
+    assignment: str,
+    workspace: str | Path = "ws",
+    *,
+    exercise: int | None = None,
+    step: int | None = None,
+    question: int | None = None,
+    fresh: bool = False,
+) -> CheckReport | Notice:
+    """Run the visible checks of a chapter, or of one exercise of it, on the packages of a workspace.
 
-    The code path is the grader's own: the packages are built by colcon and the node runs in a process of its own.
-    Raises GraderError if the check itself fails.
+    The code path is the grader's own: the packages are built by colcon and the node runs in a process of its own. A
+    result is kept while everything that it depends on is the same; the report says since when.
+
+    Args:
+        assignment: the chapter.
+        workspace: a colcon workspace.
+        exercise: the number of an exercise, where the notebook has exercises.
+        step: the number of a step, where it has steps.
+        question: the number of a question, where it has questions.
+        fresh: whether to run the checks even if nothing has changed.
+
+    Raises:
+        UsageError: there is no such chapter, exercise or workspace.
+        GraderError: the check itself failed.
     """
     if grading():  # the sandbox holds no checks
         return Notice("The hidden checks run after this notebook has been executed.")
-    if assignment not in (there := suites.checkable_assignments()):
-        raise UsageError(f"there are no visible checks for {assignment!r}; there are for: {', '.join(there)}")
-    with run_in_worker("check", Path(workspace), assignment=assignment) as (answer, _):
-        diagnosis = answer["diagnosis"]
-        trouble = None
-        if diagnosis["kind"] != "ok":
-            trouble = Notice(diagnosis["sentence"], diagnosis["detail"], TROUBLE)
-        lines = tuple(structure(CheckResult, result) for result in answer["checks"])
-    path = layout.judged_later(assignment)
-    later = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else ()
-    notices = differences(assignment, Path(workspace), suites.visible(assignment).sources)
-    return CheckReport(assignment, lines, trouble, tuple(later), notices)
+    return run_part(part_of(assignment, exercise, step, question), Path(workspace), fresh=fresh)
+
+
+def part_of(assignment: str, exercise: int | None, step: int | None, question: int | None) -> Part:
+    """Return the part of a chapter that is asked for by the number of an exercise, a step or a question, or all of it.
+
+    Raises:
+        UsageError: there is no such chapter or part, or two are asked for.
+    """
+    if assignment not in (known := suites.checkable_assignments()):
+        raise UsageError(f"there are no visible checks for {assignment!r}; there are for: {', '.join(known)}")
+    given = zip(KINDS, (exercise, step, question), strict=True)
+    asked = [(kind, number) for kind, number in given if number is not None]
+    if not asked:
+        return Part(assignment)
+    if len(asked) > 1:
+        words = " and ".join(f"{kind} {number}" for kind, number in asked)
+        raise UsageError(f"{words} are two parts of {assignment}: ask for one at a time, or for the whole chapter")
+    there = exercises(assignment)
+    return Part(assignment, find(assignment, there, *asked[0]).name, there)
+
+
+def run_part(
+    part: Part,
+    workspace: Path,
+    *,
+    fresh: bool = False,
+    first: Sequence[str] = (),
+    early: Callable[[CheckReport], None] | None = None,
+) -> CheckReport:
+    """Run the checks of a part of a chapter, unless a result of the same inputs is kept.
+
+    Args:
+        part: what is checked.
+        workspace: a colcon workspace.
+        fresh: whether to run the checks even if nothing has changed.
+        first: ids of checks that are run before the others.
+        early: called with what became of those, while the others run.
+
+    Raises:
+        UsageError: there is no such workspace.
+        GraderError: the check itself failed.
+    """
+    kept = load(workspace, part.assignment, part.name)
+    reads = () if kept is None else kept.reads
+    before = take_inputs(part.assignment, workspace / "src", reads)
+    if kept is not None and before is not None and kept.digest == before.digest and not fresh:
+        return _report(part, workspace, kept.answer, kept.since)
+
+    def tell(answer: dict[str, Any]) -> None:
+        if early is not None:
+            early(_report(replace(part, name=FAILED_BEFORE), workspace, answer))
+
+    arguments = {"exercises": [asdict(each) for each in part.exercises], "part": part.name, "first": [*first]}
+    with run_in_worker("check", workspace, early=tell, assignment=part.assignment, **arguments) as (answer, _):
+        made = datetime.now().isoformat(timespec="seconds")
+    same = before is not None and before == take_inputs(part.assignment, workspace / "src", reads)
+    digest = before.digest if before is not None and same and answer["lasting"] else ""
+    new = tuple(answer["reads"])
+    keep(workspace, part.assignment, part.name, Kept(digest if new == reads else "", made, new, answer))
+    return _report(part, workspace, answer)
+
+
+def _report(part: Part, workspace: Path, answer: dict[str, Any], since: str = "") -> CheckReport:
+    """Return the report of a worker's answer. The cells are compared with the files as they are now."""
+    found, trouble = answer["diagnosis"], None
+    if found["kind"] != "ok":
+        trouble = Notice(found["sentence"], found["detail"], TROUBLE)
+    lines = tuple(structure(CheckResult, result) for result in answer["checks"])
+    path = layout.judged_later(part.assignment)
+    later = json.loads(path.read_text(encoding="utf-8")) if path.is_file() and not part.name else ()
+    notices = differences(part.assignment, workspace, answer["sources"])
+    return CheckReport(part.assignment, lines, trouble, tuple(later), notices, part.name, since)
 
 
 def _head(line: CheckResult) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from multiprocessing import Pipe
 from pathlib import Path
@@ -21,14 +21,39 @@ from autograder.suite.fingerprint import places
 
 REQUEST = "request.json"
 REPLY_FILE = "answer.json"
+EARLY_FILE = "early.json"  # what is known before the rest is
 RECORDING = "recording.npz"
 
 
+class _Early:
+    """Tells once what a file says that is there before the worker has ended."""
+
+    def __init__(self, file: Path, listener: Callable[[dict[str, Any]], None] | None) -> None:
+        self._file, self._listener = file, listener
+
+    def has_looked(self) -> bool:
+        """Look for the file; return that this was done."""
+        if self._listener is not None and self._file.is_file():
+            listener, self._listener = self._listener, None
+            listener(json.loads(self._file.read_text(encoding="utf-8")))
+        return True
+
+
 @contextmanager
-def run_in_worker(verb: str, workspace: Path, **arguments: Any) -> Iterator[tuple[dict[str, Any], Path]]:
+def run_in_worker(
+    verb: str, workspace: Path, *, early: Callable[[dict[str, Any]], None] | None = None, **arguments: Any
+) -> Iterator[tuple[dict[str, Any], Path]]:
     """Start a worker that does `drive` or `check`, and wait; yield its reply and the folder with its files.
 
-    Raises UsageError if there is no such workspace, and GraderError if the worker failed.
+    Args:
+        verb: `drive` or `check`.
+        workspace: the student's.
+        early: called once with what is known before the rest is, while the worker goes on.
+        arguments: those of the verb.
+
+    Raises:
+        UsageError: there is no such workspace.
+        GraderError: the worker failed.
     """
     source = workspace / "src"
     if not source.is_dir():
@@ -49,7 +74,9 @@ def run_in_worker(verb: str, workspace: Path, **arguments: Any) -> Iterator[tupl
         view = View(shown=tuple(shown), submitted=(source.resolve(),), writable=(Path(folder),))
         with theirs, in_cell(command, tier, NOTEBOOK_CELL, view=view, pass_fds=(theirs.fileno(),)) as (process, _):
             theirs.close()  # once the worker has ended, nobody holds its end
-            keeper.attend(ours, tier, lambda: process.ending is not None)  # it asks for interface packages
+            tell = _Early(Path(folder) / EARLY_FILE, early)
+            # It asks for interface packages. Between its questions, it is looked after.
+            keeper.attend(ours, tier, lambda: tell.has_looked() and process.ending is not None)
             report = ended(process)
         reply = Path(folder) / REPLY_FILE
         if report.returncode != 0 or not reply.is_file():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 from dataclasses import replace
 from functools import partial
@@ -20,7 +21,7 @@ from autograder.author.verification.mutants import mutants, write_mutant, write_
 from autograder.building import keeper
 from autograder.building.interfaces import Cache
 from autograder.layout import SOLUTIONS
-from autograder.notebook import check, drive, ros
+from autograder.notebook import check, drive, kept_results, ros
 from autograder.notebook.checking import CheckReport
 from autograder.notebook.driving import FAULTS, DriveReport
 from autograder.notebook.notices import Notice
@@ -28,6 +29,7 @@ from autograder.notebook.terminal import shell
 from autograder.run.sandbox import best_tier
 from autograder.run.sandbox.limits import SOURCES
 from autograder.run.sandbox.trees import Entry, read_tree
+from autograder.suite import Outcome
 from sim import Pose, RobotSpec, Simulation, World
 from sim.codec import to_json
 
@@ -42,16 +44,26 @@ def right(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.fixture(autouse=True)
+def _kept_for_one_test(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kept_results, "CACHE", str(tmp_path / "kept"))
+
+
 def _mutant(name: str, folder: Path) -> Path:
     write_mutant(next(mutant for mutant in mutants("02_nodes") if mutant.id == name), (PACKAGE,), folder)
     return folder
 
 
+@pytest.mark.promise("If nothing has changed since the last check, it shows that result again and says so.")
 def test_the_reference_passes_every_visible_check_and_leaves_nothing_in_the_workspace(right: Path) -> None:
     report = check("02_nodes", right)
     assert isinstance(report, CheckReport)
     assert report.passed, repr(report)
     assert [path.name for path in right.iterdir()] == ["src"]
+    again = check("02_nodes", right)
+    assert isinstance(again, CheckReport)
+    assert replace(again, since="") == report
+    assert re.search(r"16 of 16 visible checks passed. Unchanged since \d\d:\d\d, so nothing was run.", repr(again))
 
 
 def test_message_packages_that_were_built_once_are_not_built_again_by_a_check(tmp_path: Path) -> None:
@@ -80,6 +92,20 @@ def test_a_failed_check_shows_hints_and_the_other_checks_still_run(tmp_path: Pat
     (failed,) = [line for line in report.lines if line.outcome.value == "failed"]
     assert "A second after the last scan, the robot drove forward" in failed.message
     assert failed.hints
+
+
+@pytest.mark.promise("`check('03_interfaces', exercise=1)` checks exercise 1 alone")
+def test_an_exercise_is_checked_alone_with_what_it_needs_and_has_not(tmp_path: Path) -> None:
+    write_reference((PACKAGE,), tmp_path)
+    path = tmp_path / "src" / PACKAGE / PACKAGE / "configuration.py"
+    path.write_text(path.read_text().replace("node.declare_parameter(", "node.declare_parameters(", 1))
+    report = check("05_parameters", tmp_path, exercise=2)
+    assert isinstance(report, CheckReport)
+    failed, *others = report.lines
+    assert (failed.id, failed.outcome) == ("starts", Outcome.FAILED)  # of exercise 1; the others cannot be run
+    assert {line.outcome for line in others} == {Outcome.NOT_CHECKED}
+    assert [line.id for line in others] == ["contradiction", "together", "rate", "refused_whole", "lets_pass"]
+    assert report.summary == "05_parameters, exercise 2: 0 of 6 visible checks passed."
 
 
 def test_a_syntax_error_is_reported_in_a_sentence_without_a_traceback(tmp_path: Path) -> None:

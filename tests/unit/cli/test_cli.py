@@ -186,7 +186,7 @@ def test_checking_finds_the_workspace_from_the_chapter_and_from_the_course(
     monkeypatch.chdir(tmp_path)
     asked: list[tuple[str, Path]] = []
 
-    def run_checks(assignment: str, workspace: Path) -> CheckReport:
+    def run_checks(assignment: str, workspace: Path, **options: object) -> CheckReport:
         asked.append((assignment, workspace))
         return CheckReport(assignment, ())
 
@@ -201,7 +201,7 @@ def test_checking_exits_0_only_when_every_check_passed(
 ) -> None:
     turns = Check("turns", "It turns.", 2.0, "graph", Visibility.VISIBLE, ("look left",), None, ())
     report = CheckReport("02_nodes", (result.CheckResult.of(turns, outcome, "it did not"),))
-    monkeypatch.setattr(sys.modules["autograder.cli.check"], "run_checks", lambda *arguments: report)
+    monkeypatch.setattr(sys.modules["autograder.cli.check"], "run_checks", lambda *arguments, **options: report)
     done = _run("check", "02_nodes", str(tmp_path), "--json", str(tmp_path / "report.json"))
     assert done.exit_code == status
     assert "It turns." in done.output

@@ -105,7 +105,7 @@ def test_a_student_whose_visible_checks_all_pass_gets_the_list_of_hidden_checks(
     shown = {check.title for check in suites.visible(assignment).checks}
     judged = [check.title for check in suites.hidden(assignment).checks if check.title not in shown]
     passed = [dataclasses.asdict(CheckResult.of(each, Outcome.PASSED)) for each in suites.visible(assignment).checks]
-    answer = {"diagnosis": {"kind": "ok"}, "checks": passed}
+    answer = {"diagnosis": {"kind": "ok"}, "checks": passed, "sources": [], "reads": [], "lasting": True}
     monkeypatch.setattr(checking, "run_in_worker", lambda *_, **__: nullcontext((answer, None)))
     report = checking.check(assignment)
     assert isinstance(report, CheckReport)

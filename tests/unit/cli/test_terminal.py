@@ -98,7 +98,7 @@ def test_checking_prints_no_control_of_a_message(
 ) -> None:
     failed = [check for check in hostile.checks if check.outcome is Outcome.FAILED]
 
-    def checked(assignment: str, workspace: Path) -> CheckReport:
+    def checked(assignment: str, workspace: Path, **options: object) -> CheckReport:
         return CheckReport(assignment, tuple(failed))
 
     monkeypatch.setattr(import_module("autograder.cli.check"), "run_checks", checked)

@@ -1,0 +1,132 @@
+"""The exercises of a chapter, as its notebook numbers them, and which checks are those of each.
+
+A heading such as `Exercise 2: repair a package`, `Step 4: ...` or `Question 3: ...` begins an exercise; a heading
+`Exercise` without a number is exercise 1. The sentences of the contract that stand below the heading are those of the
+exercise (`autograder.suite.contract`).
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import mistune
+
+from autograder import layout
+from autograder.exceptions import UsageError
+from autograder.suite.declaration import Check
+
+KINDS = ("exercise", "step", "question")
+_HEADING = re.compile(rf"({'|'.join(KINDS)})(?: (\d+))?(?:: (.*))?", re.IGNORECASE)
+_markdown = mistune.create_markdown(renderer=None)
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """An exercise of a chapter.
+
+    Attributes:
+        kind: what the notebook calls it, one of `KINDS`.
+        number: its number in the heading.
+        title: the rest of the heading.
+        sentences: the ids of the contract's sentences that stand in it.
+        groups: the groups of checks that the notebook's objectives give to this exercise alone.
+    """
+
+    kind: str
+    number: int
+    title: str
+    sentences: tuple[str, ...] = ()
+    groups: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """What the notebook and a command call it, such as `step 2`."""
+        return f"{self.kind} {self.number}"
+
+
+def exercises(assignment: str) -> tuple[Exercise, ...]:
+    """Return the exercises of a chapter that checks can judge, in the order of its notebook.
+
+    Raises:
+        UsageError: there is no such chapter, or its notebook cannot be read.
+    """
+    path = layout.source_notebook(assignment)
+    try:
+        notebook = json.loads(path.read_bytes())
+        return tuple(_read(notebook["cells"], notebook["metadata"].get("course", {}).get("objectives", ())))
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        hint = "save it in JupyterLab, or check the whole chapter"
+        raise UsageError(f"{path} cannot be read as a notebook: {hint}") from None
+
+
+def find(assignment: str, there: Sequence[Exercise], kind: str, number: int) -> Exercise:
+    """Return an exercise of a chapter; a UsageError lists those that there are."""
+    for exercise in there:
+        if (exercise.kind, exercise.number) == (kind, number):
+            return exercise
+    in_order = sorted(there, key=lambda each: (each.kind, each.number))
+    listed = ", ".join(f"{each.name} ({each.title})" if each.title else each.name for each in in_order)
+    raise UsageError(f"{assignment} has no {kind} {number}; it has: {listed or 'no exercise with a number'}")
+
+
+def checks_of(chosen: Exercise, there: Sequence[Exercise], checks: Sequence[Check]) -> tuple[str, ...]:
+    """Return the ids of the checks of one exercise among a chapter's, in the order of the suite.
+
+    A group of checks whose sentences stand in one exercise belongs to it. Where they stand in several, the notebook's
+    objectives decide, and if these give the group to none or to several, each check belongs to the last exercise that
+    has a sentence of it. A check with no sentence in an exercise belongs to each: none is left out everywhere.
+    """
+    return tuple(check.id for check in checks if _home(check, there, checks) in (None, chosen))
+
+
+def _home(check: Check, there: Sequence[Exercise], checks: Sequence[Check]) -> Exercise | None:
+    """Return the exercise of a check; None if no exercise has a sentence of it."""
+    group = [each for other in checks if other.group == check.group for each in _stating(other, there)]
+    if len(set(group)) > 1:
+        named = next((each for each in there if check.group in each.groups), None)
+        return named or next(reversed(_stating(check, there)), None)
+    return next(iter(_stating(check, there)), None)
+
+
+def _stating(check: Check, there: Sequence[Exercise]) -> list[Exercise]:
+    return [each for each in there if not set(each.sentences).isdisjoint(check.holds)]
+
+
+def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]:
+    """Yield the exercises among cells; `objectives` are those of the notebook's metadata."""
+    given: dict[str, set[str]] = {}  # the cells whose exercises a group serves
+    for objective in objectives:
+        for group in objective["groups"]:
+            given.setdefault(group, set()).add(objective["exercise"])
+    found: dict[str, Exercise] = {}
+    sentences: dict[str, dict[str, Any]] = {}
+    level, now = 0, ""
+    for cell in cells:
+        for depth, text in _headings(cell):
+            if heading := _HEADING.fullmatch(text):
+                new = Exercise(heading[1].lower(), int(heading[2] or 1), heading[3] or "")
+                level, now = depth, new.name
+                groups = tuple(group for group, places in given.items() if places == {cell.get("id")})
+                found[now] = Exercise(new.kind, new.number, new.title, groups=groups)
+            elif depth <= level:
+                level, now = 0, ""
+        if now:
+            sentences.setdefault(now, {}).update(cell["metadata"].get("course", {}).get("contract", {}))
+    for name, each in found.items():
+        if named := sentences.get(name):  # a question that a person reads obliges to nothing that a check could hold
+            yield Exercise(each.kind, each.number, each.title, tuple(named), each.groups)
+
+
+def _headings(cell: Any) -> Iterator[tuple[int, str]]:
+    """Yield the level and the text of each heading of a cell."""
+    if cell["cell_type"] == "markdown":
+        tokens: Any = _markdown("".join(cell["source"]))
+        yield from ((token["attrs"]["level"], _text(token)) for token in tokens if token["type"] == "heading")
+
+
+def _text(token: dict[str, Any]) -> str:
+    return token.get("raw") or "".join(_text(child) for child in token.get("children", ()))

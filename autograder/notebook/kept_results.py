@@ -1,0 +1,196 @@
+"""Keeps what a check found, for as long as everything that it depends on is the same.
+
+That is the student's files in `src`, every file that a grading with the checks reads (`autograder.suite.fingerprint`),
+and the environment: the Python, ROS 2 with all installed packages, the variables that a worker gets, and how programs
+are kept apart. Of the chapter's notebook the cells count; what they have shown does not.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import site
+import sys
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from autograder import layout
+from autograder.building.interfaces import Cache
+from autograder.building.interfaces.prefix import identity
+from autograder.result.model import structure, write_json
+from autograder.ros import find
+from autograder.ros.environment import LOGS_TO_STDOUT, path_with_scripts, without_wheel_bootstrap
+from autograder.ros.launch_packages import describe_launch
+from autograder.run.sandbox import best_tier
+from autograder.suite import fingerprint
+
+CACHE = "checks"
+MOST = 100  # files that are kept, one for each chapter of a workspace
+# A kernel and a terminal differ in these, and a workspace's programs get their own.
+_IGNORED = frozenset({"ROS_DOMAIN_ID", "ROS_LOG_DIR", "PYTHONDONTWRITEBYTECODE", *LOGS_TO_STDOUT})
+_VARIABLES = (
+    *("PATH", "LANG", "LC_", "TZ", "PYTHON", "LD_LIBRARY_PATH", "AUTOGRADER_", "AMENT_", "CMAKE_PREFIX_PATH"),
+    *("COLCON_", "FASTDDS_", "FASTRTPS_", "RCUTILS_", "RMW_", "ROS_"),
+)
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What a result depends on, at one moment.
+
+    Attributes:
+        digest: of all of it.
+        stamp: a digest of when and how each file was last written. It differs if one was changed and changed back.
+    """
+
+    digest: str
+    stamp: str
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A result that is kept.
+
+    Attributes:
+        digest: of the inputs that it was made of; empty if they changed meanwhile.
+        at: when it was made, in ISO 8601.
+        reads: files of the course that the checks read besides their own.
+        answer: the worker's.
+    """
+
+    digest: str
+    at: str
+    reads: tuple[str, ...]
+    answer: dict[str, Any]
+
+    @property
+    def since(self) -> str:
+        """The time of day at which it was made, and the day unless that is today."""
+        made = datetime.fromisoformat(self.at)
+        return f"{made:%H:%M}" if made.date() == datetime.now().date() else f"{made:%d %B, %H:%M}"
+
+
+def take_inputs(assignment: str, source: Path, reads: Iterable[str] = ()) -> Inputs | None:
+    """Return what a check of a folder of packages depends on; None while files come and go, or where one is a link.
+
+    Args:
+        assignment: the chapter.
+        source: the folder `src` of a workspace.
+        reads: files of the course that the checks read besides their own, by their paths in it.
+    """
+    digest, stamp = hashlib.sha256(), hashlib.sha256()
+    digest.update(json.dumps(_environment(), sort_keys=True, default=str).encode())
+    try:
+        notebook = layout.source_notebook(assignment)
+        digest.update(_cells(notebook))
+        read = (path for path in fingerprint.files(assignment, reads) if path != notebook)
+        for path in (*read, *sorted(Path(__file__).parent.glob("*.py")), *_files(source)):
+            data = b"" if path.is_dir() else path.read_bytes()
+            name = f"{path}\0{bool(path.stat().st_mode & 0o100)}\0{len(data)}\0".encode("utf-8", "surrogateescape")
+            digest.update(name + data)
+            stamp.update(name + _stamp(path))
+    except OSError:
+        return None
+    return Inputs(digest.hexdigest(), stamp.hexdigest())
+
+
+def load(workspace: Path, assignment: str, part: str) -> Kept | None:
+    """Return what was kept of a chapter, or of a part of it; None if nothing is, or nothing that can be read."""
+    with suppress(OSError, ValueError, TypeError, LookupError, AttributeError):
+        found: Kept = structure(Kept, json.loads(_place(workspace, assignment).read_bytes())[part])
+        return found
+    return None
+
+
+def keep(workspace: Path, assignment: str, part: str, kept: Kept) -> None:
+    """Keep a result in the place of the one before; a disk that is full keeps none."""
+    place, others = _place(workspace, assignment), {}
+    with suppress(OSError, ValueError):
+        others = json.loads(place.read_bytes())
+    with suppress(OSError):
+        write_json(place, {**(others if isinstance(others, dict) else {}), part: asdict(kept)})
+        oldest_first = sorted(place.parent.glob("*.json"), key=lambda path: path.stat().st_mtime)
+        for path in oldest_first[:-MOST]:
+            path.unlink(missing_ok=True)
+
+
+def stamp_of(paths: Iterable[Path]) -> str:
+    """Return a digest of when files, and those in folders, were last written. What cannot be read is left out."""
+    found = hashlib.sha256()
+    for top in paths:
+        for path in (top,) if top.is_file() else sorted(top.rglob("*")):
+            with suppress(OSError):
+                found.update(str(path).encode("utf-8", "surrogateescape") + _stamp(path))
+    return found.hexdigest()
+
+
+def _place(workspace: Path, assignment: str) -> Path:
+    name = hashlib.sha256(f"{workspace.resolve()}\0{assignment}".encode("utf-8", "surrogateescape")).hexdigest()[:32]
+    return Cache.default(CACHE).root / f"{name}.json"
+
+
+def _files(source: Path) -> Iterator[Path]:
+    """Yield the folders and files that a check copies, sorted.
+
+    Raises OSError if there are none, or at a link: what it leads to may change.
+    """
+    os.scandir(source).close()
+    for folder, folders, names in os.walk(source):
+        ignored = layout.NOT_COPIED(folder, [*folders, *names])
+        folders[:] = sorted(set(folders) - ignored)
+        for path in (Path(folder, name) for name in (*folders, *sorted(set(names) - ignored))):
+            if path.is_symlink():
+                raise OSError(f"{path} is a link")
+            yield path
+
+
+def _cells(notebook: Path) -> bytes:
+    """Return what counts of a notebook. One that is half written counts as it stands."""
+    data = notebook.read_bytes()
+    try:
+        found = json.loads(data)
+        cells = [
+            [cell["cell_type"], "".join(cell["source"]), cell["metadata"].get("course")] for cell in found["cells"]
+        ]
+        return json.dumps([cells, found["metadata"].get("course")], sort_keys=True).encode()
+    except (ValueError, LookupError, TypeError, AttributeError):
+        return data
+
+
+def _stamp(path: Path) -> bytes:
+    found = path.stat()
+    return f"{found.st_ino} {found.st_size} {found.st_mtime_ns} {found.st_ctime_ns}\n".encode()
+
+
+def _environment() -> Mapping[str, Any]:
+    ros = find()
+    installed = {name for folder in _site_packages() for name in _versions(folder)}
+    own = without_wheel_bootstrap(os.environ)
+    variables = {**ros.variables(log_dir=Path("/")), **own, "PATH": path_with_scripts()}
+    kept = {n: v for n, v in variables.items() if n.startswith(_VARIABLES) and n not in _IGNORED}
+    return {
+        **identity(ros),
+        "installed": sorted(installed),
+        "launch": describe_launch(),
+        "system": os.uname()[::2],
+        "tier": best_tier().value,
+        "variables": kept,
+    }
+
+
+def _site_packages() -> list[Path]:
+    named = [path for path in sys.path if path.endswith(("site-packages", "dist-packages"))]
+    return [Path(path) for path in {*named, *site.getsitepackages()} if Path(path).is_dir()]
+
+
+def _versions(folder: Path) -> Iterator[str]:
+    """Yield each installed package with the time of its installation. To read what it says of itself takes long."""
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.name.endswith((".dist-info", ".egg-info", ".pth")):
+                yield f"{entry.path} {entry.stat().st_mtime_ns}"

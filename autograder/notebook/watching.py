@@ -1,0 +1,71 @@
+"""`autograder check --watch`: checks a workspace again when a file is saved, until Ctrl-C.
+
+Files are looked at a few times a second. They are checked once they have been left alone for a moment, so a file that
+is being written is not read by halves; if it is, it is checked again when the rest has come.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from autograder import layout
+from autograder.exceptions import GraderError, UsageError
+from autograder.notebook.checking import Part, run_part
+from autograder.notebook.kept_results import stamp_of
+from autograder.notebook.notices import Notice
+from autograder.suite import Outcome, fingerprint
+
+LOOK = 0.25  # s between two looks at the files
+QUIET = 0.5  # s without a change, after which files count as saved
+WAITING = "Waiting for a file to be saved. Ctrl-C ends this."
+
+Show = Callable[[object], None]
+
+
+def watch(part: Part, workspace: Path, show: Show, *, pause: Callable[[float], None] = time.sleep) -> None:
+    """Check a workspace, and again each time one of its files, or of the chapter's, has changed, until Ctrl-C.
+
+    Args:
+        part: what is checked.
+        workspace: a colcon workspace.
+        show: gets each report, and each sentence about what goes on.
+        pause: waits for some seconds between two looks.
+
+    Raises:
+        UsageError: there is no such workspace.
+    """
+    source = workspace / "src"
+    if not source.is_dir():
+        raise UsageError(f"there is no folder {source}: run this from the assignment's folder, where ws/src is")
+    failed: tuple[str, ...] = ()
+    try:
+        while True:
+            seen = _stamp(part.assignment, workspace)
+            try:
+                report = run_part(part, workspace, first=failed, early=show)
+                failed = tuple(line.id for line in report.lines if line.outcome is Outcome.FAILED)
+                show(report)
+            except (GraderError, UsageError, OSError) as error:  # such as a file that went away while it was copied
+                show(Notice(str(error)))
+            if _stamp(part.assignment, workspace) == seen:
+                show(Notice(WAITING))
+            _wait(part.assignment, workspace, seen, pause)
+    except KeyboardInterrupt:
+        return
+
+
+def _wait(assignment: str, workspace: Path, seen: str, pause: Callable[[float], None]) -> None:
+    """Wait until the files are not as they were seen, and have been left alone for a moment."""
+    newest, since = seen, time.monotonic()
+    while newest == seen or time.monotonic() - since < QUIET:
+        pause(LOOK)
+        if (now := _stamp(assignment, workspace)) != newest:
+            newest, since = now, time.monotonic()
+
+
+def _stamp(assignment: str, workspace: Path) -> str:
+    """Return a digest of when the files that a student or an author saves were last written."""
+    checks = fingerprint.places(assignment, parts=("visible",))
+    return stamp_of((workspace / "src", layout.source_notebook(assignment), *checks))
