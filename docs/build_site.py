@@ -43,7 +43,16 @@ NO_PROSE = re.compile(
     r"^(?P<fence>```|~~~).*?^(?P=fence)|`[^`]*`|^#.*?$|!?\[[^\]]*\]\([^)]*\)|^\|.*?$|^- \w\) .*?$|<[^>]*>",
     re.MULTILINE | re.DOTALL,
 )
-GUIDES = ("students.md", "instructors.md", "authors.md", "first_check.md", "trust.md", "troubleshooting.md", "index.md")
+GUIDES = (
+    "students.md",
+    "instructors.md",
+    "authors.md",
+    "first_check.md",
+    "first_launch_check.md",
+    "trust.md",
+    "troubleshooting.md",
+    "index.md",
+)
 # Words whose first use means something else: verbs of every day, the actions of a launch file, packages of pip.
 EVERYWHERE = {"Build", "Source"}
 MEANT_OTHERWISE = {"04_launch": {"Action"}, "05_parameters": {"Action"}, "students": {"Package"}}

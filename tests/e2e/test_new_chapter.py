@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+import yaml
 
 from autograder import layout
 
-PAGE = layout.ROOT / "docs" / "first_check.md"
+DOCS = layout.ROOT / "docs"
 BLOCKS = re.compile(r"^```(sh|text)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
@@ -58,7 +60,31 @@ def test_a_new_chapter_contains_no_placeholder_of_the_template(course: Path) -> 
     assert [path for path, text in texts.items() if "NEW_" in f"{path}{text}" or "TODO" in text] == []
 
 
-@pytest.mark.promise("Without `--only`, `verify` also generates small errors in everything that students write")
+@pytest.mark.promise("`autograder new course FOLDER` also writes a README with the commands")
+def test_the_commands_of_a_new_courses_readme_and_workflow_exist(course: Path) -> None:
+    readme, workflow = (course / "README.md").read_text(), course / ".github" / "workflows" / "ci.yml"
+    steps = yaml.safe_load(workflow.read_text())["jobs"]["course"]["steps"]
+    inline = re.findall(r"`(autograder [^`]+)`", readme)
+    proven = [step["run"] for step in steps if step.get("run", "").startswith("autograder ")]
+    assert len(proven) == 3
+    assert {*proven} <= {*inline}
+    done = shell("\n".join(f"{command} --help" for command in inline), course)
+    assert done.returncode == 0, done.stderr
+
+
+def test_git_ignores_what_is_built_in_a_new_course(course: Path, tmp_path: Path) -> None:
+    copy = shutil.copytree(course, tmp_path / "copy")
+    made = [".build/verify.json", "chapters/10_mapping/ws/install/setup.sh", "checks/__pycache__/x.pyc", "gradebook.db"]
+    ignored = shell(f"git init -q\ngit check-ignore {' '.join(made)}", copy)
+    assert ignored.stdout.split() == made
+    shown = shell("git ls-files --others --exclude-standard", copy).stdout.split()
+    assert {".gitignore", ".github/workflows/ci.yml", "README.md", "course.yaml", "syllabus.yaml"} <= {*shown}
+
+
+@pytest.mark.promise(
+    "Without `--only`, `verify` also generates small errors in everything that students write",
+    "Without `--quick`, `verify` also makes each small change that its operators know",
+)
 @pytest.mark.nightly
 def test_every_mutant_of_new_chapters_is_killed(course: Path) -> None:
     done = on(course, "verify -j 2")
@@ -100,6 +126,7 @@ def test_an_invalid_name_of_a_new_chapter_is_refused_and_nothing_is_written(
     assert {*course.rglob("*")} == before
 
 
+@pytest.mark.promise("Its package is called `mapping` and its node `nearest`, unless")
 def test_the_package_and_the_node_of_a_new_chapter_have_the_given_names(course: Path) -> None:
     package = course / "solutions" / "launch_lab"
     assert "'watcher = launch_lab.watcher:main'" in (package / "setup.py").read_text()
@@ -121,9 +148,27 @@ def test_the_package_and_the_node_of_a_new_chapter_have_the_given_names(course: 
     "This command creates the student release, which has no hidden checks and no answers:",
 )
 def test_every_command_of_the_tutorial_prints_what_the_page_says(tmp_path: Path) -> None:
-    blocks = BLOCKS.findall(PAGE.read_text(encoding="utf-8"))
+    compare(DOCS / "first_check.md", tmp_path, 9)
+    assert "The node is called nearest." in (tmp_path / "graded" / "ada" / "feedback.html").read_text()
+    assert not [*(tmp_path / "bundle").rglob("hidden")]
+
+
+@pytest.mark.promise(
+    "A package called `launch` would hide ROS's own",
+    "`%%writefile` makes the folder `launch`.",
+    "a release that does not build is not as expected",
+    "`course check` finds a text that stands nowhere in the reference",
+)
+@pytest.mark.nightly
+def test_every_command_of_the_tutorial_about_launch_prints_what_the_page_says(tmp_path: Path) -> None:
+    compare(DOCS / "first_launch_check.md", tmp_path, 7)
+
+
+def compare(page: Path, folder: Path, lines: int) -> None:
+    """Run the commands of a page in an empty folder, and compare what they print with the lines on the page."""
+    blocks = BLOCKS.findall(page.read_text(encoding="utf-8"))
     script = "".join(f"{text}\necho =====\n" for kind, text in blocks if kind == "sh")
-    done = shell(script, tmp_path)
+    done = shell(script, folder)
     assert done.returncode == 0, done.stdout + done.stderr
     outputs = iter(done.stdout.split("=====\n"))
     shown, compared = "", 0
@@ -134,6 +179,4 @@ def test_every_command_of_the_tutorial_prints_what_the_page_says(tmp_path: Path)
         for line in text.splitlines():
             assert line in shown, f"the page says {line!r}, and the command said {shown}"
             compared += 1
-    assert compared > 6
-    assert "The node is called nearest." in (tmp_path / "graded" / "ada" / "feedback.html").read_text()
-    assert not [*(tmp_path / "bundle").rglob("hidden")]
+    assert compared == lines

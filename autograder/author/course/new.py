@@ -68,10 +68,15 @@ def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple
 
 
 def write_course(folder: Path) -> None:
-    """Write a course without chapters to a new folder. Raises UsageError if the folder is there."""
+    """Write a course without chapters to a new folder, with what a repository needs for it.
+
+    Raises UsageError if the folder is there.
+    """
     _require_new(folder)
     title = folder.name.replace("_", " ").replace("-", " ").capitalize()
-    _write(TEMPLATES / "course", folder, {"NEW_COURSE": folder.name, "NEW_TITLE": title})
+    # A .gitignore among the templates would be one of this repository's.
+    words = {"NEW_COURSE": folder.name, "NEW_TITLE": title, "NEW_DOT_": "."}
+    _write(TEMPLATES / "course", folder, words)
 
 
 def _require_free(what: str, name: str, instead: str) -> None:

@@ -70,6 +70,7 @@ def test_course_check_names_all_findings_and_exits_with_1(course: Path) -> None:
     assert "cell 'g': has 1 points, but the checks of 'graph' have 2" in result.output
 
 
+@pytest.mark.promise("`autograder course sync` writes the text of cells with a `source`")
 def test_course_check_finds_nothing_after_sync(course: Path) -> None:
     assert run("sync").output == "01_small: 2 brought up to date\n"
     checked = run("check")

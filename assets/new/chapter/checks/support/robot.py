@@ -15,9 +15,16 @@ SECONDS = 0.1  # of ROS time, from one scan to the next
 class Robot(AutoHarness):
     """The node between a lidar and whoever listens to `nearest`."""
 
-    def __init__(self, workspace: Workspace) -> None:
-        offers, listens = {"/scan": LaserScan}, {"/nearest": Float32}
-        super().__init__(workspace, contract.PACKAGE, contract.EXECUTABLE, offers=offers, listens=listens)
+    def __init__(self, workspace: Workspace, *arguments: str) -> None:
+        """Describe the node as it runs with command-line arguments, such as `--ros-args -p name:=value`."""
+        super().__init__(
+            workspace,
+            contract.PACKAGE,
+            contract.EXECUTABLE,
+            offers={"/scan": LaserScan},
+            listens={"/nearest": Float32},
+            arguments=arguments,
+        )
 
     def answers(self, readings: Sequence[float]) -> list[float]:
         """Show one scan, and return what the node published then."""
