@@ -7,7 +7,7 @@ import sys
 import click
 
 from autograder import layout
-from autograder.author.course.chapter_rules import read_chapter
+from autograder.author.course.chapter_rules import read_chapter, require_checks
 from autograder.author.course.course_rules import broken_course, broken_course_file
 from autograder.author.course.sync import chapters, sync_chapter
 from autograder.author.course.tables import course_page, titles
@@ -26,7 +26,9 @@ def course() -> None:
 @_names
 def sync(names: tuple[str, ...]) -> None:
     """Write the text of the reference into notebooks, and the points of the suites into grade cells."""
-    for chapter in chapters(names):
+    chosen = chapters(names)
+    require_checks(chapter.assignment for chapter in chosen)
+    for chapter in chosen:
         changed = len(sync_chapter(chapter))
         echo(f"{chapter.assignment}: " + (f"{changed} brought up to date" if changed else "as it was"))
 
@@ -51,6 +53,7 @@ def check(names: tuple[str, ...]) -> None:
 @course.command()
 def tables() -> None:
     """Write the pages for instructors, and for students the titles of the checks that judge after handing in."""
+    require_checks(layout.assignments())
     page, problems = course_page()
     for finding in problems:
         echo(str(finding))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import textwrap
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -159,12 +158,10 @@ def _run_mutants(
     out: Path,
 ) -> ChapterMutationResult:
     """Grade the mutants of a chapter. Those that may survive are only graded if they were `named`."""
-    diffs = {mutant.id: mutant.diff for mutant in mutants}
 
     def show(result: MutantResult) -> None:
         if not result.killed:
             echo(f"{chapter.assignment} mutant {result.id} {result.killer or 'survives'}")
-            echo(textwrap.indent(diffs[result.id](), "    "))
 
     cache = out / chapter.assignment / "mutants.jsonl"
     skipped = {} if named else chapter.reasons

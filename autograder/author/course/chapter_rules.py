@@ -1,6 +1,6 @@
 """All rules for a chapter, applied at once: a mistake in one file hides none in another.
 
-Nothing is graded. What can be read is read, and only suites without a mistake are imported.
+Nothing is graded. What can be read is read, whether the suites can be imported or not.
 """
 
 from __future__ import annotations
@@ -91,12 +91,11 @@ def read_checks(assignment: str) -> ReadChecks:
     found += broken_python(folder)
     places = {f"{kind} {id}": place for kind in KINDS for id, place in read[kind].places.items()}
     checks, points = None, None
-    if not found:
-        try:
-            hidden, visible = suites.hidden(assignment), suites.visible(assignment)
-            checks, points = (*visible.checks, *hidden.checks), hidden.groups
-        except Exception as error:  # whatever the module of an author raises
-            found.append(_import_error(error, folder))
+    try:
+        hidden, visible = suites.hidden(assignment), suites.visible(assignment)
+        checks, points = (*visible.checks, *hidden.checks), hidden.groups
+    except Exception as error:  # whatever the module of an author raises
+        found += [] if found else [_import_error(error, folder)]  # what was found says it better
     written = read[suites.HIDDEN]
     sources = written.sources
     if not all((layout.SOLUTIONS / source).is_dir() for source in sources):
@@ -107,6 +106,14 @@ def read_checks(assignment: str) -> ReadChecks:
     found += broken_mutants(folder, shown(folder), ids, sources)
     found += broken_variants(folder / "variants", sources)
     return ReadChecks(tuple(found), checks, points, places)
+
+
+def require_checks(assignments: Iterable[str]) -> None:
+    """Raise a CourseError with all that is wrong with the suites of assignments that cannot be imported."""
+    graded = suites.graded_assignments()
+    read = [read_checks(name) for name in assignments if name in graded]
+    if wrong := [str(finding) for each in read if each.checks is None for finding in each.findings]:
+        raise CourseError("\n".join(dict.fromkeys(wrong)))
 
 
 def _import_error(error: Exception, folder: Path) -> Finding:

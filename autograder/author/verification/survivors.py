@@ -10,6 +10,7 @@ The report lists these mutants with their reasons and marks missing reasons. The
 
 from __future__ import annotations
 
+import textwrap
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -92,12 +93,16 @@ def reasons(assignment: str, generated: GeneratedMutants) -> dict[str, str]:
 def faults(chapters: Sequence[ChapterMutationResult]) -> list[str]:
     """Return a sentence for each mutant without a result or a reason, and for each score that is too low.
 
-    A score is only judged if all mutants of the chapter, or of all chapters, were graded.
+    A diff stands below the sentence of a mutant without a reason: its id shows nobody what it changes. A score is only
+    judged if all mutants of the chapter, or of all chapters, were graded.
     """
     sentences = [f"{each.assignment}: the grader failed on {name}" for each in chapters for name in each.failed]
-    sentences += [
-        f"{each.assignment}: {name} survives without a reason" for each in chapters for name in each.unexplained
-    ]
+    for each in chapters:
+        diffs = {mutant.id: mutant.diff for mutant in each.generated.mutants}
+        sentences += [
+            f"{each.assignment}: {name} survives without a reason\n{textwrap.indent(diffs[name](), '    ')}"
+            for name in each.unexplained
+        ]
     complete = [each for each in chapters if len(each.results) == len(each.generated.mutants)]
     scores = [(each.assignment, each.killed, each.killable, MIN_KILLED) for each in complete]
     if {each.assignment for each in complete} == set(suites.graded_assignments()):

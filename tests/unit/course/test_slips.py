@@ -221,3 +221,15 @@ def test_slips_in_several_files_are_all_said_at_once(course: Path, check: CheckC
     missing = [sentence for *_, sentence in chosen if sentence not in said]
     assert missing == [SLIPS[17][4]]  # what a check holds is known where its suite can be imported
     assert check() == f"\n{END} 0"
+
+
+def test_sync_says_what_is_wrong_with_a_suite_that_cannot_be_imported(course: Path) -> None:
+    undo = slip(course, SUITE, '("readings",)', '("readings")')
+    command = [sys.executable, "-m", "autograder", "--course", str(course), "course", "sync"]
+    try:
+        done = subprocess.run(command, cwd=layout.ROOT, text=True, capture_output=True)
+    finally:
+        undo()
+    assert done.returncode == 1
+    assert done.stderr.startswith(f"autograder: {SUITE}:4: `MODULES` is a text, and not a tuple")
+    assert "Traceback" not in done.stderr

@@ -64,7 +64,13 @@ def test_a_survivor_needs_a_reason(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
     survivor = chapter.results[-1].id
     chapter = with_reason(chapter, monkeypatch, "[]", tmp_path)
     assert chapter.unexplained == [survivor]
-    assert faults([chapter]) == [f"{ASSIGNMENT}: {survivor} survives without a reason"]
+    (mutant,) = (each for each in chapter.generated.mutants if each.id == survivor)
+    (said,) = faults([chapter])
+    assert said.splitlines() == [
+        f"{ASSIGNMENT}: {survivor} survives without a reason",
+        *(f"    {line}" for line in mutant.diff().splitlines()),
+    ]
+    assert f"\n    {mutant.file}:" in said
     chapter = with_reason(chapter, monkeypatch, f"- {{equivalent: as stated, mutants: ['{survivor}']}}", tmp_path)
     assert chapter.survivors == {survivor: "equivalent: as stated"}
     assert faults([chapter]) == []
