@@ -18,6 +18,12 @@ from pathlib import Path
 FORM = re.compile(r"[a-z](?:_?[a-z0-9]+)*")
 # Released packages of ROS. Most are not installed here, but they are where a student goes on.
 ROS_PACKAGES = Path(__file__).with_name("ros_packages.json")
+# Of PyPI, and not installed with the course: a robot's programs import them sooner or later.
+OFTEN_INSTALLED = {
+    *("cv2", "flask", "gym", "gymnasium", "jax", "keras", "networkx", "numba", "open3d", "opencv", "pandas", "pillow"),
+    *("pygame", "pyserial", "requests", "scipy", "serial", "shapely", "sklearn", "sympy", "tensorflow", "torch"),
+    *("torchvision", "transforms3d", "ultralytics"),
+}
 USED_BY_TOOLS = {"build", "install", "log", "src", "ws", "setup", "conftest", "tests", "docs"}
 
 
@@ -38,7 +44,7 @@ def taken_by(name: str) -> str:
         return "a package that pip installed"
     if _is_importable(name):
         return "a module that Python can import already"
-    return ""
+    return "a package of PyPI that robots often use" if name in OFTEN_INSTALLED else ""
 
 
 @cache

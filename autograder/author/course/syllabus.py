@@ -14,12 +14,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import yaml
 from nbformat import NotebookNode
 
 from autograder import layout
 from autograder.author.course.cells import metadata
+from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding
+from autograder.author.course.yaml_files import read_yaml
 from autograder.suite import Check
 
 PARTS = ("sections", "examples", "steps", "questions")
@@ -39,9 +40,14 @@ class Syllabus:
 
     @classmethod
     def read(cls, path: Path | None = None) -> Syllabus:
-        """Read a YAML file, that of the course by default."""
+        """Read a YAML file, that of the course by default. Raises CourseError with all that is wrong with it."""
         path = path or layout.course().root / layout.course().syllabus
-        data = yaml.safe_load(path.read_text(encoding="utf-8"))
+        if not path.is_file():
+            raise CourseError(f"{path}: is missing: it names the objectives of the course")
+        file = read_yaml(path, str(path), "syllabus.yaml")
+        if file.findings:
+            raise CourseError("\n".join(map(str, file.findings)))
+        data = file.data
         items = {key: text for part in PARTS for key, text in (data.get(part) or {}).items()}
         errata = (data.get("errata") or {}).items()
         return cls(data["objectives"] or {}, items, {n: (wrong, right) for n, (wrong, right) in errata})

@@ -23,6 +23,7 @@ from autograder.exceptions import UsageError
         ("import_linter", "a package that pip installed"),
         ("yaml", "a module that Python can import already"),
         ("autograder", "a module that Python can import already"),
+        ("torchvision", "a package of PyPI that robots often use"),
         ("install", "a name that colcon, setuptools or pytest uses"),
     ],
 )
