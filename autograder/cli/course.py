@@ -24,13 +24,17 @@ def course() -> None:
 
 @course.command()
 @_names
-def sync(names: tuple[str, ...]) -> None:
+@click.option("--dry-run", is_flag=True, help="Write nothing: list what would be brought up to date.")
+def sync(names: tuple[str, ...], dry_run: bool) -> None:
     """Write the text of the reference into notebooks, and the points of the suites into grade cells."""
     chosen = chapters(names)
     require_checks(chapter.assignment for chapter in chosen)
     for chapter in chosen:
-        changed = len(sync_chapter(chapter))
-        echo(f"{chapter.assignment}: " + (f"{changed} brought up to date" if changed else "as it was"))
+        differed = sync_chapter(chapter, write=not dry_run)
+        for finding in differed if dry_run else ():
+            echo(str(finding))
+        done = "to bring up to date" if dry_run else "brought up to date"
+        echo(f"{chapter.assignment}: " + (f"{len(differed)} {done}" if differed else "as it was"))
 
 
 @course.command()

@@ -2,21 +2,45 @@
 
 from __future__ import annotations
 
-import json
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import click
 
+from autograder import layout
+from autograder.cli.late_options import judge_class, late_options, read_policy
 from autograder.cli.options import json_option
 from autograder.cli.terminal import echo, on_line
+from autograder.cli.text_tables import table
 from autograder.exceptions import UsageError
-from autograder.lms.marks import SYSTEMS, write_marks
-from autograder.lms.roster import read_roster
+from autograder.lms.collect import unpacked
+from autograder.lms.feedback_archive import canvas_places, moodle_places, write_archive
+from autograder.lms.lateness import Lateness
+from autograder.lms.manual import add_manual, manual_cells, read_manual
+from autograder.lms.marks import SYSTEMS, mark_table, one_assignment
+from autograder.lms.roster import Roster, read_roster
+from autograder.lms.tables import FindStudent, student_finder
 from autograder.report import export as exporters
-from autograder.result.class_folder import COLLECTION_REPORT
-from autograder.result.model import write_json
+from autograder.result.model import Result, Status, write_json
 
 _FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if format.FOLDER)
+_FEEDBACK = {f"{system}-feedback": system for system in SYSTEMS}  # the formats of feedback
+_WITH_LATENESS = ("csv", *SYSTEMS)
+
+Missed = list[tuple[str, str]]  # students who get no mark or no feedback, each with the reason
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is to be written: for each student what is there and what takes its place, and who is left out."""
+
+    rows: Sequence[tuple[str, str, str]]
+    missed: Missed
+    write: Callable[[], object]
 
 
 @click.command()
@@ -25,7 +49,7 @@ _FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if fo
     "--format",
     "name",
     required=True,
-    type=click.Choice(sorted([*exporters.FORMATS, *SYSTEMS])),
+    type=click.Choice(sorted([*exporters.FORMATS, *SYSTEMS, *_FEEDBACK])),
     help="The format to write.",
 )
 @click.option(
@@ -40,34 +64,139 @@ _FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if fo
     help="For canvas and moodle: the table that the system exported, into which the marks are filled.",
 )
 @click.option(
-    "--late-penalty",
-    type=click.FloatRange(0, 100),
-    default=0.0,
-    metavar="PERCENT",
-    help="For canvas and moodle: subtract PERCENT of its marks from a late submission.",
+    "--manual",
+    type=click.Path(path_type=Path, dir_okay=False, exists=True),
+    help="A CSV file with the points that a person gave: the columns student, and one for each manually graded cell.",
 )
+@click.option(
+    "--download",
+    type=click.Path(path_type=Path, exists=True),
+    help="For canvas-feedback: the download of the submissions, whose names Canvas takes back.",
+)
+@late_options
+@click.option("--dry-run", is_flag=True, help="Write nothing: list what would be written for each student.")
 @json_option
 def export(
-    results: Path, name: str, out: Path, roster: Path | None, late_penalty: float, json_file: Path | None
+    results: Path,
+    name: str,
+    out: Path,
+    roster: Path | None,
+    manual: Path | None,
+    download: Path | None,
+    dry_run: bool,
+    json_file: Path | None,
+    **late: Any,
 ) -> None:
-    """Write stored RESULTS (a folder or a JSON file) as marks for other programs."""
-    stored = exporters.load(results)
-    if name in SYSTEMS:
-        if roster is None:
-            raise UsageError(f"--format {name} needs --roster: the table that {name.title()} exported")
-        table = read_roster(roster)
-        unmatched_students = write_marks(stored, name, table, out, late=_late(results), late_penalty=late_penalty)
-        if unmatched_students:
-            echo(f"Not in {roster}: {', '.join(map(on_line, unmatched_students))}", err=True)
-        written = out
+    """Write stored RESULTS (a folder or a JSON file) as marks or feedback for other programs.
+
+    The exit status is 0 when every student of RESULTS got what was asked for, 1 when one is listed who did not, and 2
+    for a wrong call.
+    """
+    stored: Sequence[Result] = exporters.load(results)
+    students = read_roster(roster) if roster is not None else None
+    if students is None and name in (*SYSTEMS, *_FEEDBACK):
+        raise UsageError(f"--format {name} needs --roster: the table that {_FEEDBACK.get(name, name).title()} exported")
+    if any(late.values()) and name not in _WITH_LATENESS:
+        raise UsageError(f"marks of late submissions are for --format {', '.join(_WITH_LATENESS)}, not {name}")
+    find = student_finder({result.student for result in stored}, students)
+    stored, missed = _with_manual(stored, manual, find)
+    lateness = judge_class(read_policy(find, late), results, (result.student for result in stored))
+    if students is not None and name in SYSTEMS:
+        plan = _marks(stored, name, students, lateness, out)
+    elif students is not None and name in _FEEDBACK:
+        plan = _feedback(
+            [result for result in stored if result.student not in dict(missed)], name, students, download, out
+        )
     else:
-        written = exporters.write(stored, name, out)
-    echo(f"{len(stored)} results: {written}")
+        plan = _results(stored, name, lateness if any(late.values()) else {}, out)
+    missed = list(dict((*plan.missed, *missed)).items())
+    if dry_run:
+        echo(table([(*row, dict(missed).get(row[0], "")) for row in plan.rows], ("student", "now", "new", "left out")))
+        echo(f"Nothing was written. Without --dry-run, {len(plan.rows)} results go to {out}.")
+    else:
+        written = plan.write()
+        echo(f"{len(stored)} results: {written}")
+    for student, why in missed:
+        echo(f"Left out: {on_line(student)}: {on_line(why)}", err=True)
     if json_file is not None:
-        write_json(json_file, {"results": len(stored), "format": name, "written": str(written)})
+        write_json(json_file, {"results": len(stored), "format": name, "written": "" if dry_run else str(written)})
+    sys.exit(1 if missed else 0)
 
 
-def _late(results: Path) -> tuple[str, ...]:
-    """Return the students whose submission was late, as `autograder grade --roster` found them."""
-    file = results / COLLECTION_REPORT
-    return tuple(json.loads(file.read_text(encoding="utf-8"))["late"]) if file.is_file() else ()
+def _with_manual(stored: Sequence[Result], manual: Path | None, find: FindStudent) -> tuple[Sequence[Result], Missed]:
+    """Return the results with the points that a person gave, and the students whom nobody has given all of them."""
+    if manual is None:
+        for assignment in sorted({result.assignment for result in stored} & _assignments()):
+            if cells := manual_cells(assignment):
+                points = f"{sum(cells.values()):g} points that a person gives ({', '.join(cells)})"
+                echo(f"{assignment} has {points}, which are missing here: add them with --manual", err=True)
+        return stored, []
+    assignment = one_assignment(stored)
+    cells = manual_cells(assignment)
+    if not cells:
+        raise UsageError(f"{assignment} has no cell that a person grades: leave out --manual")
+    return add_manual(stored, read_manual(manual, cells, find), cells)
+
+
+def _assignments() -> set[str]:
+    """Return the assignments of the course; results can be exported without one."""
+    try:
+        return set(layout.assignments())
+    except UsageError:
+        return set()
+
+
+def _marks(stored: Sequence[Result], system: str, roster: Roster, lateness: Mapping[str, Lateness], out: Path) -> Plan:
+    """Return the plan of a table for a learning management system."""
+    unclear = {student: found.unclear for student, found in lateness.items() if found.unclear}
+    kept = {student: None if found.unclear else found.kept for student, found in lateness.items()}
+    filled = mark_table(stored, system, roster, kept)
+    missed = [(r.student, r.status.words) for r in stored if r.status is not Status.GRADED]
+    missed += [*unclear.items(), *((student, f"not in {roster.path}") for student in filled.unknown)]
+    rows = [(result.student, *filled.marks.get(result.student, ("", ""))) for result in stored]
+
+    def write() -> Path:
+        filled.write(out)
+        return out
+
+    return Plan(rows, missed, write)
+
+
+def _feedback(stored: Sequence[Result], name: str, roster: Roster, download: Path | None, out: Path) -> Plan:
+    """Return the plan of a zip with the feedback of those whom the grader did not fail."""
+    told = [result for result in stored if result.status is not Status.NOT_GRADED]
+    students = [result.student for result in told]
+    if _FEEDBACK[name] == "moodle":
+        places = moodle_places(roster, students)
+    elif download is None:
+        raise UsageError(f"--format {name} needs --download: the zip of the submissions, as Canvas made it")
+    else:
+        with unpacked(download) as folder:
+            places = canvas_places(folder, roster, one_assignment(stored), students)
+    missed = [(r.student, r.status.words) for r in stored if r.status is Status.NOT_GRADED]
+    rows = [(student, "", places.names.get(student, "")) for student in students]
+
+    def write() -> Path:
+        write_archive(told, places, out)
+        return out
+
+    return Plan(rows, [*missed, *places.left_out], write)
+
+
+def _results(stored: Sequence[Result], name: str, lateness: Mapping[str, Lateness], out: Path) -> Plan:
+    """Return the plan of a format of results; a CSV file gets the marks of late submissions in columns of their own."""
+    more = {result.student: _late_cells(result, lateness[result.student]) for result in stored if lateness}
+    missed = [(student, found.unclear) for student, found in lateness.items() if found.unclear]
+    rows = [(r.student, "", str(more[r.student]["mark"] if more else _score(r))) for r in stored]
+    options: dict[str, Any] = {"more": more} if more else {}
+    return Plan(rows, missed, partial(exporters.write, stored, name, out, **options))
+
+
+def _late_cells(result: Result, late: Lateness) -> dict[str, str | float]:
+    days = "" if late.unclear or late.days is None else late.days
+    mark = "" if late.unclear or result.status is not Status.GRADED else round(result.score * late.kept, 4)
+    return {"late_days": days, "mark": mark}
+
+
+def _score(result: Result) -> str:
+    return f"{result.score:g}" if result.status is Status.GRADED else ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -22,9 +22,11 @@ from autograder.cli.terminal import echo, on_line
 from autograder.cli.text_tables import failure_summary, score_text, table
 from autograder.exceptions import StudentError, UsageError
 from autograder.grade.apart import read_preview
-from autograder.grade.batch import GradeEach, grade_all
-from autograder.grade.store import LOG
+from autograder.grade.batch import GradeEach, grade_all, stored
+from autograder.grade.job import Job
+from autograder.grade.store import LOG, RESULT
 from autograder.report import feedback
+from autograder.report.export import load
 from autograder.report.export.earlier import EarlierMarks
 from autograder.result.model import Result, Status, write_json
 from autograder.run.sandbox import Tier
@@ -94,7 +96,10 @@ def grade(
     suites.hidden(assignment)
     if dry_run:
         with find_submissions(paths, assignment, roster) as (submissions, all_fit):
-            sys.exit(0 if _preview(submissions, assignment, Tier(isolation)) and all_fit else 1)
+            jobs_to_do = [
+                Job(path, assignment, name, seed, out / name, Tier(isolation)) for name, path in submissions.items()
+            ]
+            sys.exit(0 if _preview(jobs_to_do, resume) and all_fit else 1)
     with (
         find_submissions(paths, assignment, roster, out=out) as (submissions, all_fit),
         Progress(len(submissions)) as progress,
@@ -149,20 +154,36 @@ def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None
         write_json(json_file, [result.to_json() for result in results])
 
 
-def _preview(submissions: Mapping[str, Path], assignment: str, tier: Tier) -> bool:
-    """Print what counts of each submission; return whether each is clear."""
+def _preview(submissions: Sequence[Job], resume: bool) -> bool:
+    """Print what counts of each submission, and what becomes of its stored result; return whether each is clear."""
     rows, all_clear = [], True
-    for student, path in submissions.items():
+    for job in submissions:
+        effect = _effect(job, resume)
         try:
-            found = read_preview(path, assignment, tier)
+            found = read_preview(job.path, job.assignment, job.tier)
         except StudentError as error:
-            rows.append((student, "unclear", on_line(str(error))))
+            rows.append((job.student, effect, "unclear", on_line(str(error))))
             all_clear = False
             continue
         runs = "the notebook has to run" if found.files is None else f"{found.files} files count"
-        rows.append((student, runs, on_line(" ".join((*found.notices, _not_used(found.unused))))))
-    echo(table(rows, ("submission", "what counts", "notes")))
+        rows.append((job.student, effect, runs, on_line(" ".join((*found.notices, _not_used(found.unused))))))
+    echo(table(rows, ("submission", "result", "what counts", "notes")))
+    echo("Nothing was graded or written.")
     return all_clear
+
+
+def _effect(job: Job, resume: bool) -> str:
+    """Return what grading does to the result that is there."""
+    file = job.out / RESULT
+    if not file.is_file():
+        return "new"
+    if resume and (kept := stored(job)) is not None:
+        return f"keeps {score_text(kept)}"
+    try:
+        (old,) = load(file)
+    except (UsageError, ValueError):
+        return "replaces one that cannot be read"
+    return f"replaces {score_text(old)}"
 
 
 def _not_used(names: Sequence[str]) -> str:

@@ -17,6 +17,7 @@ from autograder.lms.roster import read_roster
 from autograder.result.class_folder import COLLECTION_REPORT
 from autograder.result.model import write_json
 
+REPORTED = ("late", "late_by", "times", "older", "unmatched", "missing")  # what is written of a download
 roster_option = click.option(
     "--roster",
     type=click.Path(path_type=Path, dir_okay=False, exists=True),
@@ -47,7 +48,7 @@ def find_submissions(
             if names:
                 echo(f"{title}: {', '.join(map(on_line, names))}")
         if out is not None:
-            lists = {name: getattr(found, name) for name in ("late", "older", "unmatched", "missing")}
+            lists = {name: getattr(found, name) for name in REPORTED}
             write_json(out / COLLECTION_REPORT, lists)
         yield found.submissions, not found.unmatched
 

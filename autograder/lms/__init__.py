@@ -1,5 +1,6 @@
 """The exchange with learning management systems: what they hand over, and what they take back.
 
 download (zip or folder) -> names -> match with the roster -> the newest of each student -> submissions to grade
-results -> the table that the system exported, with the marks filled in
+results, points of a person, extensions -> the table that the system exported, with the marks filled in
+results -> the zip of feedback that the system gives to the students
 """

@@ -33,6 +33,8 @@ class CollectedSubmissions:
         older: the names of the submissions that a newer one of the same student replaces.
         unmatched: what fits no student or is no submission, as pairs of a name and the reason.
         missing: the students without a submission.
+        times: when each student's submission came, in ISO 8601, where the system says it.
+        late_by: the delays that Moodle's table names, in seconds.
     """
 
     submissions: Mapping[str, Path]
@@ -40,6 +42,8 @@ class CollectedSubmissions:
     older: tuple[str, ...]
     unmatched: tuple[tuple[str, str], ...]
     missing: tuple[str, ...]
+    times: Mapping[str, str]
+    late_by: Mapping[str, int]
 
 
 @contextmanager
@@ -69,6 +73,31 @@ def collect(folder: Path, roster: Roster, assignment: str, scratch: Path) -> Col
     In nbgrader's layout, the folder of a student holds one with the name of the assignment. The files of an attempt
     that has several are copied to a folder in `scratch`.
     """
+    handed_in, unmatched = _by_student(folder, roster, assignment)
+    newest = {name: _newest(attempts) for name, attempts in handed_in.items()}
+    students = [student for student in roster.students if student.id in newest]
+    times = {student.id: max(item.time for item in newest[student.id]) for student in students}
+    return CollectedSubmissions(
+        {student.id: _together(newest[student.id], assignment, scratch) for student in students},
+        tuple(student.id for student in students if student.late or any(item.late for item in newest[student.id])),
+        tuple(item.listed_name for name, there in handed_in.items() for item in there if item not in newest[name]),
+        tuple(unmatched),
+        tuple(student.id for student in roster.students if student.id not in newest),
+        {name: time for name, time in times.items() if time},
+        {student.id: student.late_by for student in students if student.late_by is not None},
+    )
+
+
+def newest_items(folder: Path, roster: Roster, assignment: str) -> dict[str, list[DownloadedItem]]:
+    """Return the files and folders of each student's newest attempt in an unpacked download."""
+    handed_in, _ = _by_student(folder, roster, assignment)
+    return {name: _newest(attempts) for name, attempts in handed_in.items()}
+
+
+def _by_student(
+    folder: Path, roster: Roster, assignment: str
+) -> tuple[dict[str, list[DownloadedItem]], list[tuple[str, str]]]:
+    """Return what each student handed in, in all attempts, and what fits no student or is no submission."""
     items, unmatched = _items(folder, roster, assignment)
     handed_in: dict[str, list[DownloadedItem]] = {}
     texts: list[tuple[str, DownloadedItem]] = []
@@ -86,16 +115,7 @@ def collect(folder: Path, roster: Roster, assignment: str, scratch: Path) -> Col
         orders = {item.order for item in handed_in.get(name, ())}
         if not (text.is_receipt and text.order in orders):
             unmatched.append((text.listed_name, "it is no file that was handed in"))
-    newest = {name: _newest(attempts) for name, attempts in handed_in.items()}
-    students = [student.id for student in roster.students]
-    late = {student.id for student in roster.students if student.late}
-    return CollectedSubmissions(
-        {name: _together(newest[name], assignment, scratch) for name in students if name in newest},
-        tuple(name for name in students if name in newest and (name in late or any(i.late for i in newest[name]))),
-        tuple(item.listed_name for name, there in handed_in.items() for item in there if item not in newest[name]),
-        tuple(unmatched),
-        tuple(name for name in students if name not in newest),
-    )
+    return handed_in, unmatched
 
 
 def _items(folder: Path, roster: Roster, assignment: str) -> tuple[list[DownloadedItem], list[tuple[str, str]]]:

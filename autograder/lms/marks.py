@@ -10,7 +10,8 @@ assignment's column are kept. A column that is new makes a new assignment in Can
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from autograder.exceptions import UsageError
@@ -22,55 +23,85 @@ CANVAS_NAMES = ("student", "id", "sis user id", "sis login id", "integration id"
 CANVAS_POINTS = "points possible"
 
 
-def write_marks(
-    results: Sequence[Result],
-    system: str,
-    roster: Roster,
-    out: Path,
-    *,
-    late: Collection[str] = (),
-    late_penalty: float = 0.0,
-) -> list[str]:
-    """Write the table of a system with the marks of one assignment.
+@dataclass(frozen=True)
+class MarkTable:
+    """The table of a system with the marks of one assignment.
+
+    Attributes:
+        rows: all of its rows, the headings first.
+        marks: the cell of each student with a mark, before and after.
+        unknown: the students who have a result and are not in the table.
+    """
+
+    rows: Rows
+    marks: Mapping[str, tuple[str, str]]
+    unknown: tuple[str, ...]
+
+    def write(self, out: Path) -> None:
+        """Write the table as CSV."""
+        out.parent.mkdir(parents=True, exist_ok=True)
+        with out.open("w", encoding="utf-8", newline="") as file:
+            csv.writer(file).writerows(self.rows)
+
+
+def mark_table(
+    results: Sequence[Result], system: str, roster: Roster, kept: Mapping[str, float | None] = {}
+) -> MarkTable:
+    """Return the table of a system with the marks of one assignment.
 
     A submission that was not graded, or that nobody handed in, leaves its cell as it is. Marks are scaled to the most
-    that the table says. Students who were `late` lose `late_penalty` percent of theirs. `system` is a key
-    of `SYSTEMS`. Raises UsageError if the table lacks a column, or the results are of several assignments.
+    that the table says.
 
-    Returns:
-        The students who have a result and are not in the table.
+    Args:
+        results: those of one assignment.
+        system: a key of `SYSTEMS`.
+        roster: the table as the system exported it.
+        kept: the share of their marks, 0 to 1, that students keep whose submissions were late; None for no mark.
+
+    Raises:
+        UsageError: the table lacks a column, or the results are of several assignments.
     """
-    marks = {result.student: result for result in results if result.status is Status.GRADED}
+    assignment = one_assignment(results)
+    graded = {result.student: result for result in results if result.status is Status.GRADED}
+    shares = {
+        name: result.percent / 100 * share
+        for name, result in graded.items()
+        if (share := kept.get(name, 1.0)) is not None
+    }
+    known = {student.id for student in roster.students}
+    unknown = tuple(sorted(result.student for result in results if result.student not in known))
+    most = next((result.max_score for result in graded.values()), 0.0)
+    rows, marks = SYSTEMS[system](roster, shares, most, assignment)
+    return MarkTable(rows, marks, unknown)
+
+
+def one_assignment(results: Sequence[Result]) -> str:
+    """Return the assignment of results. Raises UsageError if they are of several ones."""
     assignments = {result.assignment for result in results}
     if len(assignments) != 1:
         raise UsageError(
             f"a table takes the marks of one assignment, and these are of {', '.join(sorted(assignments))}"
         )
-
-    def share(result: Result) -> float:
-        return result.percent / 100 * (1 - late_penalty / 100 * (result.student in late))
-
-    rows = SYSTEMS[system](roster, marks, share, assignments.pop())
-    out.parent.mkdir(parents=True, exist_ok=True)
-    with out.open("w", encoding="utf-8", newline="") as file:
-        csv.writer(file).writerows(rows)
-    known = {student.id for student in roster.students}
-    return sorted(result.student for result in results if result.student not in known)
+    return assignments.pop()
 
 
-def _moodle(roster: Roster, results: dict[str, Result], share: Callable[[Result], float], assignment: str) -> Rows:
+Filled = tuple[Rows, dict[str, tuple[str, str]]]
+
+
+def _moodle(roster: Roster, shares: Mapping[str, float], most: float, assignment: str) -> Filled:
     # The last one is not read here. Moodle refuses a worksheet without it.
     columns = _columns(roster, ("identifier", "grade", "maximum grade", "last modified (grade)"))
-    grade, most = columns["grade"], columns["maximum grade"]
-    rows = [list(row) for row in roster.rows]
+    grade, maximum = columns["grade"], columns["maximum grade"]
+    rows, marks = [list(row) for row in roster.rows], {}
     for student in roster.students:
-        if (result := results.get(student.id)) is not None:
+        if student.id in shares:
             row = rows[student.row]
-            row[grade] = _points(share(result) * _number(row[most], roster))
-    return [list(roster.headings), *rows]
+            marks[student.id] = row[grade], _points(shares[student.id] * _number(row[maximum], roster))
+            row[grade] = marks[student.id][1]
+    return [list(roster.headings), *rows], marks
 
 
-def _canvas(roster: Roster, results: dict[str, Result], share: Callable[[Result], float], assignment: str) -> Rows:
+def _canvas(roster: Roster, shares: Mapping[str, float], most: float, assignment: str) -> Filled:
     columns = _columns(roster, ("student", "id"))
     points = next((row for row in roster.rows if normalized(row[0]) == CANVAS_POINTS), None)
     wanted = normalized(assignment.replace("_", " "))
@@ -82,15 +113,16 @@ def _canvas(roster: Roster, results: dict[str, Result], share: Callable[[Result]
     column = columns[fitting[0]] if fitting else None
     kept = [place for name, place in columns.items() if name in CANVAS_NAMES]
     heading = assignment if column is None else roster.headings[column]
-    most = next((r.max_score for r in results.values()), 0.0)
     if column is not None and points is not None:
         most = _number(points[column], roster)
-    marks = {s.row: _points(share(results[s.id]) * most) for s in roster.students if s.id in results}
-    rows = [[*(roster.headings[place] for place in kept), heading]]
-    for place, row in enumerate(roster.rows):
-        cell = row[column] if column is not None else _points(most) if row is points else ""
-        rows.append([*(row[k] for k in kept), marks.get(place, cell)])
-    return rows
+    cells = [row[column] if column is not None else _points(most) if row is points else "" for row in roster.rows]
+    marks = {}
+    for student in roster.students:
+        if student.id in shares:
+            marks[student.id] = cells[student.row], _points(shares[student.id] * most)
+            cells[student.row] = marks[student.id][1]
+    rows = [[*(row[place] for place in kept), cell] for row, cell in zip(roster.rows, cells, strict=True)]
+    return [[*(roster.headings[place] for place in kept), heading], *rows], marks
 
 
 SYSTEMS = {"canvas": _canvas, "moodle": _moodle}

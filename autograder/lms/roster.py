@@ -40,7 +40,11 @@ COLUMNS = {
 }
 # The first of these that a student has names the folder of the result.
 NAMES_A_STUDENT = ("login", "number", "email", "identifier", "id", "name")
+# What a text may be that names a student, the most certain first.
+ANY_KIND = ("login", "number", "sis id", "email", "identifier", "id", "github", "name")
 LATE = re.compile(r"\d \w+ late\b")  # in Moodle's status: "Submitted for grading - 1 day 2 hours late"
+PART = re.compile(r"(\d{1,9}) (year|week|day|hour|min|sec)s?\b")  # of a duration, as Moodle's `format_time` writes it
+SECONDS = {"year": 31_536_000, "week": 604_800, "day": 86_400, "hour": 3_600, "min": 60, "sec": 1}
 TITLES = 3  # lines in which the headings may stand; the first ones may be a title
 PARTICIPANT = "participant "  # what Moodle writes before the number that it also puts into file names
 NOT_STUDENTS = ("points possible", "student, test")  # rows of Canvas
@@ -51,13 +55,14 @@ class Student:
     """A student: the name in results, what is known of them as pairs of a kind and a text, and the number of their row.
 
     Kinds are values of `COLUMNS`. Kind and text are normalized. Rows are counted from 0, without the headings. `late`
-    says whether Moodle's table calls the submission late.
+    says whether Moodle's table calls the submission late, and `late_by` by how many seconds, rounded down by Moodle.
     """
 
     id: str
     keys: frozenset[tuple[str, str]]
     row: int
     late: bool = False
+    late_by: int | None = None
 
 
 @dataclass(frozen=True)
@@ -77,6 +82,10 @@ class Roster:
             if len(fitting) == 1:
                 return fitting[0]
         return None
+
+    def named(self, text: str) -> Student | None:
+        """Return the one student whom a text names, by whatever the roster says of them."""
+        return self.find(tuple((kind, text) for kind in ANY_KIND))
 
 
 def normalized(text: str) -> str:
@@ -128,5 +137,7 @@ def _student(kinds: list[str], row: tuple[str, ...], place: int) -> Student | No
         number = participant.removeprefix(PARTICIPANT)
         keys |= {("identifier", number), ("identifier and name", normalized(f"{number} {cells.get('name', '')}"))}
     name = next(cells[kind] for kind in NAMES_A_STUDENT if kind in cells) if set(cells) & set(NAMES_A_STUDENT) else ""
-    late = LATE.search(cells.get("status", "")) is not None
-    return Student(name.replace("/", "-").replace("\0", ""), frozenset(keys), place, late) if name else None
+    status = next((part for part in cells.get("status", "").split(" - ") if LATE.search(part)), "")
+    late_by = sum(int(count) * SECONDS[unit] for count, unit in PART.findall(status)) if status else None
+    folder = name.replace("/", "-").replace("\0", "")
+    return Student(folder, frozenset(keys), place, bool(status), late_by or None) if name else None

@@ -29,6 +29,7 @@ import yaml
 
 from autograder.exceptions import UsageError
 from autograder.grade.batch import student_of
+from autograder.lms.roster import ANY_KIND
 from autograder.submission.intake.ignored import is_ignored
 
 METADATA = "submission_metadata.yml"  # of Gradescope
@@ -75,6 +76,7 @@ class DownloadedItem:
         is_submission: whether it is a submitted file; a text that was typed into Moodle is not.
         is_receipt: whether the system writes one for each attempt; where a file came with it, it says nothing.
         system: the system, if the name says it.
+        time: when it was handed in, in ISO 8601, if the system says it; Gradescope alone says in which time zone.
     """
 
     path: Path
@@ -86,6 +88,7 @@ class DownloadedItem:
     doubt: str = ""
     is_receipt: bool = False
     system: str = ""
+    time: str = ""
 
     @property
     def own_name(self) -> str:
@@ -122,8 +125,7 @@ def _read_name(path: Path) -> list[DownloadedItem]:
     if members := _members(path):
         return [replace(item, keys=keys) for item in _read_sakai(path) for keys in members]
     stem = student_of(path)
-    kinds = ("login", "number", "sis id", "email", "identifier", "id", "github", "name")
-    return [DownloadedItem(path, tuple((kind, stem) for kind in kinds))]
+    return [DownloadedItem(path, tuple((kind, stem) for kind in ANY_KIND))]
 
 
 def _cuts(path: Path, pattern: re.Pattern[str], start: int = 0) -> list[re.Match[str]]:
@@ -151,7 +153,8 @@ def _read_brightspace(path: Path, start: int, places: list[re.Match[str]]) -> Do
     who = [path.name[start : place.start()] for place in places]
     keys = _people(who[0]) if len(who) == 1 else tuple(("name", name) for name in who)
     name = path.name[places[0].end() :].removeprefix(" - ")
-    return DownloadedItem(path, keys, (_time(places[0]),), name=name, system="brightspace")
+    time = _time(places[0])
+    return DownloadedItem(path, keys, (time,), name=name, system="brightspace", time=time)
 
 
 def _read_blackboard(path: Path, found: re.Match[str]) -> DownloadedItem:
@@ -167,6 +170,7 @@ def _read_blackboard(path: Path, found: re.Match[str]) -> DownloadedItem:
         doubt="" if known else "unclear: Blackboard's receipt beside it is missing, or names somebody else",
         is_receipt=not file,
         system="blackboard",
+        time="{}-{}-{} {}:{}:{}".format(*found["time"].split("-")),
     )
 
 
@@ -281,4 +285,5 @@ def _downloaded_items(folder: Path, entry: dict[str, Any]) -> Iterator[Downloade
     kinds = {":sid": "number", ":email": "email", ":name": "name"}
     for person in entry[":submitters"]:
         keys: IdentityKeys = tuple((kind, str(person[key])) for key, kind in kinds.items() if person.get(key))
-        yield DownloadedItem(folder, keys, (str(entry.get(":created_at", "")),))
+        time = str(entry.get(":created_at", ""))
+        yield DownloadedItem(folder, keys, (time,), time=time)

@@ -82,9 +82,10 @@ def find_outdated(
     return [finding for finding, _ in _differences(chapter, notebook, points)]
 
 
-def sync_chapter(chapter: Chapter) -> list[Finding]:
+def sync_chapter(chapter: Chapter, *, write: bool = True) -> list[Finding]:
     """Copy the reference and the suite's points into a chapter, and return the cells and files that differed.
 
+    Nothing is written without `write`.
     Raises CourseError for what only an author can correct. Nothing is written then.
     """
     notebook = chapter.read()
@@ -94,10 +95,10 @@ def sync_chapter(chapter: Chapter) -> list[Finding]:
     for finding, correct in differences:
         if correct is None:
             raise CourseError(str(finding))
-    for _, correct in differences:
+    for _, correct in differences if write else ():
         if correct is not None:
             correct()
-    if any(finding.cell is not None for finding, _ in differences):
+    if write and any(finding.cell is not None for finding, _ in differences):
         chapter.write(notebook)
     return [finding for finding, _ in differences]
 

@@ -19,9 +19,12 @@ from autograder import cli
 from autograder.cli.grade import grade as grade_verb
 from autograder.cli.text_tables import table
 from autograder.exceptions import GraderError, UsageError
+from autograder.grade import DEFAULT_SEED
+from autograder.grade.apart import read_digests
 from autograder.notebook.checking import CheckReport
 from autograder.result import model as result
-from autograder.suite import Check, Outcome, Visibility
+from autograder.run.sandbox import Tier
+from autograder.suite import Check, Outcome, Visibility, suites
 
 MakeResult = Callable[..., result.Result]
 
@@ -109,6 +112,37 @@ def test_regrading_with_resume_lists_the_students_whose_mark_changed(
     said = _run(*command, "--resume").output
     assert said.endswith("changed:\nalice (02_nodes): 4 -> 7\n    turns: 1 -> 4\n")
     assert "changed:" not in _run(*command).output
+
+
+@pytest.mark.promise("With `--resume`, it also says which stored results would stay and which would be replaced.")
+def test_a_dry_run_of_grading_says_what_becomes_of_stored_results(tmp_path: Path, make_result: MakeResult) -> None:
+    for name in ("alice", "bob", "carol"):
+        node = tmp_path / "class" / name / "src" / "node.py"
+        node.parent.mkdir(parents=True)
+        node.write_text(f"print({name!r})")
+    command = (
+        "grade",
+        str(tmp_path / "class"),
+        "--assignment",
+        "02_nodes",
+        "--out",
+        str(tmp_path / "out"),
+        "--dry-run",
+    )
+    suite = suites.hidden("02_nodes")
+    digests = read_digests(tmp_path / "class" / "alice", "02_nodes", Tier.BUBBLEWRAP)
+    assert digests is not None
+    current = make_result("alice", submission_sha256=digests.sha256, suite_version=suite.version, seed=DEFAULT_SEED)
+    for stored in (current, make_result("bob")):
+        result.write_json(tmp_path / "out" / stored.student / "result.json", stored.to_json())
+    before = {path: path.read_bytes() for path in (tmp_path / "out").rglob("*.json")}
+    for more, kept in (((), "replaces"), (("--resume",), "keeps")):
+        said = " ".join(_run(*command, *more).output.split())
+        assert f"alice {kept} 4/10 = 40 %" in said
+        assert "bob replaces 4/10 = 40 %" in said
+        assert "carol new" in said
+        assert "Nothing was graded or written." in said
+    assert {path: path.read_bytes() for path in (tmp_path / "out").rglob("*") if path.is_file()} == before
 
 
 def test_a_submission_that_was_not_graded_exits_1_and_shows_no_zero(

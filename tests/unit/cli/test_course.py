@@ -72,6 +72,13 @@ def test_course_check_names_all_findings_and_exits_with_1(course: Path) -> None:
 
 @pytest.mark.promise("`autograder course sync` writes the text of cells with a `source`")
 def test_course_check_finds_nothing_after_sync(course: Path) -> None:
+    before = {path: path.read_bytes() for path in course.rglob("*") if path.is_file()}
+    dry = run("sync", "--dry-run")
+    assert dry.exit_code == 0
+    assert "cell 'node': differs from solutions/node.py" in dry.output
+    assert "cell 'g': has 1 points, but the checks of 'graph' have 2" in dry.output
+    assert dry.output.endswith("01_small: 2 to bring up to date\n")
+    assert {path: path.read_bytes() for path in course.rglob("*") if path.is_file()} == before
     assert run("sync").output == "01_small: 2 brought up to date\n"
     checked = run("check")
     assert (checked.exit_code, checked.output) == (0, "")

@@ -515,3 +515,41 @@ def test_a_table_that_names_no_students_is_a_wrong_call(tmp_path: Path, table: s
     (tmp_path / "roster.csv").write_text(table)
     with pytest.raises(UsageError, match=why):
         read_roster(tmp_path / "roster.csv")
+
+
+def test_the_times_of_submissions_are_those_of_the_newest_attempts(tmp_path: Path) -> None:
+    folder = download(tmp_path / "export", "submission_1/a.zip", "submission_2/b.zip")
+    (folder / "submission_metadata.yml").write_text(
+        "submission_1:\n  :submitters: [{':sid': '101'}]\n  :created_at: 2026-05-04 18:00:00.5 -05:00\n"
+        "submission_2:\n  :submitters: [{':sid': '102'}]\n"
+    )
+    collected, _ = found(folder, "SID,Name\n101,Ada\n102,Bob\n")
+    assert collected.times == {"101": "2026-05-04 18:00:00.500000-05:00"}
+    folder = download(
+        tmp_path / "gradebook",
+        "C_jdoe3_attempt_2014-04-30-21-02-38_old.zip",
+        "C_jdoe3_attempt_2014-05-01-08-00-00_new.zip",
+        "C_jdoe3_attempt_2014-04-30-21-02-38.txt",
+        "C_jdoe3_attempt_2014-05-01-08-00-00.txt",
+    )
+    receipts(folder, C="jdoe3")
+    assert found(folder, BLACKBOARD)[0].times == {"jdoe3": "2014-05-01 08:00:00"}
+    folder = download(tmp_path / "d2l", "1-2 - Jane Doe - Nov 9, 2025 1205 AM - a.zip")
+    assert found(folder, BLACKBOARD)[0].times == {"jdoe3": "2025-11-09 00:05"}
+
+
+@pytest.mark.parametrize(
+    ("status", "late_by"),
+    [
+        ("Submitted for grading", None),
+        ("Submitted for grading - 1 day 2 hours late", 93_600),
+        ("Submitted for grading - 2 hours 5 mins late - Extension granted until: Monday, 4 May 2026, 18:00", 7_500),
+        ("Graded - 1 min 1 sec late", 61),
+        ("Submitted for grading - 1 year 35 days late", 34_560_000),
+    ],
+)
+def test_moodles_table_says_how_late_a_submission_is(tmp_path: Path, status: str, late_by: int | None) -> None:
+    folder = download(tmp_path / "moodle", "Zoë Müller-Żak_101_assignsubmission_file_/a.zip")
+    collected, _ = found(folder, MOODLE.replace("Submitted for grading,", f'"{status}",', 1))
+    assert collected.late_by == ({} if late_by is None else {"zoe@example.edu": late_by})
+    assert collected.late == (() if late_by is None else ("zoe@example.edu",))

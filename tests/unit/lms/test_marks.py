@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from autograder.cli import group
 from autograder.exceptions import UsageError
-from autograder.lms.marks import write_marks
+from autograder.lms.marks import mark_table
 from autograder.lms.roster import read_roster
 from autograder.result.model import Result, Status, write_json
 from tests.unit.lms.test_collect import CANVAS, MOODLE
@@ -46,7 +46,9 @@ def test_moodle_gets_marks_scaled_to_its_own_maximum(
         make_result("eve@example.edu"),
     ]
     roster = read_roster(table(MOODLE))
-    assert write_marks(stored, "moodle", roster, tmp_path / "out.csv") == ["eve@example.edu"]
+    filled = mark_table(stored, "moodle", roster)
+    filled.write(tmp_path / "out.csv")
+    assert (filled.unknown, filled.marks) == (("eve@example.edu",), {"zoe@example.edu": ("", "40.00")})
     before, after = rows(tmp_path / "table.csv"), rows(tmp_path / "out.csv")
     assert [row.pop("Grade") for row in after] == ["40.00", "", ""]  # 4 of 10 points, of 100
     assert after == [{key: value for key, value in row.items() if key != "Grade"} for row in before]
@@ -61,7 +63,7 @@ def test_canvas_gets_the_column_of_the_assignment_and_late_submissions_lose_poin
 ) -> None:
     stored = [make_result(name) for name in ("jdoe", "zoe")]
     roster = read_roster(table(CANVAS))
-    write_marks(stored, "canvas", roster, tmp_path / "out.csv", late=("jdoe",), late_penalty=25)
+    mark_table(stored, "canvas", roster, {"jdoe": 0.75}).write(tmp_path / "out.csv")
     assert [(row["ID"], row["02 Nodes (55)"]) for row in rows(tmp_path / "out.csv")] == [
         ("", "10"),
         ("7001", "3.00"),
@@ -74,7 +76,7 @@ def test_canvas_gets_a_new_column_if_no_column_is_that_of_the_assignment(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
 ) -> None:
     roster = read_roster(table(CANVAS.replace("02 Nodes (55)", "Essay (9)")))
-    write_marks([make_result("zoe")], "canvas", roster, tmp_path / "out.csv")
+    mark_table([make_result("zoe")], "canvas", roster).write(tmp_path / "out.csv")
     assert list(rows(tmp_path / "out.csv")[0]) == [
         "Student",
         "ID",
@@ -101,10 +103,10 @@ def test_a_table_of_another_shape_is_a_usage_error(
     roster = read_roster(table(text))
     stored = [make_result(student.id) for student in roster.students]
     with pytest.raises(UsageError, match=why):
-        write_marks(stored, system, roster, tmp_path / "out.csv")
+        mark_table(stored, system, roster)
 
 
-@pytest.mark.promise("`--late-penalty 20` deducts a fifth of the marks of a late submission.")
+@pytest.mark.promise("`--late-penalty 20` deducts a fifth of the marks of a late submission")
 def test_export_applies_the_late_penalty_to_late_students(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
 ) -> None:

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from autograder.exceptions import UsageError
 from autograder.result.model import Result
@@ -20,13 +21,14 @@ FORMATS: Mapping[str, ModuleType] = {
 }
 
 
-def write(results: Sequence[Result], name: str, out: Path) -> Path:
+def write(results: Sequence[Result], name: str, out: Path, **options: Any) -> Path:
     """Write results in a format and return the file to open first.
 
     Args:
         results: from `load`.
         name: name of the format, a key of `FORMATS`.
         out: the file or folder to write.
+        options: further arguments of the format's own function.
 
     Raises:
         UsageError: `out` is a folder instead of a file or the other way round, or two results need the same file.
@@ -36,5 +38,5 @@ def write(results: Sequence[Result], name: str, out: Path) -> Path:
         kind = "folder" if format.FOLDER else "file"
         raise UsageError(f"{out}: {name} is written to a {kind}; give the path of a {kind}")
     out.parent.mkdir(parents=True, exist_ok=True)
-    first: Path = format.write(results, out)
+    first: Path = format.write(results, out, **options)
     return first

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from autograder.report.feedback.text import one_line
@@ -15,12 +15,14 @@ FOLDER = False
 _SEPARATOR = re.compile(r"([;|\t])")
 
 
-def write(results: Sequence[Result], out: Path) -> Path:
+def write(results: Sequence[Result], out: Path, more: Mapping[str, Mapping[str, str | float]] = {}) -> Path:
     """Write a row for each result, with a column for each check and the points that it earned.
+
+    `more` has further cells of students, by their headings.
 
     The file is UTF-8 with commas, each cell quoted as in RFC 4180. A submission that was not graded has no score.
     """
-    rows = [_row(result) for result in results]
+    rows = [{**_row(result), **more.get(result.student, {})} for result in results]
     with out.open("w", encoding="utf-8", newline="") as file:
         columns = list(dict.fromkeys(name for row in rows for name in row))
         writer = csv.DictWriter(file, columns, restval="", quoting=csv.QUOTE_ALL)

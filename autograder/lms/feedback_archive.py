@@ -1,0 +1,158 @@
+"""Writes the zip of feedback pages that Moodle or Canvas gives back to the students. Names of files say whose one is.
+
+Moodle ("Upload multiple feedback files in a zip"; mod/assign/feedback/file/importziplib.php): a part of a path is
+NAME_NUMBER_assignsubmission_file_, as in a download of submissions. The number is the participant's, the name has no
+underscore, and what follows is the student's file.
+
+Canvas ("Re-Upload Submissions"; app/models/abstract_assignment.rb, `infer_comment_context_from_filename`): a file has
+the name that it has in the download. The first two parts between underscores that are numbers are the user's and the
+attachment's, and the attachment must be one of the submission. The student gets the file under the name of their own
+one, so it is of the same kind: a zip or tar with the page, a page, or a notebook with the feedback as text.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import tarfile
+import tempfile
+import zipfile
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import nbformat
+
+from autograder.exceptions import UsageError
+from autograder.lms.collect import newest_items
+from autograder.lms.roster import PARTICIPANT, Roster, normalized
+from autograder.lms.submission_names import DownloadedItem
+from autograder.report import feedback
+from autograder.report.export.formats import markdown
+from autograder.result.model import Result
+from autograder.submission.intake.names import is_notebook
+
+NOT_IN_A_NAME = re.compile(r'[_/\\:*?"<>|\x00-\x1f]+')
+MAX_NAME = 100  # characters of a student's name in that of a folder
+TAR = {
+    **{".tar": "w", ".tar.gz": "w:gz", ".tgz": "w:gz", ".tar.bz2": "w:bz2", ".tbz2": "w:bz2", ".tbz": "w:bz2"},
+    **{".tar.xz": "w:xz", ".txz": "w:xz"},
+}
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where each student's feedback goes in the zip, and who cannot get any: pairs of a student and the reason."""
+
+    names: Mapping[str, str]
+    left_out: tuple[tuple[str, str], ...]
+
+
+def moodle_places(roster: Roster, students: Iterable[str]) -> Places:
+    """Return where the feedback of students goes in Moodle's zip. Raises UsageError if the table is not Moodle's."""
+    columns = [normalized(heading) for heading in roster.headings]
+    if "identifier" not in columns:
+        raise UsageError(f"{roster.path}: the column 'identifier' is missing; give the grading worksheet of Moodle")
+    rows = {student.id: dict(zip(columns, roster.rows[student.row], strict=False)) for student in roster.students}
+    names, left_out = {}, []
+    for student in students:
+        number = normalized(rows.get(student, {}).get("identifier", "")).removeprefix(PARTICIPANT)
+        if number.isascii() and number.isdigit():
+            name = NOT_IN_A_NAME.sub(" ", rows[student].get("full name", ""))[:MAX_NAME].strip() or PARTICIPANT.strip()
+            names[student] = f"{name}_{number}_assignsubmission_file_/{feedback.PAGE}"
+        else:
+            left_out.append((student, f"{roster.path.name} has no identifier `Participant NUMBER` for this student"))
+    return Places(names, tuple(left_out))
+
+
+def canvas_places(folder: Path, roster: Roster, assignment: str, students: Iterable[str]) -> Places:
+    """Return where the feedback of students goes in Canvas's zip: the name of a file that they handed in.
+
+    Args:
+        folder: the download of the submissions, unpacked.
+        roster: the exported gradebook.
+        assignment: the course's own name of the assignment.
+        students: those who get feedback.
+    """
+    newest = newest_items(folder, roster, assignment)
+    names, left_out = {}, []
+    for student in students:
+        handed_in = [item.path.name for item in newest.get(student, ()) if _is_read(item)]
+        ranked = sorted((rank, name) for name in handed_in if (rank := _rank(name)) is not None)
+        if ranked:
+            names[student] = ranked[0][1]
+        else:
+            left_out.append((student, "the download has no page, archive or notebook of theirs that Canvas takes back"))
+    return Places(names, tuple(left_out))
+
+
+def write_archive(results: Collection[Result], places: Places, out: Path) -> None:
+    """Write the zip with the feedback of results, in one step."""
+    out.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=out.parent, prefix=".feedback-") as scratch:
+        written = Path(scratch) / "feedback.zip"
+        with zipfile.ZipFile(written, "w", zipfile.ZIP_DEFLATED) as archive:
+            for result in results:
+                if (name := places.names.get(result.student)) is not None:
+                    archive.writestr(_member(name), _of_kind(name)(result, Path(scratch)))
+        written.replace(out)
+
+
+def _member(name: str) -> zipfile.ZipInfo:
+    """Return a file of a zip that everybody can read, with the same time always."""
+    member = zipfile.ZipInfo(name)
+    member.compress_type, member.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
+    return member
+
+
+Write = Callable[[Result, Path], bytes]
+
+
+def _of_kind(name: str) -> Write:
+    """Return what makes the feedback of a result a file of this name; the folder is one for files in between."""
+    low = name.casefold()
+    if low.endswith(".zip"):
+        return _zip
+    if is_notebook(name):
+        return _notebook
+    mode = next((mode for ending, mode in TAR.items() if low.endswith(ending)), None)
+    return _page if mode is None else lambda result, scratch: _tar(_page(result, scratch), mode)
+
+
+def _rank(name: str) -> int | None:
+    """Return how well a file of this name can be replaced by feedback, the best as 0; None if it cannot."""
+    low = name.casefold()
+    kinds = ((".html", ".htm"), (".zip",), tuple(TAR))
+    return next((rank for rank, endings in enumerate(kinds) if low.endswith(endings)), 3 if is_notebook(name) else None)
+
+
+def _is_read(item: DownloadedItem) -> bool:
+    """Return whether Canvas finds the user in the name of its file, and does not take it for a link."""
+    *parts, last = item.path.name.split("_")
+    numbers = [part for part in parts if part.isascii() and part.isdigit()]
+    return item.system == "canvas" and ("id", numbers[0]) in item.keys and not last.startswith("link")
+
+
+def _page(result: Result, scratch: Path) -> bytes:
+    return feedback.write(result, scratch, artifacts=result.folder).read_bytes()
+
+
+def _zip(result: Result, scratch: Path) -> bytes:
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w") as archive:
+        archive.writestr(_member(feedback.PAGE), _page(result, scratch))
+    return data.getvalue()
+
+
+def _tar(page: bytes, mode: str) -> bytes:
+    data, member = io.BytesIO(), tarfile.TarInfo(feedback.PAGE)
+    member.size = len(page)
+    with tarfile.open(fileobj=data, mode=mode) as archive:  # type: ignore[call-overload]
+        archive.addfile(member, io.BytesIO(page))
+    return data.getvalue()
+
+
+def _notebook(result: Result, scratch: Path) -> bytes:
+    text = markdown.write([result], scratch / "feedback.md").read_text(encoding="utf-8")
+    cell = nbformat.v4.new_markdown_cell(text, id="feedback")
+    return str(nbformat.writes(nbformat.v4.new_notebook(cells=[cell]))).encode()

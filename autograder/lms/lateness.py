@@ -1,0 +1,171 @@
+"""Says how late a submission is, and what share of its marks it keeps.
+
+What counts, the first that is known:
+
+1. the deadline: `until` of the student's row in the table of extensions; the due time and the `days` of the row;
+2. when it was handed in: `submitted` of the row; the time in the download; the delay in Moodle's table after the due
+   time;
+3. without a time, the system's word that it is late.
+
+Nothing is lost up to the end of the grace period. After it, the delay counts from the deadline on, and a day that has
+begun counts whole. The floor comes last.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import date, datetime, time, timedelta, tzinfo
+from pathlib import Path
+
+from autograder.exceptions import UsageError
+from autograder.lms.tables import FindStudent, Row, read_rows
+
+DAY = timedelta(days=1)
+MAX_DAYS = 3660  # of an extension
+DAYS, UNTIL, SUBMITTED = "days", "until", "submitted"
+
+
+@dataclass(frozen=True)
+class Extension:
+    """What a student was granted, days or a deadline, and when they handed in, if a person says it."""
+
+    days: timedelta = timedelta()
+    until: datetime | None = None
+    submitted: datetime | None = None
+
+
+@dataclass(frozen=True)
+class Delivery:
+    """What a system says of the time of a submission: late or not, by how much, and when it came; None if unknown."""
+
+    late: bool = False
+    late_by: timedelta | None = None
+    time: datetime | None = None
+
+
+@dataclass(frozen=True)
+class Lateness:
+    """What a submission loses by its time.
+
+    Attributes:
+        kept: the share of its marks that it keeps, 0 to 1.
+        days: the late days that count, None if the system says only that it is late.
+        unclear: the sentence that says why nobody can tell, or an empty string.
+    """
+
+    kept: float = 1.0
+    days: int | None = 0
+    unclear: str = ""
+
+
+@dataclass(frozen=True)
+class LatePolicy:
+    """How much late submissions lose.
+
+    Attributes:
+        flat: the percentage of its marks that a late submission loses, however late.
+        per_day: the percentage that it loses for each day that has begun; one of the two is 0.
+        floor: the percentage that it keeps in any case.
+        grace: a delay up to this costs nothing.
+        due: when the assignment was due, None if the system's word is all that counts.
+        zone: the time zone of times that do not say theirs, None for this machine's.
+        extensions: those of single students.
+    """
+
+    flat: float = 0.0
+    per_day: float = 0.0
+    floor: float = 0.0
+    grace: timedelta = timedelta()
+    due: datetime | None = None
+    zone: tzinfo | None = None
+    extensions: Mapping[str, Extension] = field(default_factory=dict)
+
+    def judge(self, student: str, delivery: Delivery) -> Lateness:
+        """Return what the submission of a student loses."""
+        extension = self.extensions.get(student, Extension())
+        deadline = extension.until or (None if self.due is None else self.due + extension.days)
+        handed_in = extension.submitted or delivery.time
+        if handed_in is None and self.due is not None and delivery.late_by is not None:
+            handed_in = self.due + delivery.late_by
+        if handed_in is not None and deadline is not None:
+            return self._late_by(handed_in - deadline)
+        if delivery.late_by is not None and extension.until is None:
+            return self._late_by(delivery.late_by - extension.days)
+        if not delivery.late:
+            return Lateness()
+        if self.per_day or self.grace or student in self.extensions:
+            is_timed = handed_in is not None or delivery.late_by is not None
+            lacks = "--due" if is_timed else f"the time in the column {SUBMITTED!r} of --extensions"
+            return Lateness(unclear=f"it is late, and nothing says by how much: give {lacks}")
+        return self._keeps(self.flat, None)
+
+    def _late_by(self, delay: timedelta) -> Lateness:
+        if delay <= max(self.grace, timedelta()):
+            return Lateness()
+        days = math.ceil(delay / DAY)
+        return self._keeps(self.flat + self.per_day * days, days)
+
+    def _keeps(self, lost: float, days: int | None) -> Lateness:
+        return Lateness(max(self.floor, 100.0 - lost, 0.0) / 100, days)
+
+
+def read_extensions(path: Path, find: FindStudent, zone: tzinfo | None) -> dict[str, Extension]:
+    """Read the extensions of students: a CSV file with the columns `student`, and `days`, `until` or both.
+
+    The column `submitted` says when a student handed in, where the system does not. Raises UsageError, with the line,
+    if all of these are missing, a row has both days and a deadline, or a cell is not a number of days or a time.
+    """
+    rows = read_rows(path, (), find, one_of=(DAYS, UNTIL, SUBMITTED))
+    return {row.student: _extension(row, zone) for row in rows}
+
+
+def _extension(row: Row, zone: tzinfo | None) -> Extension:
+    days, until, submitted = (row.cells.get(name, "") for name in (DAYS, UNTIL, SUBMITTED))
+    if days and until:
+        raise row.error(f"it has both {DAYS} and {UNTIL}: remove one")
+    try:
+        granted = timedelta(days=float(days or 0))
+    except (ValueError, OverflowError):
+        granted = timedelta(days=-1)
+    if not timedelta() <= granted <= MAX_DAYS * DAY:
+        raise row.error(f"{days!r} is not a number of days from 0 to {MAX_DAYS}")
+    try:
+        deadline = moment(until, zone) if until else None
+        return Extension(granted, deadline, moment(submitted, zone) if submitted else None)
+    except UsageError as error:
+        raise row.error(str(error)) from None
+
+
+def moment(text: str, zone: tzinfo | None) -> datetime:
+    """Return the time that a text in ISO 8601 means; a day alone means its end.
+
+    Args:
+        text: such as `2026-05-04`, `2026-05-04 18:00` or `2026-05-04T18:00+02:00`.
+        zone: the time zone of a time without one, None for this machine's.
+
+    Raises:
+        UsageError: it is not such a time.
+    """
+    found = _parsed(text)
+    if found.tzinfo is not None:
+        return found
+    return found.astimezone() if zone is None else found.replace(tzinfo=zone)
+
+
+def zone_of(text: str) -> tzinfo | None:
+    """Return the time zone that a time in ISO 8601 names, None if it names none. Raises UsageError as `moment` does."""
+    return _parsed(text).tzinfo
+
+
+def _parsed(text: str) -> datetime:
+    try:
+        return datetime.combine(date.fromisoformat(text), time.max)
+    except ValueError:
+        pass
+    try:
+        return datetime.fromisoformat(f"{text[:-1]}+00:00" if text.endswith("Z") else text)
+    except ValueError:
+        example = "2026-05-04 18:00 or 2026-05-04T18:00+02:00"
+        raise UsageError(f"{text!r} is not a time in ISO 8601, such as {example}") from None

@@ -1,0 +1,122 @@
+"""Adds the points that a person gave to results: a column of a CSV file for each manually graded cell.
+
+    student,q2-answer,q2-answer comment
+    ada,5.5,A missing reason.
+
+The most points of a cell are those of the course's own notebook. A result with these points has a check more for each
+cell, so every export and every page counts them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from autograder.author.course.cells import is_manually_graded
+from autograder.author.course.sync import Chapter
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import UsageError
+from autograder.layout import chapter
+from autograder.lms.tables import FindStudent, Row, read_rows
+from autograder.result.model import CheckResult, Result, Status
+from autograder.suite import Outcome, Visibility
+
+COMMENT = " comment"  # follows the name of a cell in the heading of a column that need not be there
+
+
+@dataclass(frozen=True)
+class ManualMark:
+    """The points that a person gave for a cell, None if nobody has given any yet, and a comment for the student."""
+
+    points: float | None
+    comment: str = ""
+
+
+ManualMarks = Mapping[str, Mapping[str, ManualMark]]
+"""The marks of each student, by the names of cells."""
+
+
+def manual_cells(assignment: str) -> dict[str, float]:
+    """Return the cells of an assignment's notebook that a person grades, with the most points of each."""
+    cells = Chapter(chapter(assignment)).read().cells
+    graded = (cell.metadata.nbgrader for cell in cells if is_manually_graded(cell))
+    return {str(found["grade_id"]): float(found["points"]) for found in graded}
+
+
+def read_manual(path: Path, cells: Mapping[str, float], find: FindStudent) -> ManualMarks:
+    """Read the points that a person gave for the cells of an assignment.
+
+    Raises UsageError, with the line, if a column is missing, a student is unknown or twice there, or points are not a
+    number from 0 to the most points of their cell.
+    """
+    return {
+        row.student: {
+            name: ManualMark(_points(row, name, most), row.cells.get(name + COMMENT, ""))
+            for name, most in cells.items()
+        }
+        for row in read_rows(path, tuple(cells), find)
+    }
+
+
+def add_manual(
+    results: Sequence[Result], marks: ManualMarks, cells: Mapping[str, float]
+) -> tuple[list[Result], list[tuple[str, str]]]:
+    """Add manual points to graded results; return also the students whom nobody has given all, each with a sentence.
+
+    The result of such a student is unclear: it has no mark, and its sentence says what is missing. Raises UsageError if
+    somebody has points above 0 and no result.
+    """
+    strangers = sorted(
+        student
+        for student in marks.keys() - {result.student for result in results}
+        if any(mark.points for mark in marks[student].values())
+    )
+    if strangers:
+        raise UsageError(f"points for {', '.join(strangers)}, who has no result: grade a submission first")
+    added = [_added(result, marks.get(result.student, {}), cells) for result in results]
+    pairs = zip(results, added, strict=True)
+    return added, [(new.student, new.diagnosis.sentence) for old, new in pairs if old.status is not new.status]
+
+
+def _added(result: Result, marks: Mapping[str, ManualMark], cells: Mapping[str, float]) -> Result:
+    if result.status is not Status.GRADED:
+        return result
+    missing = [name for name in cells if name not in marks or marks[name].points is None]
+    if missing:
+        sentence = f"A person has not marked {', '.join(missing)} yet."
+        return replace(result, status=Status.UNCLEAR, diagnosis=Diagnosis(Kind.UNCLEAR, sentence))
+    checks = [_check(name, most, marks[name]) for name, most in cells.items()]
+    most = math.fsum((result.max_score, *cells.values()))
+    return replace(result, checks=(*result.checks, *checks), max_score=most)
+
+
+def _check(name: str, most: float, mark: ManualMark) -> CheckResult:
+    points = mark.points or 0.0
+    return CheckResult(
+        id=name,
+        title=f"A person marked {name}." + (f" {mark.comment}" if mark.comment else ""),
+        group=name,
+        points=points,
+        max_points=most,
+        outcome=Outcome.PASSED if points == most else Outcome.FAILED,
+        message="",
+        hints=(),
+        doc=None,
+        visibility=Visibility.HIDDEN,
+        seconds=0.0,
+    )
+
+
+def _points(row: Row, name: str, most: float) -> float | None:
+    text = row.cells[name]
+    if not text:
+        return None
+    try:
+        points = float(text)
+    except ValueError:
+        raise row.error(f"{text!r} is not a number of points for {name}; write 4.5, not 4,5") from None
+    if not 0 <= points <= most:
+        raise row.error(f"{text} points for {name}, which has {most:g} at most and 0 at least")
+    return points

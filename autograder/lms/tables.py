@@ -1,0 +1,86 @@
+"""Reads the tables that an instructor writes: CSV in UTF-8 with headings, one of which is `student`."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from autograder.exceptions import UsageError
+from autograder.lms.roster import Roster, normalized
+
+STUDENT = "student"
+
+FindStudent = Callable[[str], "str | None"]
+"""Returns the name that a student has in results, None if there is no such student."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of a table: its student, its cells by their headings in lower case, and its file and line, for messages."""
+
+    student: str
+    cells: Mapping[str, str]
+    place: str
+
+    def error(self, what: str) -> UsageError:
+        """Return an error about this row."""
+        return UsageError(f"{self.place}: {what}")
+
+
+def student_finder(known: Collection[str], roster: Roster | None) -> FindStudent:
+    """Return a function that finds students by the names of their results, and by all that the roster says of them."""
+
+    def find(name: str) -> str | None:
+        if name in known:
+            return name
+        student = roster.named(name) if roster is not None else None
+        return student.id if student is not None else None
+
+    return find
+
+
+def read_rows(path: Path, needed: Collection[str], find: FindStudent, *, one_of: Collection[str] = ()) -> list[Row]:
+    """Read the rows of a table. Empty rows are left out, and columns that nobody knows may be there.
+
+    Raises UsageError if the file cannot be read, lacks the column `student`, one that is `needed` or all of `one_of`,
+    has a row that names an unknown student or one that another row names, or a row with more or fewer cells than
+    headings. The message says which file and line.
+    """
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            reader = csv.reader(file, strict=True)
+            lines = [(cells, reader.line_num) for cells in reader if any(cell.strip() for cell in cells)]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise UsageError(f"{path}: cannot be read as CSV in UTF-8: {error}") from None
+    if not lines:
+        raise UsageError(f"{path}: the table is empty; its columns are {', '.join((STUDENT, *needed))}")
+    (first, number), *rest = lines
+    headings = [normalized(cell) for cell in first]
+    for name in (STUDENT, *needed):
+        if headings.count(name) != 1:
+            what = "is missing" if name not in headings else "is there twice"
+            known = "; ".join(first)
+            raise UsageError(
+                f"{path}, line {number}: the column {name!r} {what}; commas separate columns, not {known!r}"
+            )
+    if one_of and not set(one_of) & set(headings):
+        raise UsageError(f"{path}, line {number}: it needs one of the columns {', '.join(one_of)}")
+    rows = [_row(headings, cells, f"{path}, line {number}", find) for cells, number in rest]
+    seen: dict[str, Row] = {}
+    for row in rows:
+        if row.student in seen:
+            raise row.error(f"{row.student} stands in {seen[row.student].place}, too: remove one of the two rows")
+        seen[row.student] = row
+    return rows
+
+
+def _row(headings: list[str], line: list[str], place: str, find: FindStudent) -> Row:
+    if len(line) != len(headings):
+        raise UsageError(f"{place}: {len(line)} cells, but {len(headings)} headings")
+    cells = {heading: cell.strip() for heading, cell in zip(headings, line, strict=True)}
+    student = find(cells[STUDENT])
+    if student is None:
+        raise UsageError(f"{place}: {cells[STUDENT]!r} fits no student, or several; give the name of a result's folder")
+    return Row(student, cells, place)

@@ -1,0 +1,196 @@
+"""Points that a person gave are part of marks and feedback, and a wrong table is an error that names the line."""
+
+from __future__ import annotations
+
+import csv
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from click.testing import Result as Ran
+
+from autograder.cli import group
+from autograder.exceptions import UsageError
+from autograder.lms.manual import manual_cells
+from autograder.result.model import CheckResult, Result, Status, write_json
+from autograder.suite import Check, Outcome
+
+MakeResult = Callable[..., Result]
+MakeCheck = Callable[..., Check]
+WORKSHEET = """Identifier,Full name,Email address,Status,Grade,Maximum Grade,Last modified (grade)
+Participant 101,Zoë Müller,zoe@x.edu,Submitted,,52.00,
+Participant 102,Jane Doe,jane@x.edu,Submitted,,52.00,
+Participant 103,Bob Roe,bob@x.edu,No submission,,52.00,
+"""
+GRADEBOOK = """Student,ID,SIS Login ID,Section,09 Assessment (77)
+    Points Possible,,,,52
+"Müller, Zoë",7001,zoe@x.edu,A,
+"Doe, Jane",7002,jane@x.edu,A,
+"""
+
+
+@pytest.fixture
+def assessed(tmp_path: Path, make_result: MakeResult, make_check: MakeCheck) -> Path:
+    """Write results of 09 in which everybody has all 46 points that programs give."""
+    for student in ("zoe@x.edu", "jane@x.edu"):
+        check = CheckResult.of(make_check("all", "Everything works.", 46, "nodes"), Outcome.PASSED)
+        result = make_result(student, assignment="09_assessment", checks=(check,), max_score=46.0)
+        write_json(tmp_path / "results" / student / "result.json", result.to_json())
+    (tmp_path / "worksheet.csv").write_text(WORKSHEET, encoding="utf-8")
+    (tmp_path / "gradebook.csv").write_text(GRADEBOOK, encoding="utf-8")
+    return tmp_path
+
+
+def export(folder: Path, form: str, *more: str) -> Ran:
+    command = ["export", str(folder / "results"), "--format", form, "--out", str(folder / "out.csv")]
+    return CliRunner().invoke(group, [*command, *more])
+
+
+def with_points(folder: Path, text: str, form: str = "moodle", roster: str = "worksheet.csv") -> Ran:
+    (folder / "manual.csv").write_text(text, encoding="utf-8")
+    return export(folder, form, "--roster", str(folder / roster), "--manual", str(folder / "manual.csv"))
+
+
+def column(path: Path, name: str) -> list[str]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return [row[name] for row in csv.DictReader(file)]
+
+
+def test_the_cells_that_a_person_grades_are_those_of_the_courses_notebook() -> None:
+    assert manual_cells("09_assessment") == {"q2-answer": 6.0}
+    assert manual_cells("02_nodes") == {}
+
+
+@pytest.mark.promise(
+    "autograder export results --format moodle --roster worksheet.csv --manual manual.csv --out marks.csv",
+    "`--manual` adds the points that a person gave",
+)
+@pytest.mark.parametrize(
+    ("form", "roster", "name", "marks"),
+    [
+        ("moodle", "worksheet.csv", "Grade", ["52.00", "50.50", ""]),
+        ("canvas", "gradebook.csv", "09 Assessment (77)", ["52", "52.00", "50.50"]),
+    ],
+)
+def test_the_points_of_a_person_are_added_so_that_all_of_52_can_be_reached(
+    assessed: Path, form: str, roster: str, name: str, marks: list[str]
+) -> None:
+    done = with_points(
+        assessed, "student,q2-answer\nzoe@x.edu,6\n  Doe Jane ,4.5\n".replace("  Doe Jane ", "jane@x.edu"), form, roster
+    )
+    assert done.exit_code == 0, done.output
+    assert column(assessed / "out.csv", name) == marks
+
+
+@pytest.mark.promise("with `--roster`, by anything in the roster")
+def test_students_are_named_by_anything_in_the_roster(assessed: Path) -> None:
+    done = with_points(assessed, "student,q2-answer\nZoë  müller,6\nParticipant 102,0\nBob Roe,\n")
+    assert done.exit_code == 0, done.output
+    assert column(assessed / "out.csv", "Grade") == ["52.00", "46.00", ""]
+
+
+@pytest.mark.promise("A student whom nobody has marked yet has no mark, is listed, and the exit status is 1.")
+def test_who_is_not_marked_by_a_person_yet_gets_no_mark_and_is_listed(assessed: Path) -> None:
+    for text in ("student,q2-answer\nzoe@x.edu,6\n", "student,q2-answer\nzoe@x.edu,6\njane@x.edu,\n"):
+        done = with_points(assessed, text)
+        assert done.exit_code == 1
+        assert "Left out: jane@x.edu: A person has not marked q2-answer yet." in done.output
+        assert column(assessed / "out.csv", "Grade") == ["52.00", "", ""]
+
+
+def test_points_and_the_comment_of_a_person_are_on_the_feedback_page_and_in_the_csv(assessed: Path) -> None:
+    (assessed / "manual.csv").write_text(
+        "student,q2-answer,q2-answer comment\nzoe@x.edu,4,<Where> is the QoS?\njane@x.edu,6,\n"
+    )
+    manual = ("--manual", str(assessed / "manual.csv"))
+    assert export(assessed, "csv", *manual).exit_code == 0
+    assert column(assessed / "out.csv", "check q2-answer") == ["6.0", "4.0"]
+    assert column(assessed / "out.csv", "max_score") == ["52.0", "52.0"]
+    pages = ["export", str(assessed / "results"), "--format", "html", "--out", str(assessed / "pages"), *manual]
+    assert CliRunner().invoke(group, pages).exit_code == 0
+    page = (assessed / "pages" / "zoe@x.edu" / "feedback.html").read_text(encoding="utf-8")
+    assert "&lt;Where&gt; is the QoS?" in page
+    assert "of 52 points" in page
+
+
+@pytest.mark.promise("`--manual` works here, too: students who have not been marked yet are left out.")
+def test_the_zip_of_feedback_has_the_points_of_a_person_and_leaves_out_who_has_none(assessed: Path) -> None:
+    done = with_points(assessed, "student,q2-answer\nzoe@x.edu,6\n", "moodle-feedback")
+    assert done.exit_code == 1
+    assert "Left out: jane@x.edu: A person has not marked q2-answer yet." in done.output
+    with zipfile.ZipFile(assessed / "out.csv") as archive:
+        assert archive.namelist() == ["Zoë Müller_101_assignsubmission_file_/feedback.html"]
+        assert "of 52 points" in archive.read(archive.namelist()[0]).decode()
+
+
+def test_without_the_option_the_missing_points_are_named(assessed: Path) -> None:
+    done = export(assessed, "csv")
+    assert done.exit_code == 0
+    assert "09_assessment has 6 points that a person gives (q2-answer), which are missing here" in done.output
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("student,points\nzoe@x.edu,6\n", "manual.csv, line 1: the column 'q2-answer' is missing"),
+        ("student;q2-answer\nzoe@x.edu;6\n", "manual.csv, line 1: the column 'student' is missing; commas separate"),
+        ("student,q2-answer,Q2-Answer\nzoe@x.edu,6,6\n", "manual.csv, line 1: the column 'q2-answer' is there twice"),
+        ("student,q2-answer\nzoe@x.edu,6\n\neve,1\n", "manual.csv, line 4: 'eve' fits no student, or several"),
+        ("student,q2-answer\nzoe@x.edu,6.5\n", "manual.csv, line 2: 6.5 points for q2-answer, which has 6 at most"),
+        ("student,q2-answer\nzoe@x.edu,-1\n", "manual.csv, line 2: -1 points"),
+        ("student,q2-answer\nzoe@x.edu,nan\n", "manual.csv, line 2: nan points"),
+        ('student,q2-answer\nzoe@x.edu,"4,5"\n', "manual.csv, line 2: '4,5' is not a number of points"),
+        ("student,q2-answer\nzoe@x.edu,6\njane@x.edu\n", "manual.csv, line 3: 1 cells, but 2 headings"),
+        ("student,q2-answer\nzoe@x.edu,6\nZoë Müller,6\n", "line 3: zoe@x.edu stands in .*, line 2, too"),
+        ("student,q2-answer\nbob@x.edu,2\n", "points for bob@x.edu, who has no result"),
+        ("", "the table is empty; its columns are student, q2-answer"),
+        ('student,q2-answer\n"zoe', "manual.csv: cannot be read as CSV"),
+    ],
+)
+def test_a_wrong_table_of_points_is_an_error_that_names_the_line_and_writes_nothing(
+    assessed: Path, text: str, why: str
+) -> None:
+    done = with_points(assessed, text)
+    assert isinstance(done.exception, UsageError)
+    with pytest.raises(UsageError, match=why):
+        raise done.exception
+    assert not (assessed / "out.csv").exists()
+
+
+def test_an_assignment_without_such_cells_takes_no_table_of_points(tmp_path: Path, make_result: MakeResult) -> None:
+    write_json(tmp_path / "results" / "zoe" / "result.json", make_result("zoe").to_json())
+    (tmp_path / "manual.csv").write_text("student,q2-answer\nzoe,6\n")
+    done = export(tmp_path, "csv", "--manual", str(tmp_path / "manual.csv"))
+    assert "02_nodes has no cell that a person grades" in str(done.exception)
+
+
+@pytest.mark.promise("`--dry-run` writes nothing and lists")
+def test_a_dry_run_lists_the_marks_and_writes_nothing(assessed: Path, make_result: MakeResult) -> None:
+    write_json(assessed / "results" / "eve" / "result.json", make_result("eve", assignment="09_assessment").to_json())
+    text = WORKSHEET.replace("jane@x.edu,Submitted,,", "jane@x.edu,Submitted,12.00,")
+    (assessed / "worksheet.csv").write_text(text, encoding="utf-8")
+    (assessed / "manual.csv").write_text("student,q2-answer\nzoe@x.edu,6\njane@x.edu,3\neve,1\n")
+    before = sorted(assessed.rglob("*"))
+    options = ("--roster", str(assessed / "worksheet.csv"), "--manual", str(assessed / "manual.csv"), "--dry-run")
+    done = export(assessed, "moodle", *options)
+    assert done.exit_code == 1
+    said = [line.split() for line in done.output.splitlines()]
+    assert ["zoe@x.edu", "52.00"] in said
+    assert ["jane@x.edu", "12.00", "49.00"] in said
+    assert "Nothing was written." in done.output
+    assert sorted(assessed.rglob("*")) == before
+    for form in ("csv", "html", "gradescope", "junit", "markdown"):
+        done = export(assessed, form, *options)
+        assert (done.exit_code, sorted(assessed.rglob("*"))) == (0, before), form
+        assert ["zoe@x.edu", "52"] in [line.split() for line in done.output.splitlines()]
+
+
+def test_what_has_no_mark_gets_none_by_points_of_a_person(assessed: Path, make_result: MakeResult) -> None:
+    broken = make_result("jane@x.edu", assignment="09_assessment", status=Status.NOT_GRADED, checks=())
+    write_json(assessed / "results" / "jane@x.edu" / "result.json", broken.to_json())
+    done = with_points(assessed, "student,q2-answer\nzoe@x.edu,6\njane@x.edu,6\n")
+    assert done.exit_code == 1
+    assert "Left out: jane@x.edu: not graded" in done.output
+    assert column(assessed / "out.csv", "Grade") == ["52.00", "", ""]
