@@ -1,7 +1,8 @@
 """Builds the site from the pages in `docs`. `make docs` executes the notebooks before, and looks at the site after it.
 
 Some pages are made here: the chapters as students get them, with the outputs of their last run in .build/notebooks, the
-run on the start page, the table of the proof, and what the modules named *_page.py return.
+run on the start page, the table of the proof, and what the modules named *_page.py return. SITE_ADDRESS is where the
+site will lie, for the pictures that other sites show with a link to it.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from pathlib import Path
 
 import nbformat
 import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.image import imread
 
 from autograder import layout
 from autograder.author.course.forms import Form, in_form
@@ -37,6 +40,8 @@ KEPT_BACK = ("cluster", "*.py", "__pycache__")
 AHEAD, ROOM = math.radians(50.0), 0.6
 FOLDER_OF_A_LINK = re.compile(r"\]\((?:docs|\.\./chapters)/")
 FROM_ELSEWHERE = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "chapters/ros2-commands.md", "chapters/glossary.md")
+ROBOT = layout.ROOT / "assets" / "figures" / "robot.png"
+EXAMPLE = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 ENTRY = re.compile(r"^(?P<words>[^\n:]+)\n: (?P<text>.+(?:\n  .+)*)", re.MULTILINE)
 # What is no prose: code, headings, links and pictures, tables, choices of a question, tags.
 NO_PROSE = re.compile(
@@ -85,6 +90,9 @@ def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
         write_chapter(chapter, SOURCE / "chapters", words)
     (SOURCE / "made" / "proof.md").write_text(proof_table(), encoding="utf-8")
     write_run(SOURCE / "_extra" / "run.html")
+    write_preview(SOURCE / "_extra" / "preview.png")
+    shutil.copy(layout.WORLDS / "doorway.yaml", SOURCE / "api")
+    run_examples(SOURCE / "api" / "sim.md")
     sphinx = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going", "-d", str(SITE / "doctrees")]
     return subprocess.run([*sphinx, str(SOURCE), str(HTML)], capture_output=True, text=True, check=False)
 
@@ -125,9 +133,13 @@ def link_first_uses(texts: Sequence[str], words: set[str]) -> list[str]:
 def write_chapter(chapter: Chapter, folder: Path, words: frozenset[str] = frozenset()) -> None:
     """Write a chapter's notebook as students get it, with the outputs of its last run unless it has changed since.
 
-    The first use of each of the words leads to the glossary.
+    Its title begins with its number, and a link below it leads to the notebook itself, in the folder `notebooks` beside
+    `folder`. The first use of each of the words leads to the glossary.
     """
     notebook = in_form(chapter.read(), Form.RELEASED)
+    downloads = folder.parent / "notebooks"
+    downloads.mkdir(exist_ok=True)
+    nbformat.write(notebook, downloads / chapter.notebook_path.name)
     report = layout.BUILD / "notebooks" / f"{chapter.assignment}-{Form.RELEASED.value}.ipynb"
     if report.is_file():
         executed = nbformat.read(report, as_version=nbformat.NO_CONVERT)
@@ -137,9 +149,19 @@ def write_chapter(chapter: Chapter, folder: Path, words: frozenset[str] = frozen
     linked = link_first_uses([cell.source for cell in prose], meant(words, chapter.assignment))
     for cell, text in zip(prose, linked, strict=True):
         cell.source = text
+    if prose:
+        prose[0].source = with_number(prose[0].source, chapter.assignment)
     nbformat.write(notebook, folder / chapter.notebook_path.name)
     if (chapter.folder / "figures").is_dir():
         shutil.copytree(chapter.folder / "figures", folder / "figures", dirs_exist_ok=True)
+
+
+def with_number(text: str, assignment: str) -> str:
+    """Return the first cell of a chapter with the chapter's number in its title, and a link to its notebook below."""
+    title, _, rest = text.partition("\n")
+    numbered = title.replace("# ", f"# {int(assignment.partition('_')[0])}. ", 1)
+    link = f"{{download}}`Download the notebook <../notebooks/{assignment}.ipynb>`"
+    return f"{numbered}\n\n{link}. It runs in the [folder of the course](../students.md).\n{rest}"
 
 
 def proof_table() -> str:
@@ -158,6 +180,28 @@ def write_run(path: Path) -> None:
     path.parent.mkdir(parents=True)
     simulation = Simulation(load_world(layout.WORLDS / "lab.yaml"), (RobotSpec(),))
     to_html(run(simulation, wander, seconds=40.0), path)
+
+
+def write_preview(path: Path) -> None:
+    """Draw what other sites show with a link to this one: 1200 x 630 pixels with the title and the README's robot."""
+    robot = imread(ROBOT)
+    figure = Figure(figsize=(12.0, 6.3), facecolor="white")
+    figure.figimage(robot, 1200 - robot.shape[1] - 24, (630 - robot.shape[0]) // 2)
+    figure.text(
+        0.04, 0.5, "Building\nROS 2 packages\nwith Python", size=28, weight="bold", va="bottom", linespacing=1.3
+    )
+    figure.text(0.04, 0.45, "Ten notebooks, a robot\nwith a lidar, an autograder", size=17, va="top", linespacing=1.5)
+    figure.savefig(path, dpi=100)
+
+
+def run_examples(page: Path) -> None:
+    """Run the Python code of a page in the page's folder, as one program: it draws the pictures that the page shows.
+
+    Raises:
+        subprocess.CalledProcessError: the code failed.
+    """
+    code = "\n".join(EXAMPLE.findall(page.read_text(encoding="utf-8")))
+    subprocess.run([sys.executable, "-c", code], cwd=page.parent, check=True)
 
 
 def wander(state: State, scans: dict[str, Scan | None]) -> Command:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 from sphinx.application import Sphinx
@@ -10,11 +11,14 @@ project = "Building ROS 2 packages with Python"
 author = "The authors of the course"
 copyright = f"{author}, Apache License 2.0"
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
-exclude_patterns = ["made", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md"]  # other pages include them
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton", "sphinxext.opengraph"]
+# Pages include the first four, and link to the notebooks.
+exclude_patterns = ["made", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "notebooks"]
 
 html_theme = "furo"
 html_title = "ROS 2 packages with Python"
+html_favicon = "_static/icon.svg"
+html_baseurl = os.environ.get("SITE_ADDRESS", "")  # where the site will lie, with a slash at its end
 html_static_path = ["_static"]
 html_extra_path = ["_extra"]
 html_css_files = ["site.css"]
@@ -25,12 +29,22 @@ pygments_dark_style = "a11y-high-contrast-dark"
 myst_heading_anchors = 3  # as on GitHub
 myst_enable_extensions = ["deflist"]
 
+# A button copies code, but no output; of a console, the commands without their prompts.
+copybutton_selector = "div:not(.output) > div.highlight > pre"
+copybutton_prompt_text = "$ "
+
+ogp_site_url = html_baseurl
+ogp_image = "preview.png"  # docs/build_site.py draws it
+ogp_image_alt = "A simulated robot has found its way through a lab by its lidar."
+
 nb_execution_mode = "off"  # `make docs` executes the notebooks before
 nb_merge_streams = True
 # A cell after %%writefile may hold XML or text of another kind, and is shown without colours.
 suppress_warnings = ["misc.highlighting_failure"]
 
 autodoc_member_order = "bysource"
+default_role = "code"  # of `names` in docstrings
+napoleon_use_ivar = True  # one line an attribute
 
 
 def fix_accessibility(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
@@ -43,6 +57,13 @@ def fix_accessibility(app: Sphinx, page: str, template: str, context: dict[str, 
         context["body"] = context["body"].replace("<pre>", '<pre tabindex="0">')
 
 
+def keep_first_colon(app: Sphinx, kind: str, name: str, subject: object, options: object, lines: list[str]) -> None:
+    """Begin a property's docstring with an empty comment: napoleon takes what precedes its first colon for a type."""
+    if kind in ("property", "attribute"):
+        lines[:0] = ["..", ""]
+
+
 def setup(app: Sphinx) -> None:
-    """Connect what this file adds, after the theme has made its part of a page."""
+    """Connect what this file adds: before napoleon, and after the theme has made its part of a page."""
+    app.connect("autodoc-process-docstring", keep_first_colon, priority=400)
     app.connect("html-page-context", fix_accessibility, priority=900)

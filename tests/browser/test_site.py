@@ -4,61 +4,82 @@ from __future__ import annotations
 
 import re
 import runpy
-from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
+import nbformat
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, expect
 
+from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import chapters
+from autograder.author.verification.mutants import mutants, write_mutant
+from autograder.diagnosis import Kind
+from autograder.grade import DEFAULT_SEED
+from autograder.grade.batch import grade_all
 from autograder.layout import ROOT
 from autograder.report import feedback
-from autograder.result.artifacts import Gallery
-from autograder.result.model import Artifact, Result
-from tests.browser.wall_run import keep_run
+from autograder.result.model import CheckResult
+from autograder.suite import Outcome, suites
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(900)]
 
+ASSIGNMENT = "02_nodes"
+STUDENTS = "amal bao chloe dario elif femi greta hugo ines jonas kaya lars mina noor omar pia quentin rosa sami tuva"
 MADE = runpy.run_path(str(ROOT / "docs" / "build_site.py"))
-CHAPTER = pytest.param("chapters/02_nodes", id="a chapter")  # tests that name one would be built for on another worker
+CHAPTER = pytest.param(
+    f"chapters/{ASSIGNMENT}", id="a chapter"
+)  # tests that name one would be built for on another worker
 READ = ("index", "students", "instructors", "trust", "glossary", CHAPTER, "api/sim")
 RULES = {"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}}
 LINK = re.compile(r'<(?:a|img|iframe|link|script)[^>]+(?:href|src)="([^"]+)"')
 
+SIZE = """address => new Promise((resolve, reject) => {
+    const image = new Image();
+    image.onload = () => resolve([image.naturalWidth, image.naturalHeight]);
+    image.onerror = reject;
+    image.src = address;
+})"""
+
 
 @pytest.fixture(scope="module")
 def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where the results of the pictures lie."""
-    return tmp_path_factory.mktemp("graded")
+    """A class's folder: one flawed robot, graded, among others of which the proof has recorded what they fail."""
+    folder, answer = (tmp_path_factory.mktemp(name) for name in ("graded", "answer"))
+    flaws = {mutant.id: mutant for mutant in mutants(ASSIGNMENT)}
+    write_mutant(flaws["brakes_too_late"], suites.hidden(ASSIGNMENT).sources, answer)
+    (alice,) = grade_all({"alice": answer}, ASSIGNMENT, seed=DEFAULT_SEED, out=folder, jobs=1)
+    others = [frozenset(), *(mutant.fails for mutant in flaws.values() if mutant.diagnosis is Kind.OK)]
+    results = [alice]
+    for name, fails in zip(STUDENTS.split(), others, strict=False):
+        outcomes = {
+            check: Outcome.FAILED if check.id in fails else Outcome.PASSED for check in suites.hidden(ASSIGNMENT).checks
+        }
+        checks = tuple(CheckResult.of(check, outcome) for check, outcome in outcomes.items())
+        results.append(replace(alice, student=name, checks=checks, artifacts=()))
+    for result in results:
+        feedback.write(result, folder / result.student)
+    feedback.write_summary(results, folder)
+    return folder
 
 
 @pytest.fixture(scope="module")
-def pictures(
-    chromium: Browser,
-    graded: Path,
-    make_result: Callable[..., Result],
-    broken_result: Result,
-    track: Callable[..., Artifact],
-) -> Path:
+def pictures(chromium: Browser, graded: Path) -> Path:
     """The pictures of the instructors' guide: a page of feedback, a run in it, and the page of a class."""
-    alice = make_result(artifacts=(track(graded / "alice"),))
-    gallery = Gallery(graded / "carol")
-    keep_run(gallery, "turns")
-    carol = make_result("carol", artifacts=tuple(gallery.artifacts))
-    results = [alice, broken_result, carol]
-    shots = {result.student: feedback.write(result, graded / result.student) for result in results}
-    shots["class"] = feedback.write_summary(results, graded)
     page = chromium.new_page(viewport={"width": 1100, "height": 800})
-    for name in ("alice", "class", "carol"):
-        page.goto(f"{shots[name].as_uri()}#t=2.5")
-        if name == "carol":
-            page.locator("canvas").scroll_into_view_if_needed()
-            expect(page.locator("canvas")).to_be_in_viewport()
-        page.screenshot(path=graded / "screenshots" / f"{name}.png")
+    folder = graded / "screenshots"
+    for name, path in (("class", "index.html"), ("alice", "alice/feedback.html")):
+        page.goto((graded / path).as_uri())
+        page.screenshot(path=folder / f"{name}.png")
+    page.goto(f"{page.url}#run=run-room-track&t=0")  # a link to a run unfolds it
+    room = page.locator("#check-room")
+    room.get_by_role("button", name="broken at").click()
+    expect(room.locator("output")).not_to_have_text("0.00 s")
+    room.screenshot(path=folder / "run.png")
     page.close()
-    return graded / "screenshots"
+    return folder
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +102,7 @@ def test_axe_finds_nothing_wrong_with_a_page_of_the_site(
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("name", ["alice/feedback.html", "carol/feedback.html", "index.html"])
+@pytest.mark.parametrize("name", ["alice/feedback.html", "index.html"])
 def test_axe_finds_nothing_wrong_with_feedback(
     pictures: Path, graded: Path, page: Page, name: str, scheme: str
 ) -> None:
@@ -107,6 +128,48 @@ def test_the_run_on_the_start_page_plays_by_keyboard(site: Path, page: Page) -> 
     page.keyboard.press("Enter")
     expect(run.get_by_role("button", name="Pause")).to_be_visible()
     expect(run.locator("output").first).not_to_have_text("0.00 s")
+
+
+def test_a_chapter_has_its_number_and_its_notebook_to_download(site: Path, page: Page) -> None:
+    page.goto((site / "chapters" / f"{ASSIGNMENT}.html").as_uri())
+    expect(page.get_by_role("heading", level=1)).to_contain_text("2. From a node to a robot")
+    expect(page.get_by_role("link", name="9. What can you do now?")).to_be_visible()
+    link = page.get_by_role("link", name="Download the notebook")
+    expect(link).to_have_attribute("download", "")
+    downloaded = Path(unquote(urlsplit(link.evaluate("link => link.href")).path))
+    assert downloaded.name == f"{ASSIGNMENT}.ipynb"
+    (chapter,) = chapters((ASSIGNMENT,))
+    released = in_form(chapter.read(), Form.RELEASED)
+    assert nbformat.read(downloaded, as_version=4).cells == released.cells
+
+
+def test_a_button_copies_commands_without_their_prompts(site: Path, page: Page) -> None:
+    page.goto((site / "students.html").as_uri())
+    button = page.locator(".highlight-console button").first
+    button.focus()
+    page.keyboard.press("Enter")
+    field = page.get_by_placeholder("Search")
+    field.focus()
+    page.keyboard.press("Control+V")
+    expect(field).to_have_value(re.compile("^make "))
+
+
+def test_a_page_has_an_icon_a_summary_and_a_picture_for_links_to_it(site: Path, page: Page) -> None:
+    page.goto((site / "index.html").as_uri())
+    for meta, words in (("og:description", "A ROS 2 course"), ("og:image:alt", "lidar"), ("og:image", "preview.png")):
+        expect(page.locator(f'meta[property="{meta}"]')).to_have_attribute("content", re.compile(words))
+    icon = page.locator('link[rel~="icon"]').evaluate("link => link.href")
+    for address, size in ((icon, [64, 64]), ((site / "preview.png").as_uri(), [1200, 630])):
+        assert page.evaluate(SIZE, address) == size
+
+
+@pytest.mark.parametrize("name", ["sim", "autograder"])
+def test_a_page_of_the_api_begins_with_a_guide_and_names_no_words_a_type(site: Path, page: Page, name: str) -> None:
+    page.goto((site / "api" / f"{name}.html").as_uri())
+    begin = page.locator("section > section").first
+    expect(begin.locator(".highlight-python").first).to_be_visible()
+    expect(begin.locator("dl.py")).to_have_count(0)
+    assert page.locator("dt", has_text=re.compile("^Type")).all_inner_texts() == []
 
 
 def test_each_glossary_term_is_linked_at_most_once_in_a_chapter(site: Path) -> None:

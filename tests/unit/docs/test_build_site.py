@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import runpy
+import subprocess
 from pathlib import Path
 
 import nbformat
@@ -35,6 +36,22 @@ def test_each_cell_gets_the_outputs_of_the_same_executed_cell(
     MADE["write_chapter"](chapter, site)
     (cell,) = nbformat.read(site / "10_mapping.ipynb", as_version=4).cells
     assert len(cell.outputs) == shown
+
+
+def test_the_first_cell_of_a_chapter_gets_its_number_and_a_link_to_the_notebook() -> None:
+    text = MADE["with_number"]("# A map\n\n**Why?**\n\n# Not the title", "10_mapping")
+    assert text.startswith("# 10. A map\n\n{download}`Download the notebook <../notebooks/10_mapping.ipynb>`")
+    assert text.endswith(".\n\n**Why?**\n\n# Not the title")
+
+
+def test_the_examples_of_a_page_run_as_one_program_in_its_folder(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("```python\nn = 1\n```\n\n```text\nx\n```\n\n```python\nopen('made.txt', 'w').write(str(n))\n```\n")
+    MADE["run_examples"](page)
+    assert (tmp_path / "made.txt").read_text() == "1"
+    page.write_text("```python\nraise SystemExit(3)\n```\n")
+    with pytest.raises(subprocess.CalledProcessError):
+        MADE["run_examples"](page)
 
 
 def test_the_glossary_becomes_a_sphinx_glossary(tmp_path: Path) -> None:
