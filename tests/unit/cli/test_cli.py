@@ -229,6 +229,21 @@ def test_checking_finds_the_workspace_from_the_chapter_and_from_the_course(
     assert asked == [("02_nodes", Path(folder))]
 
 
+@pytest.mark.promise("`fresh=True` in the notebook, or `--fresh` in a terminal, runs the checks all the same.")
+def test_checking_asks_for_what_its_options_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[dict[str, object]] = []
+
+    def run_checks(assignment: str, workspace: Path, **options: object) -> CheckReport:
+        asked.append({name: value for name, value in options.items() if value})
+        return CheckReport(assignment, ())
+
+    monkeypatch.setattr(sys.modules["autograder.cli.check"], "run_checks", run_checks)
+    _run("check", "08_capstone", str(tmp_path), "--step", "2", "--fresh")
+    _run("check", "09_assessment", str(tmp_path), "--question", "3")
+    _run("check", "04_launch", str(tmp_path), "--exercise", "1")
+    assert asked == [{"step": 2, "fresh": True}, {"question": 3}, {"exercise": 1}]
+
+
 @pytest.mark.parametrize(("outcome", "status"), [(Outcome.PASSED, 0), (Outcome.FAILED, 1), (Outcome.NOT_CHECKED, 1)])
 def test_checking_exits_0_only_when_every_check_passed(
     outcome: Outcome, status: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
