@@ -7,7 +7,9 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from autograder import layout
 from autograder.author.verification.cases import Case
+from autograder.author.verification.check_errors import errors_in_checks
 from autograder.author.verification.claims import CaseKind, Verdict, hidden_lines
 from autograder.author.verification.leaks import hidden_text_in, texts_of
 from autograder.author.verification.worker_pool import WorkerPool
@@ -58,8 +60,12 @@ def verify_cases(
         mismatch = case.verify(result) if result.status is Status.GRADED else result.diagnosis.sentence
         if case.kind is CaseKind.ATTACK:
             mismatch = "; ".join(filter(None, (mismatch, _leak(result, folder))))
-        if result.unjudged:
-            mismatch = f"checks raised errors: {', '.join(result.unjudged)}; {folder / LOG} has the details"
+        log = folder / LOG
+        if result.unjudged or result.status is Status.NOT_GRADED:
+            text = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
+            errors = errors_in_checks(text, layout.CHECKS)
+            if named := "; ".join(errors) or ", ".join(result.unjudged):
+                mismatch = f"checks raised errors: {named}; {log} has the details"
         return Verdict(case.assignment, case.kind, case.name, result, mismatch, case.scope.only)
 
     verdicts = map_parallel(grade, _interleaved(cases), jobs=workers.count, on_done=on_verdict)
