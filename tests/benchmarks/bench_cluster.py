@@ -15,7 +15,7 @@ from distributed import Client
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.grade.cluster.connection import LOCAL, connected
 from autograder.grade.cluster.dispatch import grade_on
-from autograder.grade.cluster.parcel import Answer, Parcel
+from autograder.grade.cluster.task import Reply, Task
 from autograder.grade.job import Job
 from autograder.grade.pipeline import refused
 from autograder.result.model import Result
@@ -56,10 +56,10 @@ def _job(folder: Path, number: int) -> Job:
 
 
 def _answered(pauses: Sequence[float], data: bytes) -> bytes:
-    parcel = Parcel.unpack(data)
-    sha256 = detect_layout(list(parcel.files), ASSIGNMENT).sha256
+    task = Task.unpack(data)
+    sha256 = detect_layout(list(task.files), ASSIGNMENT).sha256
     pause = pauses[int(sha256, 16) % len(pauses)]
     time.sleep(pause)
-    result = refused(parcel.job, Diagnosis(Kind.BUILD_FAILED, "no", "x" * 4000))
+    result = refused(task.job, Diagnosis(Kind.BUILD_FAILED, "no", "x" * 4000))
     told = replace(result, submission_sha256=sha256, seconds=pause).to_json()
-    return Answer({"result.json": json.dumps(told).encode()}).pack()
+    return Reply({"result.json": json.dumps(told).encode()}).pack()

@@ -22,7 +22,7 @@ from autograder.grade.cluster.connection import LOCAL, connected
 from autograder.grade.cluster.dispatch import grade_on
 from autograder.grade.cluster.exceptions import ClusterError
 from autograder.grade.cluster.machine import resource
-from autograder.grade.cluster.parcel import Answer, Parcel
+from autograder.grade.cluster.task import Reply, Task
 from autograder.grade.job import Job
 from autograder.grade.pipeline import refused
 from autograder.result.model import Result, Status
@@ -133,16 +133,16 @@ def todo(tmp_path: Path) -> list[Job]:
 
 
 def answered(data: bytes) -> bytes:
-    """Answer as a worker does, without a grading; on bob's submission the worker dies."""
-    parcel = Parcel.unpack(data)
-    if parcel.files[0].data == b"bob":
+    """Reply as a worker does, without a grading; on bob's submission the worker dies."""
+    task = Task.unpack(data)
+    if task.files[0].data == b"bob":
         os.kill(os.getpid(), signal.SIGKILL)
     result = replace(
-        refused(parcel.job, Diagnosis(Kind.BUILD_FAILED, "no")),
-        submission_sha256=detect_layout(list(parcel.files), ASSIGNMENT).sha256,
+        refused(task.job, Diagnosis(Kind.BUILD_FAILED, "no")),
+        submission_sha256=detect_layout(list(task.files), ASSIGNMENT).sha256,
         status=Status.GRADED,
     )
-    return Answer({"result.json": json.dumps(result.to_json()).encode()}).pack()
+    return Reply({"result.json": json.dumps(result.to_json()).encode()}).pack()
 
 
 @pytest.mark.promise("| Two workers die with the same submission. |")
@@ -152,26 +152,26 @@ def test_a_submission_that_kills_two_workers_is_not_graded_and_the_others_are(to
         grade_on(client, todo, results.append, report=pytest.fail, grade=answered)
         alice, bob, carol = sorted(results, key=lambda result: result.student)
     assert (alice.status, bob.status, carol.status) == (Status.GRADED, Status.NOT_GRADED, Status.GRADED)
-    assert bob.diagnosis.sentence.startswith("The 2 workers that had this submission died. This is no zero")
+    assert bob.diagnosis.sentence.startswith("2 workers died while they graded this submission. This is no zero")
     assert "KilledWorker" in (todo[1].out / "grader.log").read_text()
 
 
 @pytest.mark.promise(
     "It gets no submissions, and the client says what differs.", "| No worker is suitable for two minutes. |"
 )
-def test_a_worker_of_another_suite_is_refused_and_gets_no_submission(
+def test_a_worker_with_another_suite_is_rejected_and_gets_no_submission(
     todo: list[Job], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    said: list[str] = []
+    reports: list[str] = []
     other = resource(ASSIGNMENT, Tier.PROCESS).replace(suites.hidden(ASSIGNMENT).files_digest, "another")
     with connected(LOCAL, 1, tmp_path) as client:
         monkeypatch.setattr(dispatch, "resource", lambda assignment, tier: other)
         monkeypatch.setattr(dispatch, "NO_WORKER_TIMEOUT_SECONDS", 0.0)
-        with pytest.raises(ClusterError, match="there was no worker that can grade this"):
-            grade_on(client, todo, pytest.fail, report=said.append, grade=answered)
-    (sentence,) = said
-    assert f"is refused: its suite of {ASSIGNMENT} is" in sentence
-    assert sentence.endswith("and here it is another: give both the same version of the course.")
+        with pytest.raises(ClusterError, match="no suitable worker was available"):
+            grade_on(client, todo, pytest.fail, report=reports.append, grade=answered)
+    (sentence,) = reports
+    assert f"is rejected: its suite of {ASSIGNMENT} is" in sentence
+    assert sentence.endswith("but here it is another: install the same version of the course on both.")
 
 
 @pytest.mark.promise(
@@ -195,9 +195,9 @@ def test_ctrl_c_keeps_the_gradings_that_have_begun_and_resume_grades_the_rest(tm
         assert process.stdout is not None
         assert process.stdout.readline().startswith("[1/3]")
         os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the workers get it, too
-        said = process.stdout.read()
-    assert process.returncode == 130, said
-    assert said.endswith("\nStopped. What is graded is in out: the same command with --resume grades the rest.\n")
+        reports = process.stdout.read()
+    assert process.returncode == 130, reports
+    assert reports.endswith("\nStopped. Finished results are in out: the same command with --resume grades the rest.\n")
     done = {
         student: (tmp_path / "out" / student / "result.json").stat().st_mtime_ns for student in stored(tmp_path / "out")
     }

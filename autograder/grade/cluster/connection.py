@@ -1,4 +1,4 @@
-"""Connects to a scheduler: with TLS wherever the address is not this machine's own."""
+"""Connects to a scheduler, with TLS unless it runs on this machine."""
 
 from __future__ import annotations
 
@@ -19,24 +19,26 @@ from autograder.grade.cluster.exceptions import ClusterError
 CERTIFICATE, KEY = "cluster.pem", "cluster.key"
 LOCAL = "local"
 PRELOAD = "autograder.grade.cluster"
-CONNECT_TIMEOUT_SECONDS = 30  # real time, for the first answer of a scheduler
+CONNECT_TIMEOUT_SECONDS = 30  # real time, for the scheduler's first response
 
 
 @contextlib.contextmanager
 def connected(scheduler: str, jobs: int, certificates: Path) -> Iterator[Client]:
-    """Give a client of a scheduler.
+    """Yield a client that is connected to a scheduler.
 
     Args:
         scheduler: its address, or `local` for a cluster on this machine that ends with the client.
-        jobs: how many submissions are graded at once by `local`.
-        certificates: the folder that `make cluster-certificates` made, for TLS.
+        jobs: how many submissions a `local` cluster grades at once.
+        certificates: the folder from `make cluster-certificates`, for TLS.
 
-    Raises ClusterError if nobody answers there, and UsageError if the address or a certificate cannot be used.
+    Raises:
+        ClusterError: the scheduler does not respond.
+        UsageError: the address or a certificate cannot be used.
     """
-    # A lost connection is this program's to explain, in one sentence.
+    # This program reports a lost connection itself, in one sentence.
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     if scheduler == LOCAL:
-        # The cluster would take away a worker that needs longer than 15 s to come back.
+        # By default, the cluster removes a worker that takes longer than 15 s to reconnect.
         stays = dask.config.set({"distributed.deploy.lost-worker-timeout": 600})
         with stays, _local(jobs) as cluster, Client(cluster, set_as_default=False) as client:
             yield client
@@ -46,7 +48,7 @@ def connected(scheduler: str, jobs: int, certificates: Path) -> Iterator[Client]
     try:
         client = Client(scheduler, security=security, timeout=CONNECT_TIMEOUT_SECONDS, set_as_default=False)
     except OSError as error:
-        raise ClusterError(f"no scheduler answers at {scheduler}: {error}") from None
+        raise ClusterError(f"no scheduler responds at {scheduler}: {error}") from None
     try:
         yield client
     finally:
@@ -55,18 +57,18 @@ def connected(scheduler: str, jobs: int, certificates: Path) -> Iterator[Client]
 
 
 def require_address(scheduler: str) -> None:
-    """Raise UsageError unless this is the address of a scheduler: `tls` and any machine, or `tcp` and this one."""
+    """Raise UsageError unless the scheduler's address is valid: `tls` for any machine, `tcp` only for this one."""
     try:
         address = urlsplit(scheduler)
         host, port = address.hostname, address.port
     except ValueError:
         host, port = None, None
     if not host or port is None or address.scheme not in ("tcp", "tls"):
-        raise UsageError(f"{scheduler!r} is no address of a scheduler: give tls://HOST:PORT, or `{LOCAL}`")
+        raise UsageError(f"{scheduler!r} is not a valid scheduler address: use tls://HOST:PORT, or `{LOCAL}`")
     if address.scheme == "tcp" and not _loopback(host):
         raise UsageError(
-            f"{scheduler} would send submissions and marks in clear text: start scheduler and workers with tls:// "
-            "(`make cluster-certificates` makes what they need)"
+            f"{scheduler} would send submissions and marks unencrypted: start scheduler and workers with tls:// "
+            "(`make cluster-certificates` creates the certificates)"
         )
 
 
@@ -82,8 +84,8 @@ def _security(folder: Path) -> Security:
     for path in (certificate, key):
         if not path.is_file():
             raise UsageError(
-                f"{path}: there is no such file; `make cluster-certificates` makes it, and --certificates names the "
-                "folder"
+                f"{path} does not exist: run `make cluster-certificates` to create it, or give its folder with "
+                "--certificates"
             )
     return Security(
         tls_ca_file=str(certificate), tls_client_cert=str(certificate), tls_client_key=str(key), require_encryption=True
@@ -91,7 +93,7 @@ def _security(folder: Path) -> Security:
 
 
 def _local(jobs: int) -> LocalCluster:
-    # One process with a thread for each grading: a thread only waits for the grading's own process.
+    # A single process with one thread for each grading suffices, because a thread only waits for another process.
     return LocalCluster(
         n_workers=1,
         threads_per_worker=jobs,

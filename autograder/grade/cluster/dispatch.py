@@ -1,7 +1,7 @@
-"""Sends a class to the workers of a scheduler, and takes in what comes back.
+"""Sends the submissions of a class to the workers of a scheduler and collects their results.
 
-Only as many submissions are under way as the workers have threads. So the memory of client and scheduler does not grow
-with the class, and after Ctrl-C there is little to wait for.
+No more submissions are in progress than the workers have threads. The memory of client and scheduler therefore does not
+grow with the class, and the wait after Ctrl-C is short.
 """
 
 from __future__ import annotations
@@ -24,27 +24,27 @@ from autograder.grade.cluster import MAX_WORKER_DEATHS, work
 from autograder.grade.cluster.accept import accept
 from autograder.grade.cluster.exceptions import ClusterError
 from autograder.grade.cluster.machine import difference, resource
-from autograder.grade.cluster.parcel import Parcel
+from autograder.grade.cluster.task import Task
 from autograder.grade.job import Job
 from autograder.grade.pipeline import not_graded, refused
 from autograder.grade.store import write_result
 from autograder.submission.intake import read_files
 from autograder.submission.intake.files import digest
 
-TICK = 0.5  # s between two looks at the workers
+TICK = 0.5  # s between polls of the workers
 NO_WORKER_TIMEOUT_SECONDS = 120.0  # real time without a worker that can grade this
-TRIES = 2  # answers that are asked for before a submission is given up
+TRIES = 2  # attempts to grade a submission
 
 Grade = Callable[[bytes], bytes]
 
 
 @dataclass(frozen=True)
 class _Pending:
-    """A submission that a worker grades, its digest, and how often it was sent."""
+    """A submission in progress, its digest, its packed task, and how often it was sent."""
 
     job: Job
     sha256: str
-    parcel: bytes
+    task: bytes
     tries: int = 1
 
 
@@ -58,17 +58,17 @@ def grade_on(
 ) -> None:
     """Grade submissions of one assignment on a cluster.
 
-    After Ctrl-C nothing more is sent, and the results of what was sent are stored. A second Ctrl-C drops these, too.
+    After Ctrl-C no more submissions are sent, and the pending results are stored. A second Ctrl-C discards them.
 
     Args:
         client: the connection to the scheduler.
-        jobs: submissions of one assignment and tier.
-        on_result: called for each result as it comes, in any order.
-        report: called with a sentence for each worker that is refused, which says why.
-        grade: what a worker does with a packed `Parcel`; it returns a packed `Answer`.
+        jobs: submissions of one assignment and isolation level.
+        on_result: called with each result when it arrives, in any order.
+        report: called with the reason for each rejected worker, as a sentence.
+        grade: the worker's function, which takes a packed `Task` and returns a packed `Reply`.
 
     Raises:
-        ClusterError: the scheduler was lost, or no worker can grade this. What came by then is stored.
+        ClusterError: the scheduler was lost, or no worker can grade this assignment. Earlier results are stored.
     """
     if not jobs:
         return
@@ -84,21 +84,22 @@ def grade_on(
 
 @contextlib.contextmanager
 def _first_interrupt() -> Iterator[threading.Event]:
-    """Yield an event that the first Ctrl-C sets; the second one raises KeyboardInterrupt.
+    """Yield an event that the first Ctrl-C sets. The second one raises KeyboardInterrupt.
 
-    Python drops an exception that comes in a finalizer, and futures of Dask have one. So the first raises none.
+    Python ignores exceptions raised in a finalizer, and Dask's futures have one. The first Ctrl-C therefore raises
+    nothing.
     """
-    noted = threading.Event()
+    interrupted = threading.Event()
 
-    def note(*_: object) -> None:
-        noted.set()
+    def on_interrupt(*_: object) -> None:
+        interrupted.set()
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
-    before = signal.signal(signal.SIGINT, note)
+    previous_handler = signal.signal(signal.SIGINT, on_interrupt)
     try:
-        yield noted
+        yield interrupted
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.signal(signal.SIGINT, previous_handler)
 
 
 class _Dispatch:
@@ -114,92 +115,92 @@ class _Dispatch:
     ) -> None:
         self._client, self._on_result, self._report, self._grade = client, on_result, report, grade
         self._resource = resource(jobs[0].assignment, jobs[0].tier)
-        self._refused: set[str] = set()
+        self._rejected: set[str] = set()
         self._threads = 0
-        self._looked = float("-inf")
-        self._fitted = time.monotonic()
-        self._parcels = self._packed(jobs)
-        self._under_way: dict[Future, _Pending] = {}
-        self._ended: queue.SimpleQueue[Future] = queue.SimpleQueue()
+        self._last_poll = float("-inf")
+        self._last_suitable = time.monotonic()
+        self._queue = self._packed(jobs)
+        self._in_progress: dict[Future, _Pending] = {}
+        self._done: queue.SimpleQueue[Future] = queue.SimpleQueue()
 
     def run(self, interrupted: threading.Event) -> None:
-        """Send and take in until nothing is left; once interrupted, take in what is under way."""
-        left = True
-        while left or self._under_way:
-            left = left and not interrupted.is_set()
-            while left and len(self._under_way) < self._fitting_threads():
-                pending = next(self._parcels, None)
+        """Send submissions and receive results until all are done. After an interrupt, only receive."""
+        has_more = True
+        while has_more or self._in_progress:
+            has_more = has_more and not interrupted.is_set()
+            while has_more and len(self._in_progress) < self._suitable_threads():
+                pending = next(self._queue, None)
                 if pending is None:
-                    left = False
+                    has_more = False
                 else:
                     self._send(pending)
-            self._take()
+            self._receive()
 
     def forget(self) -> None:
-        """Let the scheduler drop what is under way."""
-        with contextlib.suppress(Exception):  # the scheduler may be what was lost
-            self._client.cancel(list(self._under_way), force=True)
+        """Tell the scheduler to cancel the submissions in progress."""
+        with contextlib.suppress(Exception):  # the scheduler may be lost
+            self._client.cancel(list(self._in_progress), force=True)
 
-    def _fitting_threads(self) -> int:
-        """Return how many submissions the workers that fit can grade at once; look at them now and then."""
+    def _suitable_threads(self) -> int:
+        """Return how many submissions the suitable workers can grade at once. Poll the workers every `TICK` seconds."""
         now = time.monotonic()
-        if now - self._looked >= TICK:
-            self._look()
-            self._looked = now
+        if now - self._last_poll >= TICK:
+            self._poll()
+            self._last_poll = now
             if self._threads:
-                self._fitted = now
-            elif now - self._fitted > NO_WORKER_TIMEOUT_SECONDS:
+                self._last_suitable = now
+            elif now - self._last_suitable > NO_WORKER_TIMEOUT_SECONDS:
                 raise ClusterError(
-                    f"for {NO_WORKER_TIMEOUT_SECONDS:.0f} s there was no worker that can grade this: start one with "
+                    f"no suitable worker was available for {NO_WORKER_TIMEOUT_SECONDS:.0f} s: start one with "
                     "`dask worker ADDRESS --preload autograder.grade.cluster`"
                 )
         return self._threads
 
-    def _look(self) -> None:
-        """Count the threads of the workers that fit; report once of each other why it is refused."""
+    def _poll(self) -> None:
+        """Count the threads of the suitable workers, and report once why each other worker is rejected."""
         try:
             workers = self._client.scheduler_info()["workers"]
         except (OSError, RuntimeError, TimeoutError) as error:
-            raise ClusterError(f"the scheduler does not answer: {error}") from None
+            raise ClusterError(f"the scheduler does not respond: {error}") from None
         self._threads = 0
         for address, worker in workers.items():
-            why = difference(self._resource, worker["resources"])
-            if not why:
+            reason = difference(self._resource, worker["resources"])
+            if not reason:
                 self._threads += worker["nthreads"]
-            elif address not in self._refused:
-                self._refused.add(address)
-                self._report(f"The worker {address} is refused: {why}.")
+            elif address not in self._rejected:
+                self._rejected.add(address)
+                self._report(f"The worker {address} is rejected: {reason}.")
 
     def _packed(self, jobs: Sequence[Job]) -> Iterator[_Pending]:
-        """Yield what has to be sent; report the results of what intake refuses."""
+        """Yield the submissions to send. Report a result for each one that intake rejects."""
         for job in jobs:
             try:
                 files = read_files(job.path, job.assignment)
             except StudentError as error:
                 self._on_result(write_result(job, refused(job, error.diagnosis), {}))
                 continue
-            yield _Pending(job, digest(files), Parcel(job, tuple(files)).pack())
+            yield _Pending(job, digest(files), Task(job, tuple(files)).pack())
 
     def _send(self, pending: _Pending) -> None:
         future = self._client.submit(
-            self._grade, pending.parcel, key=f"grade-{uuid.uuid4()}", resources={self._resource: 1}, pure=False
+            self._grade, pending.task, key=f"grade-{uuid.uuid4()}", resources={self._resource: 1}, pure=False
         )
-        self._under_way[future] = pending
-        future.add_done_callback(self._ended.put)
+        self._in_progress[future] = pending
+        future.add_done_callback(self._done.put)
 
-    def _take(self) -> None:
-        """Wait a moment for a future that has ended, and take it in."""
+    def _receive(self) -> None:
+        """Wait up to `TICK` seconds for a result, and process it."""
         try:
-            future = self._ended.get(timeout=TICK)
+            future = self._done.get(timeout=TICK)
         except queue.Empty:
-            self._fitting_threads()  # has the scheduler or the last worker gone?
+            self._suitable_threads()  # notices if the scheduler or the last worker is gone
             return
-        pending = self._under_way.pop(future)
+        pending = self._in_progress.pop(future)
         if future.status == "cancelled":
             raise ClusterError("the connection to the scheduler was lost")
         if future.status == "error":
-            why = f"The {MAX_WORKER_DEATHS} workers that had this submission died."
-            self._give_up(pending.job, why, f"{future.exception()!r}\n")
+            reason = f"{MAX_WORKER_DEATHS} workers died while they graded this submission."
+            self._give_up(pending.job, reason, f"{future.exception()!r}\n")
             return
         try:
             self._on_result(accept(future.result(), pending.job, pending.sha256))
@@ -207,8 +208,8 @@ class _Dispatch:
             if pending.tries < TRIES:
                 self._send(replace(pending, tries=pending.tries + 1))
                 return
-            why = f"Workers failed on this submission {TRIES} times."
-            self._give_up(pending.job, why, f"{error}\n")
+            reason = f"Workers failed on this submission {TRIES} times."
+            self._give_up(pending.job, reason, f"{error}\n")
 
-    def _give_up(self, job: Job, why: str, log: str) -> None:
-        self._on_result(write_result(job, *not_graded(job, why, log)))
+    def _give_up(self, job: Job, reason: str, log: str) -> None:
+        self._on_result(write_result(job, *not_graded(job, reason, log)))

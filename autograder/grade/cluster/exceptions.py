@@ -6,4 +6,4 @@ from autograder.exceptions import GraderError
 
 
 class ClusterError(GraderError):
-    """The cluster cannot be reached, was lost, or lacks what it needs. What is graded by then is kept."""
+    """The cluster is unreachable, was lost, or has no suitable worker. Earlier results are kept."""

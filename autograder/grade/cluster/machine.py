@@ -1,8 +1,8 @@
-"""The versions with which a machine grades. Only machines with the same versions give the same results.
+"""The versions on a machine that affect grading. Only machines with the same versions give the same results.
 
-A worker offers a resource of Dask for each pair of assignment and tier. Its name also holds the digest of the files
-that the grading reads, that of the pinned packages, the version of Python and those of the real launch, if it is
-installed. A submission asks for one such resource, so the scheduler never gives it to a worker that differs.
+A worker offers a Dask resource for each assignment and isolation level. The resource's name contains the digests of the
+files that the grading reads and of the pinned packages, and the versions of Python and of the real launch, if it is
+installed. A submission requests one such resource, so the scheduler never sends it to a worker with other versions.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ LOCK = "requirements.lock"
 
 
 def resource(assignment: str, tier: Tier) -> str:
-    """Return the name of the resource by which this machine grades an assignment in a tier."""
+    """Return the name of this machine's resource for an assignment and an isolation level."""
     lock = hashlib.sha256((layout.ROOT / LOCK).read_bytes()).hexdigest()[:12]
     python = ".".join(platform.python_version_tuple()[:2])
     launch = describe_launch().replace(", ", "+").replace(" ", "-")
@@ -29,21 +29,21 @@ def resource(assignment: str, tier: Tier) -> str:
 
 
 def resources() -> list[str]:
-    """Return the names of all resources that this machine offers. It takes about a second."""
+    """Return the names of all resources that this machine offers. This takes about a second."""
     return [resource(name, tier) for name in suites.graded_assignments() for tier in {Tier.PROCESS, best_tier()}]
 
 
-def difference(wanted: str, offered: Iterable[str]) -> str:
-    """Say in a sentence why a worker that offers these resources does not offer the wanted one; empty if it does."""
-    found = [name.split() for name in offered if name.startswith("autograder ")]
-    if not found:
-        return "it does not say what it grades with: start it with `--preload autograder.grade.cluster`"
-    _, assignment, *ours, tier = wanted.split()
-    graded = [versions for _, name, *versions, _ in found if name == assignment]
-    theirs = graded[0] if graded else ["missing", *ours[1:]]
-    for what, their, our in zip((f"suite of {assignment}", LOCK, "Python", "launch"), theirs, ours, strict=True):
+def difference(required: str, offered: Iterable[str]) -> str:
+    """Explain why a worker that offers these resources lacks the required one, or return an empty string."""
+    resources = [name.split() for name in offered if name.startswith("autograder ")]
+    if not resources:
+        return "it does not report its versions: start it with `--preload autograder.grade.cluster`"
+    _, assignment, *ours, tier = required.split()
+    versions_there = [versions for _, name, *versions, _ in resources if name == assignment]
+    theirs = versions_there[0] if versions_there else ["missing", *ours[1:]]
+    for part, their, our in zip((f"suite of {assignment}", LOCK, "Python", "launch"), theirs, ours, strict=True):
         if their != our:
-            return f"its {what} is {their}, and here it is {our}: give both the same version of the course"
-    if wanted.split() not in found:
-        return f"it cannot isolate submissions by {tier}: `autograder doctor` there says what fixes it"
+            return f"its {part} is {their}, but here it is {our}: install the same version of the course on both"
+    if required.split() not in resources:
+        return f"it does not support the isolation level {tier}: `autograder doctor` there says how to fix it"
     return ""

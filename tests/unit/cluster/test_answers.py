@@ -1,4 +1,4 @@
-"""A worker's reply is checked as untrusted input: an invalid one is refused, and nothing is written."""
+"""A worker's reply is checked as untrusted input: an invalid one is rejected, and nothing is written."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from autograder.exceptions import StudentError
 from autograder.grade.answer import AnswerError
 from autograder.grade.cluster.accept import accept
 from autograder.grade.cluster.exceptions import ClusterError
-from autograder.grade.cluster.parcel import MAX_ANSWER, Answer, Parcel
+from autograder.grade.cluster.task import MAX_REPLY, Reply, Task
 from autograder.grade.job import Job
 from autograder.grade.pipeline import not_graded, refused
 from autograder.grade.store import write_result
@@ -50,7 +50,7 @@ def png() -> bytes:
 
 
 def answer(result: Result, **files: bytes) -> bytes:
-    return Answer({"result.json": json.dumps(result.to_json()).encode(), **files}).pack()
+    return Reply({"result.json": json.dumps(result.to_json()).encode(), **files}).pack()
 
 
 def with_picture(result: Result, name: str) -> Result:
@@ -62,34 +62,34 @@ def with_run(result: Result, name: str) -> Result:
 
 
 @pytest.mark.promise("A submission is sent as its files")
-def test_a_parcel_is_unpacked_as_it_was_packed_for_any_file_names() -> None:
+def test_packing_and_unpacking_a_task_preserves_any_file_name() -> None:
     names = ("src/a b/ü.py", "src/\udcff.txt", "run")
     files = tuple(SubmittedFile(PurePosixPath(name), name.encode("utf-8", "replace"), name == "run") for name in names)
     job = Job(Path(), CHAPTER, "", 7, Path(), Tier.PROCESS)
-    parcel = Parcel(job, files)
-    assert Parcel.unpack(parcel.pack()).job == job
-    assert set(Parcel.unpack(parcel.pack()).files) == set(files)
-    assert Parcel(job, files[::-1]).pack() == parcel.pack()
+    task = Task(job, files)
+    assert Task.unpack(task.pack()).job == job
+    assert set(Task.unpack(task.pack()).files) == set(files)
+    assert Task(job, files[::-1]).pack() == task.pack()
 
 
 @pytest.mark.parametrize(
     "data",
     [b"", b"\xc1", msgpack.packb(["02_nodes", 7, "no tier", []]), msgpack.packb(["02_nodes", 7, "process", [[]]])],
 )
-def test_bytes_that_are_no_parcel_are_refused(data: bytes) -> None:
-    with pytest.raises(ClusterError, match="the parcel of a submission cannot be read"):
-        Parcel.unpack(data)
+def test_bytes_that_are_not_a_task_are_rejected(data: bytes) -> None:
+    with pytest.raises(ClusterError, match="a task cannot be read"):
+        Task.unpack(data)
 
 
 @pytest.mark.parametrize("name", ["/etc/passwd", "src/../../x"])
-def test_a_parcel_writes_no_file_outside_its_folder(job: Job, name: str) -> None:
-    data = Parcel(job, (SubmittedFile(PurePosixPath(name), b""),)).pack()
-    with pytest.raises(ClusterError, match="names a file outside of it"):
-        Parcel.unpack(data)
+def test_a_task_writes_no_file_outside_its_folder(job: Job, name: str) -> None:
+    data = Task(job, (SubmittedFile(PurePosixPath(name), b""),)).pack()
+    with pytest.raises(ClusterError, match="names a file outside of the submission"):
+        Task.unpack(data)
 
 
 @pytest.mark.promise("The student's name stays with the client.")
-def test_an_answer_is_stored_under_the_student_s_name(job: Job, result: Result) -> None:
+def test_a_reply_is_stored_under_the_student_s_name(job: Job, result: Result) -> None:
     told = with_run(result, "turns.run.json")
     taken = accept(answer(told, **{"turns.png": png(), "turns.run.json": b"{}"}), job, SHA256)
     assert taken == replace(told, student="Zoë")
@@ -107,16 +107,16 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
     return {
         "no bytes": ({"result.json": ""}, "sent dict instead of bytes"),
         "no msgpack": (b"\xc1", "cannot be read"),
-        "too large": (b"\x00" * (MAX_ANSWER + 1), "is the most"),
+        "too large": (b"\x00" * (MAX_REPLY + 1), "at most"),
         "nested": (b"\x91" * 100_000, "cannot be read"),
         "empty lists": (msgpack.packb([{"result.json": [[]] * 100_000}, ""]), "cannot be read"),
         "empty maps": (msgpack.packb([{"result.json": {"a": {"b": {}}}}, ""]), "cannot be read"),
         "a file too few": (msgpack.packb([{"result.json": b""}, ""])[:-1], "cannot be read"),
-        "a name that is none": (b"\x92\x81\x01\xc4\x00\xa0", "not made of named files"),
-        "too many files": (msgpack.packb([{str(n): b"" for n in range(201)}, ""]), "not made of named files"),
+        "a name that is none": (b"\x92\x81\x01\xc4\x00\xa0", "does not consist of named files"),
+        "too many files": (msgpack.packb([{str(n): b"" for n in range(201)}, ""]), "does not consist of named files"),
         "no files": (msgpack.packb([[1], ""]), "cannot be read"),
-        "no result": (Answer({}).pack(), "holds no result"),
-        "no schema": (Answer({"result.json": b'{"score": 100}'}).pack(), "holds no result"),
+        "no result": (Reply({}).pack(), "holds no result"),
+        "no schema": (Reply({"result.json": b'{"score": 100}'}).pack(), "holds no result"),
         "another seed": (answer(replace(result, seed=8)), "a worker graded"),
         "another submission": (answer(replace(result, submission_sha256="b" * 64)), "a worker graded"),
         "another suite": (answer(replace(result, suite_version="0" * 12)), "a worker graded"),
@@ -154,26 +154,28 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
             "of the name",
         ),
         "no notebook": (answer(result, **{"notebook.ipynb": b"[]"}), "notebook in a worker's answer"),
-        "a failure": (Answer({}, "Traceback: disk full").pack(), "the worker failed: Traceback: disk full"),
+        "a failure": (Reply({}, "Traceback: disk full").pack(), "the worker failed: Traceback: disk full"),
     }
 
 
 @pytest.mark.promise("The client treats replies as untrusted.", "It writes nothing until the whole reply is valid.")
-def test_a_hostile_answer_is_refused_and_writes_nothing(job: Job, result: Result) -> None:
+def test_a_hostile_reply_is_rejected_and_writes_nothing(job: Job, result: Result) -> None:
     for name, (data, why) in hostile(result).items():
         with pytest.raises(AnswerError, match=why):
             pytest.fail(f"{name}: {accept(data, job, SHA256)}")
         assert not job.out.exists(), name
 
 
-def test_a_submission_that_is_given_up_is_not_graded_and_has_no_zero(job: Job) -> None:
-    given_up = write_result(job, *not_graded(job, "The 2 workers that had this submission died.", "KilledWorker\n"))
+def test_a_submission_that_is_given_up_is_not_graded_instead_of_zero(job: Job) -> None:
+    given_up = write_result(
+        job, *not_graded(job, "2 workers died while they graded this submission.", "KilledWorker\n")
+    )
     assert given_up.status is Status.NOT_GRADED
-    assert given_up.diagnosis.sentence.startswith("The 2 workers that had this submission died. This is no zero")
+    assert given_up.diagnosis.sentence.startswith("2 workers died while they graded this submission. This is no zero")
     assert (job.out / "grader.log").read_text() == "KilledWorker\n"
 
 
-def test_a_submission_that_intake_refuses_is_unclear_and_needs_no_worker(tmp_path: Path) -> None:
+def test_a_submission_that_intake_rejects_is_unclear_and_needs_no_worker(tmp_path: Path) -> None:
     (tmp_path / "bob.zip").write_bytes(b"none")
     with pytest.raises(StudentError) as caught:
         read_submission(tmp_path / "bob.zip", CHAPTER)
@@ -182,6 +184,6 @@ def test_a_submission_that_intake_refuses_is_unclear_and_needs_no_worker(tmp_pat
 
 
 @pytest.mark.promise("A reply is at most 64 MiB")
-def test_an_answer_that_would_be_too_large_is_a_failure() -> None:
-    files: dict[str, Any] = {"result.json": b"\x00" * (MAX_ANSWER + 1)}
-    assert "which is too much" in Answer.unpack(Answer(files).pack()).failure
+def test_a_reply_that_would_be_too_large_is_a_failure() -> None:
+    files: dict[str, Any] = {"result.json": b"\x00" * (MAX_REPLY + 1)}
+    assert "the grading wrote too much" in Reply.unpack(Reply(files).pack()).failure

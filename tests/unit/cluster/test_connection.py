@@ -20,26 +20,26 @@ from autograder.run.sandbox import Tier
     "address",
     ["tls://grader.example.edu:8786", "tcp://127.0.0.1:8786", "tcp://localhost:8786", "tcp://[::1]:1", "tls://[::1]:1"],
 )
-def test_tls_is_allowed_to_any_address_and_clear_text_only_to_this_machine(address: str) -> None:
+def test_tls_is_allowed_to_any_address_and_unencrypted_only_to_this_machine(address: str) -> None:
     require_address(address)
 
 
 @pytest.mark.parametrize(
     "address", ["", "grader", "grader:8786", "http://grader:80", "tls://:8786", "tls://grader:port"]
 )
-def test_a_text_that_is_no_address_is_a_usage_error(address: str) -> None:
-    with pytest.raises(UsageError, match="is no address of a scheduler: give tls://HOST:PORT, or `local`"):
+def test_an_invalid_scheduler_address_is_a_usage_error(address: str) -> None:
+    with pytest.raises(UsageError, match="is not a valid scheduler address: use tls://HOST:PORT, or `local`"):
         require_address(address)
 
 
 @pytest.mark.promise("Addresses of other machines are only used with TLS.")
-def test_submissions_never_leave_the_machine_in_clear_text() -> None:
-    with pytest.raises(UsageError, match=r"in clear text: start scheduler and workers with tls://"):
+def test_submissions_never_leave_the_machine_unencrypted() -> None:
+    with pytest.raises(UsageError, match=r"unencrypted: start scheduler and workers with tls://"):
         require_address("tcp://10.0.0.1:8786")
 
 
 def test_a_missing_certificate_is_named(tmp_path: Path) -> None:
-    missing = pytest.raises(UsageError, match=r"cluster.pem: there is no such file; `make cluster-certificates`")
+    missing = pytest.raises(UsageError, match=r"cluster.pem does not exist: run `make cluster-certificates`")
     with missing, connected("tls://10.0.0.1:8786", 1, tmp_path):
         pytest.fail("connected")
 
@@ -63,23 +63,26 @@ HERE = "autograder 02_nodes 5ca1ab1e0000 10cc10cc10cc 3.12 stand-ins bubblewrap"
 
 @pytest.mark.promise("It gets no submissions, and the client says what differs.")
 @pytest.mark.parametrize(
-    ("offered", "why"),
+    ("offered", "reason"),
     [
         ([HERE], ""),
         ([HERE.replace("bubblewrap", "process"), HERE], ""),
-        ([HERE.replace("5ca1ab1e0000", "0")], "its suite of 02_nodes is 0, and here it is 5ca1ab1e0000"),
+        ([HERE.replace("5ca1ab1e0000", "0")], "its suite of 02_nodes is 0, but here it is 5ca1ab1e0000"),
         ([HERE.replace("02_nodes", "03_interfaces")], "its suite of 02_nodes is missing"),
         ([HERE.replace("10cc10cc10cc", "0")], "its requirements.lock is 0"),
-        ([HERE.replace("3.12", "3.10")], "its Python is 3.10, and here it is 3.12"),
-        ([HERE.replace("stand-ins", "launch-3.4.3")], "its launch is launch-3.4.3, and here it is stand-ins"),
-        ([HERE.replace("bubblewrap", "process")], "it cannot isolate submissions by bubblewrap: `autograder doctor`"),
-        (["GPU"], "it does not say what it grades with: start it with `--preload autograder.grade.cluster`"),
+        ([HERE.replace("3.12", "3.10")], "its Python is 3.10, but here it is 3.12"),
+        ([HERE.replace("stand-ins", "launch-3.4.3")], "its launch is launch-3.4.3, but here it is stand-ins"),
+        (
+            [HERE.replace("bubblewrap", "process")],
+            "it does not support the isolation level bubblewrap: `autograder doctor`",
+        ),
+        (["GPU"], "it does not report its versions: start it with `--preload autograder.grade.cluster`"),
     ],
 )
-def test_a_worker_that_differs_is_refused_with_the_reason(offered: list[str], why: str) -> None:
-    assert difference(HERE, offered).startswith(why)
+def test_a_worker_with_other_versions_is_rejected_with_the_reason(offered: list[str], reason: str) -> None:
+    assert difference(HERE, offered).startswith(reason)
     assert (difference(HERE, offered) == "") is (HERE in offered)
 
 
-def test_a_machine_fits_its_own_requirements() -> None:
+def test_a_machine_meets_its_own_requirements() -> None:
     assert difference(resource("02_nodes", Tier.PROCESS), resources()) == ""
