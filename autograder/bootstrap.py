@@ -1,8 +1,8 @@
-"""Makes `.venv`, the step between a clone and a running course: `python3 -I autograder/bootstrap.py`.
+"""Creates `.venv`, the step between a clone and a running course: `python3 -I autograder/bootstrap.py`.
 
-Run by the system's Python with the standard library alone. A finished set-up leaves a stamp of everything it depends
-on; while the stamp holds, a second call does nothing. The stamp is removed before the first change and written after
-the last one, so that an interrupted set-up is made again from the start.
+It runs in the system's Python and needs only the standard library. A finished set-up writes a stamp of everything that
+it depends on. While the stamp is valid, another call does nothing. The stamp is removed before the first change and
+written after the last one, so that an interrupted set-up starts from the beginning.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from pathlib import Path
 STAMP = "course-set-up.json"
 ROS = json.loads(Path(__file__).with_name("ros").joinpath("distribution.json").read_text(encoding="utf-8"))
 
-# What apt provides, and the commands that show that it, or its like, is there.
+# Packages from apt, and commands that show that the package or an equivalent is installed.
 TOOLS = {
     "g++": ("g++",),
     "bubblewrap": ("bwrap",),
@@ -38,17 +38,17 @@ Run = Callable[..., int]  # run(*command, quiet=False) -> exit status
 
 
 class SetUpError(Exception):
-    """The set-up cannot be done here; the message says why and what to do."""
+    """The set-up is impossible here. The message says why and what to do."""
 
 
 def print_progress(line: str) -> None:
-    """Show one line of progress."""
+    """Print a line of progress."""
     print(f"set-up: {line}", flush=True)
 
 
 @dataclass(frozen=True)
 class Interpreter:
-    """The Python that the environment is made with: its path, version, full version text and extension suffix."""
+    """The environment's base Python: its path, version, full version text and extension suffix."""
 
     executable: str
     version: tuple[int, int]
@@ -57,33 +57,33 @@ class Interpreter:
 
     @classmethod
     def running(cls) -> Interpreter:
-        """Describe the interpreter that runs this, or the one under it when that is a virtual environment's."""
+        """Describe the running interpreter, or the base interpreter of its virtual environment."""
         executable = os.path.realpath(getattr(sys, "_base_executable", None) or sys.executable)
         return cls(executable, sys.version_info[:2], sys.version, str(sysconfig.get_config_var("EXT_SUFFIX")))
 
 
 def check_machine(version: tuple[int, int], system: str, machine: str) -> None:
-    """Refuse, with a `SetUpError`, a Python or a machine that the pinned packages do not support."""
+    """Raise SetUpError if the pinned packages do not support this Python or this machine."""
     if (python := "{}.{}".format(*version)) not in ROS["pythons"]:
         title, own, (first, *_, last) = ROS["title"], ROS["pythons"][0], sorted(ROS["pythons"])
         raise SetUpError(
             f"Python {python} is not supported: ROS 2 {title}'s wheels are for Python {first} to {last}. "
-            f"Install one of them ({own} is {title}'s own) and run `make PYTHON=python{own}`"
+            f"Install one of them ({title}'s default is {own}) and run `make PYTHON=python{own}`"
         )
     if (system, machine) != ("Linux", "x86_64"):
         raise SetUpError(
-            f"the course runs on Linux x86-64 and this is {system} {machine}: use the container in .devcontainer "
+            f"the course runs on Linux x86-64, but this is {system} {machine}: use the container in .devcontainer "
             "(on an ARM computer with --platform linux/amd64), WSL 2 on Windows, or a JupyterHub"
         )
 
 
 def sourced_ros(environ: Mapping[str, str], venv: Path, interpreter: Interpreter) -> str | None:
-    """Return the site-packages folder of the ROS 2 that is sourced, or None when the wheels are to be used.
+    """Return the site-packages folder of the sourced ROS 2, or None if the wheels should be used.
 
-    What this project's own environment puts into the variables does not count as sourced.
+    Entries from this project's own environment do not count as sourced.
 
     Raises:
-        SetUpError: another distribution is sourced, or one that this Python cannot import.
+        SetUpError: another distribution is sourced, or this Python cannot import the sourced one.
     """
 
     def outside_venv(name: str) -> list[Path]:
@@ -95,18 +95,18 @@ def sourced_ros(environ: Mapping[str, str], venv: Path, interpreter: Interpreter
     other = distro and (outside_venv("AMENT_PREFIX_PATH") or outside_venv("ROS_PACKAGE_PATH"))
     if (modules or other) and distro != ROS["name"]:
         raise SetUpError(
-            f"the ROS that is sourced is {distro or 'of no known distribution'} and the course needs {ROS['title']}: "
-            f"open a shell that does not source it (the wheels are then used), or source {ROS['setup']}"
+            f"the sourced ROS distribution is {distro or 'unknown'}, but the course needs {ROS['title']}: "
+            f"use a shell that does not source it (the wheels are used then), or source {ROS['setup']}"
         )
     if not modules:
         return None
     if not (modules[0] / "rclpy" / f"_rclpy_pybind11{interpreter.suffix}").is_file():
-        found = re.search(r"python3\.\d+", str(modules[0]))
-        built = found[0] if found else f"python{ROS['pythons'][0]}"
+        match = re.search(r"python3\.\d+", str(modules[0]))
+        built = match[0] if match else f"python{ROS['pythons'][0]}"
         raise SetUpError(
             f"the sourced ROS 2 in {modules[0]} is not for Python {'.'.join(map(str, interpreter.version))}: "
-            f"run `make PYTHON={built}`, or open a shell that does not source it "
-            "(the wheels are then used)"
+            f"run `make PYTHON={built}`, or use a shell that does not source it "
+            "(the wheels are used then)"
         )
     return str(modules[0])
 
@@ -123,16 +123,16 @@ def closed_to_other_users(python: Path, course: Path) -> str | None:
 
 
 def without_ros(lock: str) -> str:
-    """Return a lock's text without the entries of ROS itself, all of which are named `ros-...`."""
+    """Return the text of a lock without the ROS packages, whose names all start with `ros-`."""
     entries = re.split(r"(?m)^(?=[A-Za-z0-9])", lock)
     return "".join(entry for entry in entries if not entry.startswith("ros-"))
 
 
 def child_environment(environ: Mapping[str, str]) -> dict[str, str]:
-    """Return the variables for pip and for the new environment's Python.
+    """Return the environment variables for pip and for the new environment's Python.
 
-    pip takes what lies on PYTHONPATH for installed, and the wheels' start-up hook, once it has run for one
-    environment, has to run again for the next.
+    pip treats packages on PYTHONPATH as installed. The wheels' start-up hook marks that it has run, but must run again
+    for a new environment.
     """
     unwanted = ("PYTHONPATH", "PYTHONHOME", "PYTHONSAFEPATH")  # the last one hides the project from `python -m`
     child = {name: value for name, value in environ.items() if name not in unwanted}
@@ -142,7 +142,7 @@ def child_environment(environ: Mapping[str, str]) -> dict[str, str]:
 
 
 def digest(*parts: str | Path) -> str:
-    """Return one digest of texts and of files' contents, in order."""
+    """Return a digest of texts and of the contents of files, in order."""
     whole = hashlib.sha256()
     for part in parts:
         whole.update(hashlib.sha256(part.read_bytes() if isinstance(part, Path) else part.encode()).digest())
@@ -151,7 +151,7 @@ def digest(*parts: str | Path) -> str:
 
 @dataclass(frozen=True)
 class SetUp:
-    """One set-up: the clone's root, the interpreter, the sourced ROS's site-packages (None: wheels), the effect."""
+    """A set-up: the clone's root, the interpreter, and the site-packages of the sourced ROS (None for the wheels)."""
 
     root: Path
     interpreter: Interpreter
@@ -173,14 +173,14 @@ class SetUp:
         """Return the stamp of a finished set-up."""
         lock, patches = self.root / "requirements.lock", self.root / "autograder" / "ros" / "patch_wheels.py"
         project = (self.root / "pyproject.toml", self.root / "autograder/building/interfaces/tutorials.yaml")
-        # A virtual environment knows its own path: a moved clone needs a new one.
+        # A virtual environment contains its own path, so a moved clone needs a new one.
         about = (str(self.root), self.interpreter.executable, self.interpreter.build, str(self.sourced))
         launch = digest(json.dumps(ROS["commits"]), str(self.standins))
         base = {"base": digest(Path(__file__), lock, patches, *about), "project": digest(*project), "launch": launch}
         return {**base, "dev": digest(self.root / "requirements-dev.lock")} if dev else base
 
     def stamp(self) -> dict[str, str]:
-        """Return the stamp of the last finished set-up; it is empty if there is none or its Python is gone."""
+        """Return the stamp of the last finished set-up, which is empty if there is none or its Python is gone."""
         try:
             stamp = json.loads((self.venv / STAMP).read_text())
         except (OSError, ValueError):
@@ -188,13 +188,13 @@ class SetUp:
         return stamp if isinstance(stamp, dict) and Path(self.python).exists() else {}
 
     def missing_parts(self, *, dev: bool) -> list[str]:
-        """Return which parts have to be made: of `base`, `project`, `launch` and `dev`."""
+        """Return which of the parts `base`, `project`, `launch` and `dev` are missing."""
         return [name for name, key in self.expected_stamp(dev=dev).items() if self.stamp().get(name) != key]
 
     def make(self, *, dev: bool, real_launch: bool = False) -> None:
-        """Make the whole environment, or its missing parts. The stamp is written only if every step succeeded.
+        """Create the environment or its missing parts. The stamp is only written if every step succeeded.
 
-        Where the real launch is not installed, the stand-ins do; with `real_launch`, the end is then a `SetUpError`.
+        If the real launch cannot be installed, the stand-ins are used. With `real_launch`, that is a `SetUpError`.
         """
         missing, have = self.missing_parts(dev=dev), self.stamp()
         if not missing and not real_launch:
@@ -203,17 +203,17 @@ class SetUp:
         if "base" in missing:
             have = {}
             ros = f"the sourced ROS 2 in {self.sourced}" if self.sourced else f"ROS 2 {ROS['title']} from wheels"
-            print_progress(f"making .venv with Python {self.interpreter.build.split()[0]} and {ros}")
+            print_progress(f"creating .venv with Python {self.interpreter.build.split()[0]} and {ros}")
             self._new_environment()
         if "base" in missing or "dev" in missing:
             self._install("requirements-dev.lock" if dev else "requirements.lock")
         self._step("the ROS wheels could not be patched", self.python, "-m", "autograder.ros.patch_wheels")
-        # Before the project, whose commands of the same names, `ros2` and `launch_test`, switch ROS on first.
+        # Before the project: its commands `ros2` and `launch_test`, which activate ROS first, must replace these.
         launch = (self.python, "-m", "autograder.ros.real_launch", *(() if real_launch else ("--set-up",)))
-        launch_failed = not self.sourced and self.run(*launch) != 0  # a sourced ROS has it
+        launch_failed = not self.sourced and self.run(*launch) != 0  # a sourced ROS provides it
         project = ("--no-build-isolation", "--no-deps", "-e", str(self.root))
         self._step("the project could not be installed", self.python, "-m", "pip", "install", "-qq", *project)
-        if not self.sourced:  # an installed ROS 2 has them
+        if not self.sourced:  # an installed ROS 2 provides them
             tutorials = "autograder.building.interfaces.tutorials"
             self._step("the tutorials' interfaces were not built", self.python, "-m", tutorials)
         fresh = self.venv / f"{STAMP}.fresh"
@@ -221,7 +221,7 @@ class SetUp:
         fresh.replace(self.venv / STAMP)
         print_progress("done")
         if real_launch and launch_failed:
-            raise SetUpError("the real launch could not be installed: the lines above say why; the rest is set up")
+            raise SetUpError("the real launch could not be installed, for the reason above; everything else is set up")
 
     def _step(self, failed: str, *command: str) -> None:
         if status := self.run(*command):
@@ -232,9 +232,9 @@ class SetUp:
         shutil.rmtree(self.venv, ignore_errors=True)
         without_pip = self.run(base, "-c", "import ensurepip; ensurepip.version()", quiet=True) != 0
         bare = ["--without-pip"] if without_pip else []
-        self._step("the virtual environment could not be made", base, "-m", "venv", *bare, str(self.venv))
+        self._step("the virtual environment could not be created", base, "-m", "venv", *bare, str(self.venv))
         if without_pip:
-            # Debian ships Python without ensurepip; the system's pip then installs the environment's.
+            # Debian ships Python without ensurepip. The system's pip then installs pip in the environment.
             site = self.venv / "lib" / "python{}.{}".format(*self.interpreter.version) / "site-packages"
             failed = "neither ensurepip nor pip works for this Python: install python3-venv or python3-pip"
             self._step(failed, base, "-m", "pip", "install", "-qq", "--target", str(site), "pip")
@@ -242,25 +242,25 @@ class SetUp:
     def _install(self, name: str) -> None:
         lock = (self.root / name).read_text()
         (chosen := self.venv / name).write_text(without_ros(lock) if self.sourced else lock)
-        print_progress(f"installing the pinned packages of {name}, a minute or two")
-        failed = f"pip could not install {name}: its lines above say why; pip.conf is where proxies and mirrors are set"
-        # The lock is whole and holds for each supported Python, whatever a package claims (rtamt: to end at 3.12).
+        print_progress(f"installing the pinned packages of {name}, which takes a minute or two")
+        failed = f"pip could not install {name}, for the reason above; set proxies and mirrors in pip.conf"
+        # The lock is complete and valid for each supported Python, even where a package's metadata disagree (rtamt).
         pinned = ("--no-deps", "--ignore-requires-python", "--no-compile", "--require-hashes", "-r", str(chosen))
         self._step(failed, self.python, "-m", "pip", "install", "-qq", *pinned)
         print_progress("compiling them")
-        # Its exit status is not asked: some packages ship templates and old Python that never compile.
+        # The exit status is ignored, because some packages contain templates and old Python that never compile.
         self.run(self.python, "-m", "compileall", "-qq", "-j", "0", str(self.venv / "lib"), quiet=True)
 
 
 @contextmanager
 def exclusive_set_up(lock_file: Path) -> Iterator[None]:
-    """Lock `lock_file`, so that two set-ups of one clone do not run at the same time; print a line before waiting."""
+    """Lock `lock_file`, so that a clone has only one set-up at a time. Print a line before waiting."""
     lock_file.parent.mkdir(exist_ok=True)
     with lock_file.open("w") as held:
         try:
             fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            print_progress("another one is at work here, waiting for it")
+            print_progress("waiting for another set-up that is already running")
             fcntl.flock(held, fcntl.LOCK_EX)
         yield
 
@@ -284,7 +284,7 @@ def require_compiler(missing: Sequence[str]) -> None:
 
 
 def install_tools(missing: Sequence[str], tried: Path, uid: int, run: Run) -> None:
-    """Install packages with apt, or say the command; `tried` remembers what failed, as each attempt takes seconds."""
+    """Install packages with apt, or print the command. `tried` records failures, because each attempt takes seconds."""
     by_hand = f"sudo apt-get install {' '.join(missing)}"
     before = tried.read_text().split() if tried.exists() else []
     sudo = [] if uid == 0 else ["sudo", "-n"]  # `env` turns a missing sudo into an exit status
@@ -299,14 +299,14 @@ def install_tools(missing: Sequence[str], tried: Path, uid: int, run: Run) -> No
     tried.parent.mkdir(exist_ok=True)
     tried.write_text(" ".join({*before, *missing}))
     if status != 0:
-        print_progress(f"apt-get failed, the rest goes on; by hand: {by_hand}")
+        print_progress(f"apt-get failed; set-up continues; to install them yourself: {by_hand}")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Set the clone up; return 0 when it is ready, 1 when it cannot be, 2 for a wrong call."""
-    parser = argparse.ArgumentParser(description="Make .venv from the pinned packages and patch the ROS 2 wheels.")
-    parser.add_argument("--dev", action="store_true", help="also what the tests and benchmarks need")
-    parser.add_argument("--browser", action="store_true", help="also Chromium, by apt, when no browser is there")
+    """Set up the clone. Return 0 if it is ready, 1 if the set-up failed, 2 for wrong arguments."""
+    parser = argparse.ArgumentParser(description="Create .venv from the pinned packages and patch the ROS 2 wheels.")
+    parser.add_argument("--dev", action="store_true", help="also install packages for tests and benchmarks")
+    parser.add_argument("--browser", action="store_true", help="also install Chromium with apt if there is no browser")
     parser.add_argument("--real-launch", action="store_true", help="install the real launch again, or fail")
     options = parser.parse_args(arguments)
     root = Path(__file__).resolve().parent.parent
@@ -334,7 +334,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"set-up: {error}.", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print("\nset-up: interrupted; the next call starts it again", file=sys.stderr)
+        print("\nset-up: interrupted; run it again to start over", file=sys.stderr)
         return 130
     return 0
 

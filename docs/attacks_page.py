@@ -15,23 +15,23 @@ ROWS: list[dict[str, Any]] = yaml.safe_load((ROOT / "docs" / "attacks.yaml").rea
 
 HEAD = """# Attacks and their tests
 
-What a malicious submission can try. The proof grades submissions that try it, and tests try it on a part alone.
-`make docs` writes this page from `docs/attacks.yaml`.
+This page lists what a malicious submission can try. The verification grades submissions that try it, and tests try it
+on single parts. `make docs` writes this page from `docs/attacks.yaml`.
 """
 OPEN = """
 ## Not blocked
 
-- **Buffers of sockets, where no control group can be made.** There the limits of a sandbox count what its processes
-  have mapped. `autograder doctor` says whether the kernel counts the rest.
-- **Answers copied from another student.** No mark depends on it. `autograder similar` shows groups of submissions
-  that are alike, for a person to judge.
-- **Whole lines of a log that a program prints.** A node that prints what the logger would print is heard as if it had
-  logged (07). A launch file that gives its processes other names can print an order that it does not keep (04).
+- **Socket buffers without a control group.** In that case, the limits of a sandbox only count the memory that its
+  processes have mapped. `autograder doctor` says whether the kernel counts the rest.
+- **Answers copied from another student.** Copying does not affect a mark. `autograder similar` shows groups of similar
+  submissions for a person to judge.
+- **Forged log lines.** A node that prints a line in the logger's format counts as having logged it (07). A launch file
+  that renames its processes can print an order that it does not keep (04).
 """
 
 
 def current() -> str:
-    """Return the page as it should be."""
+    """Return the page."""
     described = [
         (attack.id, assignment, attack.description)
         for assignment in suites.graded_assignments()
@@ -44,7 +44,7 @@ def current() -> str:
     return "\n".join(
         [
             HEAD,
-            *table(("#", "attack", "submissions of the proof", "tests"), rows),
+            *table(("#", "attack", "submissions of the verification", "tests"), rows),
             "## The submissions\n",
             *table(("name", "chapter", "what it tries"), described),
             OPEN.strip() + "\n",

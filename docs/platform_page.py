@@ -1,4 +1,4 @@
-"""The page `platform.md`: the versions of ROS's platform, and what is installed here."""
+"""The page `platform.md`: the versions of ROS's platform, and the installed ones."""
 
 from __future__ import annotations
 
@@ -26,40 +26,40 @@ TUTORIALS = ROOT / "tests" / "e2e" / "tutorials" / "pages.yaml"
 PYTHONS = sorted(ROS.pythons)
 REQUIREMENT = re.compile(r"^([^\s#-][^\\\n]*)", re.MULTILINE)
 
-HEAD = f"""# The platform, and what is installed here
+HEAD = f"""# The platform and the installed versions
 
-ROS 2 {ROS.title} belongs to {ROS.platform} with Python {ROS.pythons[0]}. What students' programs, builds and tests meet
-has the versions of that platform, so that what a student learns here holds there. `make setup` installs them from
-`requirements.lock`. `autograder doctor` says where a machine has others. The versions of Ubuntu are those of
-{ROS.platform_page}; that of catkin_pkg is the one in ROS's own package repository.
+The platform of ROS 2 {ROS.title} is {ROS.platform} with Python {ROS.pythons[0]}. Students' programs, builds and tests
+use the versions of that platform, so that everything a student learns here is valid there. `make setup` installs them
+from `requirements.lock`. `autograder doctor` reports different versions on a machine. The versions of Ubuntu are listed
+on {ROS.platform_page}. The version of catkin_pkg comes from ROS's own package repository.
 
 `make docs` writes this page from the lock.
 """
-COLUMNS = ("package", "apt's name", ROS.platform, "here", "where a student meets it", "why another version")
+COLUMNS = ("package", "apt's name", ROS.platform, "here", "where students use it", "reason for another version")
 TAIL = """## Interface packages without wheels
 
-The tutorials of ROS use `example_interfaces`, `action_tutorials_interfaces` and `tf2_msgs`. Set-up builds them for
-Python programs, from `autograder/building/interfaces/tutorials.yaml`; it takes about ten seconds. Their types have
-the hashes of the real ones, so programs meet those of other computers. A CMake package cannot use them: they have no
-CMake files.
+The ROS tutorials use `example_interfaces`, `action_tutorials_interfaces` and `tf2_msgs`. Set-up builds them for Python
+programs from `autograder/building/interfaces/tutorials.yaml`, which takes about ten seconds. Their types have the
+hashes of the real ones, so programs can communicate with other computers. CMake packages cannot use them, because they
+have no CMake files.
 
-A CMake package that `ros2 pkg create` has written asks for `ament_lint_auto`, which has no wheel. Set-up puts an empty
-one in its place. The package is built, and has no linters.
+A CMake package from `ros2 pkg create` requires `ament_lint_auto`, which has no wheel. Set-up installs an empty
+replacement. The package can be built, but has no linters.
 
 ## Public packages
 
 `make public-packages` builds the Python packages of ros2/examples, and `demo_nodes_py` and `action_tutorials_py` of
-ros2/demos, as they are. It runs their tests by `colcon test`, and lets their servers and clients, publishers and
-subscribers meet.
+ros2/demos, without changes. It runs their tests with `colcon test`, and lets their servers and clients, publishers and
+subscribers communicate.
 """
-TUTORIAL_HEAD = f"""## The tutorials of ROS
+TUTORIAL_HEAD = f"""## The ROS tutorials
 
-`make tutorials` does what the Python tutorials of {ROS.title}'s documentation say, in "Beginner: Client libraries"
-and "Intermediate: Launch". It takes commands, code and changes of files from the pages, and expects to see what they
-say one sees. `make tutorials PYTEST_ARGS="-k NAME"` does one of them. turtlesim and `demo_nodes_cpp` are written in C++
-and have no wheels. The tests use packages in Python that have the same names, topics, services and parameters.
+`make tutorials` executes the Python tutorials in {ROS.title}'s documentation, in "Beginner: Client libraries" and
+"Intermediate: Launch". It takes commands, code and file changes from the pages, and compares the output with the pages.
+`make tutorials PYTEST_ARGS="-k NAME"` executes one of them. turtlesim and `demo_nodes_cpp` are written in C++ and have
+no wheels. The tests use Python packages with the same names, topics, services and parameters.
 """
-TUTORIAL_COLUMNS = ("tutorial", "runs as printed", "NAME of its test", "what is left out, or why it does not run")
+TUTORIAL_COLUMNS = ("tutorial", "runs as printed", "NAME of its test", "omitted parts, or why it does not run")
 REAL_LAUNCH = """
 ## `launch`, `launch_ros` and `ros2cli`
 
@@ -69,34 +69,33 @@ They are not on the package index. Set-up clones their repositories from GitHub,
 | --- | --- | --- | --- |
 {sources}
 
-A clone that is at another commit is refused. The id of a commit is a digest of all its files, so it does what a hash
-does for an archive; the archives that GitHub makes of a tag are not promised to keep their bytes. `osrf-pycommon`,
-which `launch` imports, comes from the package index and is pinned by its hash.
+A clone at another commit is rejected. The id of a commit is a digest of all its files, like the hash of an archive.
+GitHub does not guarantee that the archive of a tag stays the same, byte for byte. `osrf-pycommon`, which `launch`
+imports, comes from the package index and is pinned by its hash.
 
-Where a repository does not answer within ten seconds, or a step fails, set-up installs none of them, says so in one
-line, and the course's stand-ins are used. `ROS2_STANDINS=1 make setup` uses the stand-ins at once; keep the variable
-set, since the next set-up without it tries again. So does `make real-launch`, which fails if it cannot install them. A
-variable names another place to clone from, such as `ROS2_LAUNCH_SOURCE=/clones/launch`, and `/clones/launch@TAG` takes
-another tag as it is. A student release does the same. `autograder doctor` and the field `launch` of each result say
-what is installed.
+If a repository does not respond within ten seconds, or a step fails, set-up installs none of the packages, says so in
+one line, and the course's stand-ins are used. `ROS2_STANDINS=1 make setup` chooses the stand-ins at once. Keep the
+variable set, because the next set-up without it tries again. `make real-launch` also tries again, and fails if it
+cannot install the packages. A variable sets another source, such as `ROS2_LAUNCH_SOURCE=/clones/launch`, and
+`/clones/launch@TAG` uses another tag. A student release works in the same way. `autograder doctor` and the field
+`launch` of each result say what is installed.
 """
-STAND_INS = """## What the stand-ins do not cover
+STAND_INS = """## Limits of the stand-ins
 
-They are used only where the real packages are not importable. Tests hold them to records of the real packages: launch
-files in Python, XML and YAML, launch tests, and the commands of `ros2`. Where a stand-in does something else,
-`tests/e2e/launch_cases/differences.yaml` and `tests/e2e/ros2_records/differences.yaml` have it, each with its reason.
-What is not covered raises an error that says so. After `make real-launch`, or with a sourced ROS 2, the real packages
-run instead.
+They are used only if the real packages are not importable. Tests compare them with recordings of the real packages:
+launch files in Python, XML and YAML, launch tests, and the commands of `ros2`. Differences are listed, with reasons, in
+`tests/e2e/launch_cases/differences.yaml` and `tests/e2e/ros2_records/differences.yaml`. Features that are not covered
+raise an error that says so. After `make real-launch`, or with a sourced ROS 2, the real packages are used instead.
 """
 OTHERWISE = """
-`tests/e2e/launch_standin` tests the stand-ins more closely. With the real packages installed, it tests those. They do
-not pass these tests, in which the stand-in leaves no process, does not hang, or gives a clearer error:
+`tests/e2e/launch_standin` tests the stand-ins in more detail. If the real packages are installed, it tests those. They
+fail the following tests, in which the stand-in leaves no process behind, does not hang, or gives a clearer error:
 """
-OTHERWISE_COLUMNS = ("test", "what the real one does")
-UNCOVERED = ("not covered", "why", "the error")
+OTHERWISE_COLUMNS = ("test", "behaviour of the real package")
+UNCOVERED = ("not covered", "reason", "error message")
 COMPOSABLE = "they are C++ components, and `composition_interfaces` has no wheel"
 INNER = "neither the course nor a Python tutorial of ROS uses it"
-INNER_MODULE = "it is inside the real package"
+INNER_MODULE = "it is internal to the real package"
 OF_CPP = "it is for C++"
 SINGLE = "it is for tests of one process without a launch description"
 LAUNCH = {
@@ -171,7 +170,7 @@ def _source(source: Source) -> str:
 
 
 def current() -> str:
-    """Return the page for what the repository has now."""
+    """Return the page for the current state of the repository."""
     return platform_page(LOCK.read_text(encoding="utf-8"), TUTORIALS.read_text(encoding="utf-8"))
 
 
@@ -179,7 +178,7 @@ def locked(lock: str, python: str) -> dict[str, str]:
     """Return the version of each package that a lock installs for a Python of this version, on Linux x86-64.
 
     Raises:
-        InvalidRequirement: a line is no requirement.
+        InvalidRequirement: a line is not a requirement.
     """
     return {found.name: next(iter(found.specifier)).version for found in _requirements(lock, python)}
 
@@ -208,10 +207,10 @@ def _uncovered() -> Iterator[tuple[str, str, str]]:
         yield f"`{name}`", reason, error(name)
     yield (
         "`launch_testing_ros`",
-        "it is a package of its own, and the course does not use it",
+        "it is a separate package, and the course does not use it",
         error("launch_testing_ros"),
     )
-    # The stand-ins are importable only where the real packages are not, so their text is read.
+    # The stand-ins are only importable if the real packages are not, so their source is parsed.
     found = re.search(r"^NOT_COVERED = (\{.*?^\})", SUBMODULES.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
     assert found
     for reason, parts in ((INNER_MODULE, ast.literal_eval(found[1])), (INNER, INNER_NAMES)):

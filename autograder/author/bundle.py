@@ -1,8 +1,8 @@
-"""The students' bundle as it was released, and how a later release updates it.
+"""Describes a student release, and updates it to a later one.
 
-`release.json` in a bundle has the version, the digest of each file, and those of each notebook's cells. A file or a
-cell with another digest was changed by the student. An update leaves it alone in `chapters/`. Elsewhere, the course's
-own file takes its place, and the student's is kept beside it.
+`release.json` in a student release contains the version, the digest of each file, and the digests of each notebook's
+cells. A file or cell with a different digest was changed by the student. In `chapters/`, an update does not touch it.
+Elsewhere, the course's file replaces it, and the student's version is kept beside it.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from autograder.exceptions import UsageError
 from autograder.result.model import write_atomically, write_json
 
 MANIFEST = "release.json"
-STUDENT_FOLDER = "chapters"  # where students write; all other files of a bundle are the course's
+STUDENT_FOLDER = "chapters"  # where students write; all other files belong to the course
 
 
 @dataclass(frozen=True)
 class Manifest:
-    """What a release says of itself.
+    """The description of a student release.
 
     Attributes:
-        version: when it was made, in UTC, so that a later one sorts after an earlier one.
-        course: the folder where the class finds its newest release, or an empty string.
-        files: the digest of each file, by its path in the bundle.
+        version: when it was made, in UTC, so that versions sort chronologically.
+        course: the folder with the newest release of the class, or an empty string.
+        files: the digest of each file, by its path in the release.
         cells: for each notebook, the digest of each cell's text, by the cell's id.
     """
 
@@ -43,7 +43,7 @@ class Manifest:
 
 
 def write_manifest(bundle: Path, version: str, course: str) -> None:
-    """Write the manifest of a bundle that is otherwise complete."""
+    """Write the manifest of an otherwise complete student release."""
     files = {str(path.relative_to(bundle)): _digest(path.read_bytes()) for path in _files(bundle)}
     cells = {
         name: {cell.id: _digest(cell.source.encode()) for cell in nbformat.read(bundle / name, as_version=4).cells}
@@ -54,25 +54,25 @@ def write_manifest(bundle: Path, version: str, course: str) -> None:
 
 
 def read_manifest(bundle: Path) -> Manifest:
-    """Read the manifest of a bundle.
+    """Read the manifest of a student release.
 
     Raises:
-        UsageError: there is none, or it cannot be read.
+        UsageError: it does not exist or cannot be read.
     """
     try:
         return Manifest(**json.loads((bundle / MANIFEST).read_text(encoding="utf-8")))
     except (OSError, ValueError, TypeError) as error:
-        raise UsageError(f"{bundle}: no release of the course: {error}") from None
+        raise UsageError(f"{bundle} is not a release of the course: {error}") from None
 
 
 @dataclass(frozen=True)
 class Update:
-    """What an update did with the files of the release, by their paths in the bundle.
+    """The outcome of an update. All paths are relative to the student release.
 
     Attributes:
         written: the files that were written.
-        kept: the files in `chapters/` that were not, because the student has changed them.
-        set_aside: for each changed file elsewhere that was written over, the path of the copy of the student's.
+        kept: the files in `chapters/` that were not written, because the student has changed them.
+        set_aside: for each overwritten file elsewhere that the student had changed, the path of the student's copy.
     """
 
     written: Sequence[str]
@@ -81,22 +81,22 @@ class Update:
 
 
 def update_bundle(bundle: Path, newer: Path) -> Update:
-    """Update a student's bundle to a later release, of all chapters or of some.
+    """Update a student release to a later one, which may contain only some chapters.
 
     Raises:
-        UsageError: one of the folders is no bundle, or `newer` is the older one.
+        UsageError: one of the folders is not a student release, or `newer` is older.
     """
     old, new = read_manifest(bundle), read_manifest(newer)
     if new.version < old.version:
-        raise UsageError(f"{newer} is of {new.version}, and what is here is newer, of {old.version}")
+        raise UsageError(f"{newer} has version {new.version}, but the release here is newer, {old.version}")
     written: list[str] = []
     kept: list[str] = []
     set_aside: dict[str, str] = {}
     for name, digest in new.files.items():
         source, target = newer / name, bundle / name
-        there = _digest(target.read_bytes()) if target.is_file() else None
-        changed = there not in (None, old.files.get(name))
-        if there == digest:
+        current = _digest(target.read_bytes()) if target.is_file() else None
+        changed = current not in (None, old.files.get(name))
+        if current == digest:
             continue
         if changed and name.startswith(f"{STUDENT_FOLDER}/"):
             if name.endswith(".ipynb"):
@@ -125,7 +125,7 @@ def update_bundle(bundle: Path, newer: Path) -> Update:
 
 
 def _set_aside(file: Path) -> Path:
-    """Copy a file to a free name beside it, and return the copy."""
+    """Copy a file to an unused name beside it, and return the copy's path."""
     names = (f"{file.name}.yours{number or ''}" for number in itertools.count())
     copy = next(path for path in map(file.with_name, names) if not path.exists())
     shutil.copy2(file, copy)
@@ -133,7 +133,7 @@ def _set_aside(file: Path) -> Path:
 
 
 def _merged(students: NotebookNode, released: NotebookNode, old: dict[str, str]) -> NotebookNode:
-    """Return a student's notebook with the released cells in place of those that the student has not changed."""
+    """Return a student's notebook in which the cells that the student has not changed are updated."""
     new = {cell.id: cell for cell in released.cells}
     cells = []
     for cell in students.cells:
@@ -142,12 +142,12 @@ def _merged(students: NotebookNode, released: NotebookNode, old: dict[str, str])
             cells.append(new[cell.id])
         elif not untouched or cell.id in new:
             cells.append(cell)
-    before = None
-    for cell in released.cells:  # what is new comes after what stands before it in the release
+    previous_id = None
+    for cell in released.cells:  # a new cell follows the same cell as in the release
         if cell.id not in old:
-            place = next((index for index, there in enumerate(cells, start=1) if there.id == before), len(cells))
-            cells.insert(place if before else 0, cell)
-        before = cell.id
+            index = next((number for number, each in enumerate(cells, start=1) if each.id == previous_id), len(cells))
+            cells.insert(index if previous_id else 0, cell)
+        previous_id = cell.id
     students.cells = cells
     return students
 

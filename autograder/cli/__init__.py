@@ -1,6 +1,6 @@
 """The command line: `autograder VERB`.
 
-Exit status: 0 success, 1 a requirement is not met or an error occurred, 2 wrong usage, 130 interrupted.
+Exit status: 0 success, 1 unmet requirement or error, 2 wrong usage, 130 interrupted.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ INTERRUPTED = 130  # the exit status of a shell after Ctrl-C
 
 
 class Verbs(click.Group):
-    """The verbs, each a command in the module of its name, which is imported when the verb is called."""
+    """The verbs. Each is a command in a module of the same name, which is imported when the verb is called."""
 
     def main(self, *args: Any, **extra: Any) -> Any:
-        """Run a verb, and exit. What click says of a wrong call, which may name a student's file, is cleaned."""
+        """Run a verb, and exit. Clean click's usage errors, because they may contain the name of a student's file."""
         try:
             status = super().main(*args, **{**extra, "standalone_mode": False})
         except click.ClickException as error:
-            error.show(said := io.StringIO())
-            echo(said.getvalue(), err=True, nl=False)
+            error.show(message := io.StringIO())
+            echo(message.getvalue(), err=True, nl=False)
             status = error.exit_code
         except click.Abort:
             echo("Aborted!", err=True)
@@ -43,7 +43,7 @@ class Verbs(click.Group):
         sys.exit(status if isinstance(status, int) else 0)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the names of the verbs that are here: the students' bundle has fewer."""
+        """Return the names of the available verbs. A student release has fewer."""
         return [verb for verb in VERBS if Path(__file__).with_name(f"{verb}.py").is_file()]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
@@ -55,7 +55,7 @@ class Verbs(click.Group):
 
 
 def _choose(context: click.Context, option: click.Parameter, course: Path | None) -> None:
-    """Name the course to all that is imported and started from here on; `autograder.layout` reads it."""
+    """Set the course for all later imports and child processes, which read it through `autograder.layout`."""
     if course is not None:
         os.environ["AUTOGRADER_COURSE"] = str(course.resolve())
 
@@ -67,19 +67,19 @@ def _choose(context: click.Context, option: click.Parameter, course: Path | None
     type=click.Path(path_type=Path, file_okay=False),
     expose_value=False,
     callback=_choose,
-    help="Work on the course in this folder, which holds a course.yaml. AUTOGRADER_COURSE names one for all commands.",
+    help="Use the course in this folder, which contains a course.yaml. AUTOGRADER_COURSE sets it for all commands.",
 )
 def group() -> None:
-    """Checks and grades packages for ROS 2 that students write in Python."""
+    """Check and grade ROS 2 packages that students write in Python."""
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run the command line; errors that the grader knows become one sentence, not a traceback."""
+    """Run the command line. Known errors are printed as a sentence, without a traceback."""
     try:
         group(args=arguments, prog_name="autograder")
     except AutograderError as error:
         echo(f"autograder: {error}", err=True)
         sys.exit(2 if isinstance(error, UsageError) else 1)
-    except Exception:  # a fault of the grader; what it says may hold a student's text
+    except Exception:  # a bug in the grader; its message may contain a student's text
         echo(traceback.format_exc(), err=True, nl=False)
         sys.exit(1)

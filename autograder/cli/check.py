@@ -1,4 +1,4 @@
-"""`autograder check`: the visible checks, on a terminal."""
+"""`autograder check`: runs the visible checks in a terminal."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def check(
 
 
 def _workspace(assignment: str) -> Path:
-    """Return the workspace that is checked if the command line names none."""
+    """Return the default workspace."""
     here = Path("ws")
     below = (Path(assignment) / "ws", Path("chapters", assignment, "ws"))
     return next((folder for folder in (here, *below) if folder.is_dir()), here)

@@ -1,4 +1,4 @@
-"""`autograder compare`: lists the students whose marks differ between two gradings, and the checks."""
+"""`autograder compare`: lists the students and checks whose points differ between two gradings."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ from autograder.result.model import write_json
 def compare(old: Path, new: Path, json_file: Path | None) -> None:
     """List the students whose marks differ between the stored results OLD and NEW, with the checks that differ.
 
-    Each is a folder that `autograder grade --out` wrote, or a JSON file. After a change of a suite, grade the class
+    OLD and NEW are folders that `autograder grade --out` wrote, or JSON files. After changing a suite, grade the class
     into another folder and compare the two.
     """
-    found = changes(export.load(old), export.load(new))
-    print_changes(found)
-    students = f"{len(found)} {'student' if len(found) == 1 else 'students'}"
-    echo(f"{students} with another result" if found else "No result has changed.")
+    changed = changes(export.load(old), export.load(new))
+    print_changes(changed)
+    students = f"{len(changed)} {'student' if len(changed) == 1 else 'students'}"
+    echo(f"{students} with a different result" if changed else "No result has changed.")
     if json_file is not None:
-        write_json(json_file, [asdict(change) for change in found])
+        write_json(json_file, [asdict(change) for change in changed])
 
 
-def print_changes(found: Iterable[Change]) -> None:
-    """Print the students with another result, their marks, and the checks that differ."""
-    for change in found:
+def print_changes(changed: Iterable[Change]) -> None:
+    """Print the students whose results differ, their marks, and the checks that differ."""
+    for change in changed:
         marks = f"{_number(change.before)} -> {_number(change.after)}"
         echo(f"{on_line(change.student)} ({on_line(change.assignment)}): {marks}{_note(change)}")
         for check in change.checks:
@@ -45,7 +45,7 @@ def print_changes(found: Iterable[Change]) -> None:
 def _note(change: Change) -> str:
     if change.before is None or change.after is None or change.same_submission:
         return ""
-    return ", of another submission"
+    return ", for a different submission"
 
 
 def _points(check: CheckChange) -> str:

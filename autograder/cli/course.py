@@ -1,4 +1,4 @@
-"""`autograder course`: keeps the notebooks and the reference solutions one text, and writes the instructors' pages."""
+"""`autograder course`: keeps notebooks and solutions in sync, and writes the instructors' pages."""
 
 from __future__ import annotations
 
@@ -19,44 +19,44 @@ _names = click.argument("names", nargs=-1, metavar="[ID]...")
 
 @click.group()
 def course() -> None:
-    """Keep the notebooks and the reference solutions the same text."""
+    """Keep notebooks and solutions in sync."""
 
 
 @course.command()
 @_names
-@click.option("--dry-run", is_flag=True, help="Write nothing: list what would be brought up to date.")
+@click.option("--dry-run", is_flag=True, help="Write nothing. List what would be updated.")
 def sync(names: tuple[str, ...], dry_run: bool) -> None:
-    """Write the text of the reference into notebooks, and the points of the suites into grade cells."""
+    """Copy the reference into notebooks, and the points of the suites into grade cells."""
     chosen = chapters(names)
     require_checks(chapter.assignment for chapter in chosen)
     for chapter in chosen:
         differed = sync_chapter(chapter, write=not dry_run)
         for finding in differed if dry_run else ():
             echo(str(finding))
-        done = "to bring up to date" if dry_run else "brought up to date"
-        echo(f"{chapter.assignment}: " + (f"{len(differed)} {done}" if differed else "as it was"))
+        done = "to update" if dry_run else "updated"
+        echo(f"{chapter.assignment}: " + (f"{len(differed)} {done}" if differed else "unchanged"))
 
 
 @course.command()
 @_names
 def check(names: tuple[str, ...]) -> None:
-    """Say all that is wrong with chapters, their checks, mutants and reference, each with its file and line.
+    """Report all problems in chapters, their checks, mutants and reference, each with its file and line.
 
-    Nothing is graded: `autograder verify` does that. Without an ID, the course is looked at as a whole. If there is
-    anything, the exit status is 1.
+    Nothing is graded: `autograder verify` does that. Without an ID, the whole course is checked. The exit status is 1
+    if there are problems.
     """
-    if not (found := list(broken_course_file())):
+    if not (problems := list(broken_course_file())):
         read = {chapter.assignment: read_chapter(chapter) for chapter in chapters(names)}
-        found = [finding for each in read.values() for finding in each.findings]
-        found += broken_course(read, whole=not names)
-    for line in dict.fromkeys(map(str, found)):
+        problems = [finding for each in read.values() for finding in each.findings]
+        problems += broken_course(read, whole=not names)
+    for line in dict.fromkeys(map(str, problems)):
         echo(line)
-    sys.exit(1 if found else 0)
+    sys.exit(1 if problems else 0)
 
 
 @course.command()
 def tables() -> None:
-    """Write the pages for instructors, and for students the titles of the checks that judge after handing in."""
+    """Write the pages for instructors, and the titles of hidden checks for students."""
     require_checks(layout.assignments())
     page, problems = course_page()
     for finding in problems:

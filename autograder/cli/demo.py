@@ -1,4 +1,4 @@
-"""`autograder demo`: the grader at work, on the reference and a handful of flawed submissions."""
+"""`autograder demo`: grades the reference and a few flawed submissions."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ from autograder.suite import suites
 @isolation_option
 @json_option
 def demo(jobs: int, isolation: str, json_file: Path | None) -> None:
-    """Grade the reference solution and flawed submissions, and show what each loses. The results are in .build/demo.
+    """Grade the reference and some flawed submissions, and show why they lose marks. Results are in .build/demo.
 
-    The exit status is 0 when the reference has all marks and no flawed submission has, and 1 otherwise.
+    The exit status is 0 if only the reference gets full marks, and 1 otherwise.
     """
     out = layout.BUILD / "demo"
     assignment = layout.course().demo or suites.graded_assignments()[0]
     sources = suites.hidden(assignment).sources
-    shown = [mutant for mutant in mutants(assignment) if mutant.demo]
+    demo_mutants = [mutant for mutant in mutants(assignment) if mutant.demo]
     with tempfile.TemporaryDirectory(prefix="demo-") as folder:
-        names = ["reference", *(mutant.id for mutant in shown), "empty"]
+        names = ["reference", *(mutant.id for mutant in demo_mutants), "empty"]
         submissions = {name: Path(folder) / name for name in names}
         write_reference(sources, submissions["reference"])
-        for mutant in shown:
+        for mutant in demo_mutants:
             write_mutant(mutant, sources, submissions[mutant.id])
         submissions["empty"].mkdir()
         with Progress(len(submissions)) as progress:
@@ -52,5 +52,5 @@ def demo(jobs: int, isolation: str, json_file: Path | None) -> None:
     write_json(out / "results.json", [result.to_json() for result in results])
     report(results, out, json_file)
     reference, *flawed = results
-    right = reference.percent == 100.0 and all(result.percent < 100.0 for result in flawed)
-    sys.exit(0 if right else 1)
+    is_expected = reference.percent == 100.0 and all(result.percent < 100.0 for result in flawed)
+    sys.exit(0 if is_expected else 1)

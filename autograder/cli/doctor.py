@@ -1,4 +1,4 @@
-"""`autograder doctor`: what this machine has and lacks."""
+"""`autograder doctor`: examines this machine."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from autograder.result.model import write_json
     "--security",
     "try_escapes",
     is_flag=True,
-    help="Run programs that try to get out of a sandbox, and say which succeed.",
+    help="Run programs that try to escape from a sandbox, and report which succeed.",
 )
 @json_option
 def doctor(try_escapes: bool, json_file: Path | None) -> None:
-    """Say what this machine has, what it lacks, and the one command that fixes it."""
+    """Report what is installed, what is missing, and the commands that fix it."""
     findings = security.examine() if try_escapes else examine(System())
     echo(render(findings, verdicts=security.VERDICTS if try_escapes else VERDICTS))
     if json_file is not None:

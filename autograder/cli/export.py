@@ -1,4 +1,4 @@
-"""`autograder export`: stored results in other programs' formats."""
+"""`autograder export`: writes stored results in other programs' formats."""
 
 from __future__ import annotations
 
@@ -56,12 +56,12 @@ class Plan:
     "--out",
     required=True,
     type=click.Path(path_type=Path),
-    help=f"The file to write. For {_FOLDERS}, it is the folder.",
+    help=f"The file to write; for {_FOLDERS}, the folder.",
 )
 @click.option(
     "--roster",
     type=click.Path(path_type=Path, dir_okay=False, exists=True),
-    help="For canvas and moodle: the table that the system exported, into which the marks are filled.",
+    help="For canvas and moodle: the table that the system exported, to fill with the marks.",
 )
 @click.option(
     "--manual",

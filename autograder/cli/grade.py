@@ -37,36 +37,36 @@ INTERRUPTED = 130  # the exit status of a shell after Ctrl-C
 
 @click.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("--assignment", required=True, metavar="ID", help="The assignment that the submissions answer.")
+@click.option("--assignment", required=True, metavar="ID", help="The assignment of the submissions.")
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),
     default=Path("results"),
     show_default=True,
-    help="The folder for the results. Each student gets a folder in it: result.json, pictures, feedback.html.",
+    help="The folder for the results. Each student gets a subfolder with result.json, pictures and feedback.html.",
 )
 @click.option(
     "--resume",
     is_flag=True,
-    help="Keep a result if submission, suite, seed and isolation are the same. List the students whose mark changed.",
+    help="Keep results whose submission, suite, seed and isolation level are unchanged. List changed marks.",
 )
 @roster_option
 @click.option(
     "--scheduler",
     metavar="ADDRESS",
-    help="Grade on the workers of this Dask scheduler: tls://HOST:8786, or `local` for -j workers of this machine.",
+    help="Grade on the workers of this Dask scheduler: tls://HOST:8786, or `local` for -j workers on this machine.",
 )
 @click.option(
     "--certificates",
     type=click.Path(path_type=Path, file_okay=False),
     default=Path("cluster-certificates"),
     show_default=True,
-    help="The folder with the certificate and the key of a cluster.",
+    help="The folder with the cluster's certificate and key.",
 )
 @click.option(
     "--dry-run",
     is_flag=True,
-    help="Grade nothing: list what counts of each submission, and each file that was found and is not used.",
+    help="Do not grade. List the files of each submission that would be graded, and those that are not used.",
 )
 @jobs_option
 @seed_option
@@ -90,8 +90,8 @@ def grade(
 
     A path is a submission (a folder, a zip, a tar or a notebook), or a folder with a submission for each student.
 
-    The exit status is 0 when every submission was graded, 1 when one was not graded, is unclear or fits no student of
-    --roster, 2 for a wrong call, and 130 after Ctrl-C. After Ctrl-C, the gradings that have begun come to their end.
+    The exit status is 0 if every submission was graded, 1 if one was not graded, is unclear or matches no student in
+    --roster, 2 for wrong usage, and 130 after Ctrl-C. Ctrl-C lets the gradings in progress finish.
     """
     suites.hidden(assignment)
     if dry_run:
@@ -119,19 +119,19 @@ def grade(
                     grade_each=grade_each,
                 )
         except KeyboardInterrupt:
-            message = f"Stopped. What is graded is in {out}: the same command with --resume grades the rest."
+            message = f"Stopped. Finished results are in {out}: the same command with --resume grades the rest."
             echo(f"\n{message}", err=True)
             sys.exit(INTERRUPTED)
     report(results, out, json_file)
     if resume and (changed := earlier.changed(results)):
-        echo("\nWhat a change of the suite or of the submission changed:")
+        echo("\nMarks that changed because of the suite or the submission:")
         print_changes(changed)
     earlier.forget(results)
     sys.exit(0 if all_fit and all(result.status is Status.GRADED for result in results) else 1)
 
 
 def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None:
-    """Write the feedback of a class to its folder, print the table of its marks, and write the results as JSON."""
+    """Write the feedback of a class, print a table of its marks, and write the results as JSON."""
     for result in results:
         feedback.write(result, out / result.student)
     summary = feedback.write_summary(results, out)
@@ -148,8 +148,8 @@ def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None
     for result in results:
         if result.unjudged:
             checks, log = ", ".join(result.unjudged), out / result.student / LOG
-            said = f"{checks} failed, because the check raised an error: read {on_line(log)}."
-            echo(f"{on_line(result.student)}: {said}", err=True)
+            warning = f"{checks} failed because the check raised an error: see {on_line(log)}."
+            echo(f"{on_line(result.student)}: {warning}", err=True)
     if json_file is not None:
         write_json(json_file, [result.to_json() for result in results])
 
@@ -208,7 +208,7 @@ def _cluster_grader(scheduler: str | None, jobs: int, certificates: Path) -> Ite
 
 
 class Progress:
-    """A progress bar on a terminal; elsewhere, a line of text for each submission."""
+    """A progress bar on a terminal, or a line of text for each submission elsewhere."""
 
     def __init__(self, total: int) -> None:
         self._total, self._plain = total, not sys.stdout.isatty()
@@ -222,7 +222,7 @@ class Progress:
         self._bar.render_finish()
 
     def show(self, result: Result, name: str = "", marks: str = "") -> None:
-        """Count one more result. A line names it by `name`, or else by its student; `marks` stands for its score."""
+        """Count another result. A line shows its `name`, or its student, and its `marks`, or its score."""
         self._bar.update(1)
         if self._plain:
             echo(f"[{self._bar.pos}/{self._total}] {on_line(name or result.student)}: {marks or score_text(result)}")

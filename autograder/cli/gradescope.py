@@ -1,4 +1,4 @@
-"""`autograder gradescope`: the autograder that an instructor uploads to Gradescope."""
+"""`autograder gradescope`: writes the autograder that an instructor uploads to Gradescope."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from autograder.run.sandbox import Tier
     "--out",
     required=True,
     type=click.Path(path_type=Path, dir_okay=False),
-    help="The zip to write. It must not be there yet.",
+    help="The zip to write. It must not exist.",
 )
 @isolation_option
 def gradescope(assignment: str, out: Path, isolation: str) -> None:
     """Write the autograder of the assignment ID, a zip for Gradescope's page "Configure Autograder".
 
-    It holds the hidden checks and the reference. Gradescope builds an image of it, and runs it for each submission.
+    It contains the hidden checks and the reference. Gradescope builds an image from it and runs it for each submission.
     """
     write_autograder(assignment, out, Tier(isolation))
     echo(f"{out}: upload it at Gradescope, under Configure Autograder")

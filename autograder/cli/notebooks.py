@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("assignments", nargs=-1, metavar="[ID]...")
-@click.option("--source", is_flag=True, help="Execute them as they are in chapters/. This is the default.")
-@click.option("--solved", is_flag=True, help="Execute them with the reference answers, as the grader sees them.")
-@click.option("--released", is_flag=True, help="Execute them as students get them, with the exercises unsolved.")
+@click.option("--source", is_flag=True, help="Execute the source notebooks in chapters/ (default).")
+@click.option("--solved", is_flag=True, help="Execute them with the reference answers.")
+@click.option("--released", is_flag=True, help="Execute them as students get them, with unsolved exercises.")
 @jobs_option
 @json_option
 def notebooks(
@@ -29,8 +29,8 @@ def notebooks(
 ) -> None:
     """Execute the notebooks of the chapters ID (all by default).
 
-    A warning is an error. The report of each notebook lies in .build/notebooks. The forms may be combined: --source
-    --solved --released takes all three.
+    Warnings are errors. The report of each notebook is in .build/notebooks. The forms can be combined: --source
+    --solved --released executes all three.
     """
     from autograder.author.course.execute import run_notebook
     from autograder.author.course.forms import Form
@@ -41,14 +41,14 @@ def notebooks(
     activate()
     named = {Form.SOURCE: source, Form.SOLVED: solved, Form.RELEASED: released}
     forms = [form for form, chosen in named.items() if chosen] or [Form.SOURCE]
-    wanted = [(chapter, form) for form in forms for chapter in chapters(assignments)]
+    to_run = [(chapter, form) for form in forms for chapter in chapters(assignments)]
 
     def run(chapter_and_form: tuple[Chapter, Form]) -> Execution:
         chapter, form = chapter_and_form
         report = layout.BUILD / "notebooks" / f"{chapter.assignment}-{form.value}.ipynb"
         return run_notebook(chapter, form, report=report)
 
-    runs = map_parallel(run, wanted, jobs=jobs, on_done=_print_result)
+    runs = map_parallel(run, to_run, jobs=jobs, on_done=_print_result)
     if json_file is not None:
         write_json(
             json_file,

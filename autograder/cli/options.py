@@ -11,7 +11,7 @@ from autograder.grade import DEFAULT_SEED
 from autograder.run.sandbox import Tier
 
 json_option = click.option(
-    "--json", "json_file", type=click.Path(path_type=Path, dir_okay=False), help="Also write what was found as JSON."
+    "--json", "json_file", type=click.Path(path_type=Path, dir_okay=False), help="Also write the results as JSON."
 )
 jobs_option = click.option(
     "-j",
@@ -26,12 +26,12 @@ seed_option = click.option(
     type=click.IntRange(0, 2**31 - 1),
     default=DEFAULT_SEED,
     show_default=True,
-    help="The number from which hidden inputs are drawn.",
+    help="The seed of the hidden inputs.",
 )
 isolation_option = click.option(
     "--isolation",
     type=click.Choice([tier.value for tier in Tier]),
     default=Tier.BUBBLEWRAP.value,
     show_default=True,
-    help="How submissions are kept apart. Use `process` only for code that you trust.",
+    help="The isolation level of submissions. Use `process` only for code that you trust.",
 )

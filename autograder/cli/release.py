@@ -1,4 +1,4 @@
-"""`autograder release`: what students get."""
+"""`autograder release`: writes a student release."""
 
 from __future__ import annotations
 
@@ -14,21 +14,19 @@ from autograder.result.model import write_json
 
 @click.command()
 @click.argument("names", nargs=-1, metavar="[ID]...")
-@click.option(
-    "--out", required=True, type=click.Path(path_type=Path), help="The folder to make. It must not be there yet."
-)
+@click.option("--out", required=True, type=click.Path(path_type=Path), help="The folder to create. It must not exist.")
 @click.option(
     "--newest",
     default="",
     metavar="FOLDER",
-    help="Where students' machines find the newest release: `autograder update` and the doctor look there.",
+    help="A folder on students' machines for the newest release, used by `autograder update` and the doctor.",
 )
 @json_option
 def release(names: tuple[str, ...], out: Path, newest: str, json_file: Path | None) -> None:
-    """Write the students' bundle of the chapters ID (all by default).
+    """Write a student release of the chapters ID (all by default).
 
-    The bundle holds the released notebooks, the packages that they give, the simulator, and the students' half of the
-    autograder. It holds no hidden check and no solution. `autograder update` updates a student's folder to a later
+    It contains the released notebooks, the packages that they provide, the simulator, and the students' part of the
+    autograder. It contains no hidden checks and no solutions. `autograder update` updates a student's folder to a later
     release.
     """
     written = write_bundle(out, names, newest)

@@ -1,4 +1,4 @@
-"""`autograder replay`: shows one check of a stored result, with its run in the player."""
+"""`autograder replay`: shows a check of a stored result, with its run in the player."""
 
 from __future__ import annotations
 
@@ -30,32 +30,32 @@ from autograder.suite import suites
     "--submission",
     type=click.Path(path_type=Path),
     metavar="PATH",
-    help="What was handed in: it is graded again, with the result's seed. Without it, the run that was kept is shown.",
+    help="The submission, to be graded again with the result's seed. The default is to show the stored run.",
 )
 @click.option(
-    "--mcap", is_flag=True, help="With --submission: also write the topics of the run, for Foxglove and `ros2 bag`."
+    "--mcap", is_flag=True, help="With --submission: also write the run's topics, for Foxglove and `ros2 bag`."
 )
 @click.option(
-    "--open/--no-open", "show", default=None, help="Open the page in a browser; the default where there is a display."
+    "--open/--no-open", "show", default=None, help="Open the page in a browser (default if there is a display)."
 )
 @isolation_option
 def replay(stored: Path, check: str, submission: Path | None, mcap: bool, show: bool | None, isolation: str) -> None:
-    """Show the check ID of the result at RESULT: what it says, and the run that it judged, in the player.
+    """Show the check ID of the result at RESULT: its message, and its run in the player.
 
     RESULT is a result.json, or the folder of one student's result. The page is written to the folder replay/ID beside
-    it. The exit status is 0 when there is a page, 1 when the submission could not be graded, and 2 for a wrong call.
+    it. The exit status is 0 if the page was written, 1 if the submission could not be graded, and 2 for wrong usage.
     """
     if mcap and submission is None:
-        raise UsageError("--mcap needs --submission PATH: the kept run has no messages, they come from a new grading")
-    found = _one(stored)
-    if check not in {each.id for each in found.checks}:
-        known = ", ".join(each.id for each in found.checks)
+        raise UsageError("--mcap needs --submission PATH: the stored run has no messages, only a new grading has")
+    original = _one(stored)
+    if check not in {each.id for each in original.checks}:
+        known = ", ".join(each.id for each in original.checks)
         raise UsageError(f"{stored}: the result has no check {check!r}; it has: {known}")
-    folder = found.folder / "replay" / check
+    folder = original.folder / "replay" / check
     with tempfile.TemporaryDirectory(prefix="replay-") as scratch:
         if submission is not None:
-            found = _grade_again(found, check, submission, Path(scratch), Tier(isolation), mcap)
-        result = found.only(check) if found.status is Status.GRADED else found
+            original = _grade_again(original, check, submission, Path(scratch), Tier(isolation), mcap)
+        result = original.only(check) if original.status is Status.GRADED else original
         page = feedback.write(result, folder, artifacts=result.folder)
         echo(f"The run of {check!r}: {page}")
         for bag in _bags(Path(scratch), folder):
@@ -65,18 +65,18 @@ def replay(stored: Path, check: str, submission: Path | None, mcap: bool, show: 
 
 
 def _one(path: Path) -> Result:
-    found = load(path)
-    if len(found) != 1:
-        raise UsageError(f"{path}: holds {len(found)} results; give the folder of one student")
-    return found[0]
+    results = load(path)
+    if len(results) != 1:
+        raise UsageError(f"{path} contains {len(results)} results; use the folder of one student")
+    return results[0]
 
 
 def _grade_again(result: Result, check: str, submission: Path, out: Path, tier: Tier, recordings: bool) -> Result:
-    """Grade a check, and those that it needs, once more with the seed of its result."""
+    """Grade a check and its dependencies again with the seed of its result."""
     scope = Scope(only=suites.hidden(result.assignment).with_dependencies(check), recordings=recordings)
     graded = grade_submission(Job(submission, result.assignment, result.student, result.seed, out, tier, scope))
     if graded.status is Status.GRADED and graded.submission_sha256 != result.submission_sha256:
-        echo(f"Note: {submission} is not what was graded then; the run may differ.", err=True)
+        echo(f"Note: {submission} differs from the graded submission, so the run may differ.", err=True)
     return graded
 
 
@@ -87,5 +87,5 @@ def _bags(recordings: Path, out: Path) -> Iterator[Path]:
     for path in sorted(recordings.glob("*.npz")):
         bag = out / path.stem
         if bag.exists():
-            shutil.rmtree(bag)  # of the replay before this one
+            shutil.rmtree(bag)  # from an earlier replay
         yield to_mcap(load_recording(path), bag)

@@ -1,4 +1,4 @@
-"""`autograder ros`: runs a command with ROS 2 switched on."""
+"""`autograder ros`: runs a command with ROS 2 activated."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from autograder.ros.exceptions import RosError
 @click.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
 @click.argument("command", nargs=-1, type=click.UNPROCESSED)
 def ros(command: tuple[str, ...]) -> None:
-    """Run COMMAND with ROS 2 switched on, for example `autograder ros jupyter lab`.
+    """Run COMMAND with ROS 2 activated, for example `autograder ros jupyter lab`.
 
-    Without a command, the variables are printed as shell lines. `eval "$(autograder ros)"` does what sourcing the
-    setup.bash of a ROS installation does.
+    Without a command, the environment variables are printed as shell code. `eval "$(autograder ros)"` is equivalent to
+    sourcing the setup.bash of a ROS installation.
     """
     sys.exit(_run(command))
 
 
 def _run(command: tuple[str, ...]) -> int:
-    """Become the command, or print the variables; return the exit status when it cannot be."""
+    """Replace this process by the command, or print the variables. Return the exit status if that fails."""
     try:
         if not command:
             for name, value in {**find().variables(), "PATH": path_with_scripts()}.items():

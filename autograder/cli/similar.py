@@ -64,19 +64,19 @@ def similar(
         given = code(read_submission(Path(name) / "given" / layout.course().chapters / assignment, assignment))
     with find_submissions(paths, assignment, roster, verb="compared") as (submissions, all_fit):
         codes, all_read = _codes(submissions, assignment)
-    found = compare(codes, given, least / 100, in_part)
-    for student in found.without_own:
+    comparison = compare(codes, given, least / 100, in_part)
+    for student in comparison.without_own:
         echo(f"Not compared: {on_line(student)}: it has no passage of its own", err=True)
-    compared = len(codes) - len(found.without_own)
+    compared = len(codes) - len(comparison.without_own)
     if compared < 2:
         hint = "; for a download of an LMS, give its table of students with --roster" if roster is None else ""
         raise AutograderError(f"nothing was compared: of {len(submissions)} submissions, {compared} has own code{hint}")
-    for group in found.groups:
+    for group in comparison.groups:
         echo(_sentence(group))
-    groups = f"{len(found.groups)} {'group' if len(found.groups) == 1 else 'groups'}"
-    echo(f"{compared} compared, {groups} to read, no verdict: {write_page(found, out)}")
+    groups = f"{len(comparison.groups)} {'group' if len(comparison.groups) == 1 else 'groups'}"
+    echo(f"{compared} compared, {groups} to read, no verdict: {write_page(comparison, out)}")
     if json_file is not None:
-        write_json(json_file, [_as_json(group) for group in found.groups])
+        write_json(json_file, [_as_json(group) for group in comparison.groups])
     sys.exit(0 if all_fit and all_read else 1)
 
 

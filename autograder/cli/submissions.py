@@ -1,4 +1,4 @@
-"""Finds the submissions that a command is given: paths, or with --roster one download of a system such as Moodle."""
+"""Finds the submissions for a command: paths or, with --roster, one download from a system such as Moodle."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ REPORTED = ("late", "late_by", "times", "older", "unmatched", "missing")  # what
 roster_option = click.option(
     "--roster",
     type=click.Path(path_type=Path, dir_okay=False, exists=True),
-    help="The table of students as CSV. PATHS is then one download of Moodle, Canvas, Gradescope or GitHub Classroom.",
+    help="A CSV table of the students. PATHS is then one download from Moodle, Canvas, Gradescope or GitHub Classroom.",
 )
 
 
@@ -29,10 +29,10 @@ roster_option = click.option(
 def find_submissions(
     paths: tuple[Path, ...], assignment: str, roster: Path | None, *, out: Path | None = None, verb: str = "graded"
 ) -> Iterator[tuple[Mapping[str, Path], bool]]:
-    """Yield the submissions by their students, and whether each item that was found belongs to one.
+    """Yield the submissions by student, and whether every item matches a student.
 
-    What belongs to nobody is printed: it is not `verb`. What a download says of late and missing students is printed,
-    and written to the folder `out`, if there is one.
+    Items that match no student are printed as not `verb`. Late and missing students of a download are printed, and
+    written to the folder `out`, if given.
     """
     if roster is None:
         discovered = discover(paths, assignment)
@@ -40,19 +40,20 @@ def find_submissions(
         yield discovered.submissions, not discovered.others
         return
     if len(paths) != 1:
-        raise UsageError("--roster goes with one download: give one zip or folder")
+        raise UsageError("--roster needs exactly one download: a zip or a folder")
     with unpacked(paths[0]) as folder, TemporaryDirectory(prefix="attempts-") as scratch:
-        found = collect(folder, read_roster(roster), assignment, Path(scratch))
-        _print_others(found.unmatched, verb)
-        for title, names in (("Nothing handed in", found.missing), ("Late", found.late), ("Older ones", found.older)):
+        collected = collect(folder, read_roster(roster), assignment, Path(scratch))
+        _print_others(collected.unmatched, verb)
+        lists = {"Not submitted": collected.missing, "Late": collected.late, "Replaced": collected.older}
+        for title, names in lists.items():
             if names:
                 echo(f"{title}: {', '.join(map(on_line, names))}")
         if out is not None:
-            lists = {name: getattr(found, name) for name in REPORTED}
-            write_json(out / COLLECTION_REPORT, lists)
-        yield found.submissions, not found.unmatched
+            report = {name: getattr(collected, name) for name in REPORTED}
+            write_json(out / COLLECTION_REPORT, report)
+        yield collected.submissions, not collected.unmatched
 
 
 def _print_others(others: Sequence[tuple[str, str]], verb: str) -> None:
-    for name, why in others:
-        echo(f"Not {verb}: {on_line(name)}: {on_line(why)}.", err=True)
+    for name, reason in others:
+        echo(f"Not {verb}: {on_line(name)}: {on_line(reason)}.", err=True)

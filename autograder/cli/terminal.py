@@ -1,4 +1,4 @@
-"""Prints for the command line. All of it goes through `echo`, because what is printed may hold a student's text."""
+"""Prints for the command line. All output goes through `echo`, because it may contain a student's text."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from autograder.plain_text import visible
 
 
 def echo(text: object = "", *, err: bool = False, nl: bool = True) -> None:
-    """Print a text, with what would steer the terminal made visible; with `err`, to standard error."""
+    """Print a text with control characters made visible, to standard error if `err` is set."""
     click.echo(visible(str(text)), err=err, nl=nl)
 
 
 def on_line(text: object) -> str:
-    """Return a name or a sentence that is printed within a line, so that it cannot begin another."""
+    """Return a text for use within a line, so that it cannot start another line."""
     return visible(str(text), line=True)

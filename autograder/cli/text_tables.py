@@ -1,4 +1,4 @@
-"""Writes results as tables on a terminal."""
+"""Formats results as tables for a terminal."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from autograder.suite import Outcome
 
 
 def failure_summary(result: Result) -> str:
-    """Return one sentence that says why points are missing: the failure that costs most."""
+    """Return a sentence with the main reason for lost points: the failure that costs the most."""
     if result.status is not Status.GRADED or result.build is None or not result.build.ok:
         return result.diagnosis.sentence
     first = dearest(causes(result.checks, result.diagnosis.sentence))
@@ -26,8 +26,8 @@ def failure_summary(result: Result) -> str:
 def table(rows: Sequence[Sequence[str]], headings: Sequence[str]) -> str:
     """Return a table as text.
 
-    The first column is on the left, those between are on the right, and the last one is wrapped. No text of a row can
-    begin a line of its own.
+    The first column is left-aligned, the middle ones are right-aligned, and the last one is wrapped. The text of a row
+    cannot start a new line.
     """
     cells = [list(headings), *([*(visible(text, line=True) for text in row[:-1]), visible(row[-1])] for row in rows)]
     widths = [max(map(len, column)) for column in zip(*(row[:-1] for row in cells), strict=True)]
@@ -45,7 +45,7 @@ def table(rows: Sequence[Sequence[str]], headings: Sequence[str]) -> str:
 
 
 def score_text(result: Result) -> str:
-    """Return the score of a result as text, or why there is none."""
+    """Return the score of a result as text, or the reason why it has none."""
     if result.status is not Status.GRADED:
         return result.status.words
-    return f"{result.score:g}/{result.max_score:g} = {math.floor(result.percent)} %"  # never rounded up to all
+    return f"{result.score:g}/{result.max_score:g} = {math.floor(result.percent)} %"  # never rounded up to 100 %

@@ -15,17 +15,17 @@ from autograder.exceptions import UsageError
 @click.command()
 @click.argument("release", required=False, type=click.Path(path_type=Path, file_okay=False, exists=True))
 def update(release: Path | None) -> None:
-    """Update this folder to the release in the folder RELEASE (by default where the course keeps its newest).
+    """Update this folder to the release in the folder RELEASE (by default the course's newest).
 
-    What you have written stays as it is: files and cells in `chapters` that you have changed or added. Where you have
-    changed a file of the course elsewhere, your version gets the ending `.yours`.
+    Your work is kept: files and cells in `chapters` that you have changed or added. If you have changed a file of the
+    course elsewhere, your version is kept with the suffix `.yours`.
     """
     course = read_manifest(layout.ROOT).course
     if release is None and not course:
-        raise UsageError("this release does not say where a newer one is: unpack it somewhere and name the folder")
+        raise UsageError("this release does not know where to find a newer one: unpack one and give its folder")
     done = update_bundle(layout.ROOT, release or Path(course))
     for name in done.kept:
-        echo(f"Kept as you have it: {name}")
+        echo(f"Kept unchanged: {name}")
     for name, copy in done.set_aside.items():
-        echo(f"You had changed {name}: your version is {copy} now.")
-    echo(f"{len(done.written)} files updated. This is the release of {read_manifest(layout.ROOT).version} now.")
+        echo(f"You had changed {name}: your version is now {copy}.")
+    echo(f"{len(done.written)} files updated. This is now the release {read_manifest(layout.ROOT).version}.")

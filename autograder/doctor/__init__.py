@@ -1,6 +1,7 @@
-"""What this machine has of what the course needs, what is missing, and the one command that fixes each lack.
+"""Examines whether this machine meets the course's needs, and names the command that fixes each problem.
 
-`examine()` looks, `render()` shows, `healthy()` decides. Every look at the machine goes through a `System`.
+`examine()` collects findings, `render()` formats them, and `healthy()` decides whether they suffice. All access to the
+machine goes through a `System`.
 """
 
 from autograder.doctor import machine, ros
@@ -11,7 +12,7 @@ __all__ = ["CommandResult", "Finding", "Status", "System", "examine", "healthy",
 
 
 def examine(system: System) -> tuple[Finding, ...]:
-    """Return all findings, in the order in which to fix them; takes about a second."""
+    """Return all findings, in the order in which to fix them. This takes about a second."""
     return (
         machine.python(system),
         machine.environment(system),

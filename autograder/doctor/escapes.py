@@ -1,7 +1,7 @@
-"""Programs that try to get out of a sandbox. Each prints a line that begins with `OUT` for everything that it reached.
+"""Programs that try to escape from a sandbox. Each prints a line that begins with `OUT` for everything it reached.
 
-`endings` says how a program may end. A program that goes on without end has to be stopped by a limit of the sandbox. If
-it uses more than a limit allows and is not stopped, it has got out, too.
+`endings` lists the exit reasons that count as contained. An endless program must be stopped by a limit of the sandbox.
+A program that exceeds a limit without being stopped counts as escaped.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ CANARY = "CANARY-of-the-grader"  # in the environment and the memory of the proc
 LIMITS = Limits(wall_seconds=20.0, threads=40, memory=200 * MIB, output=50_000, scratch=4 * MIB)
 _LONG = replace(LIMITS, wall_seconds=120.0)
 _SHORT, _HUGE = replace(LIMITS, wall_seconds=1.0), replace(LIMITS, memory=4 * GIB)
-_MORE_MEMORY = replace(LIMITS, memory=600 * MIB)  # what its processes have mapped is less
+_MORE_MEMORY = replace(LIMITS, memory=600 * MIB)  # more than its processes map
 
 
 @dataclass(frozen=True)
 class Escape:
-    """One program that tries to get out; the tests and `autograder doctor --security` run it."""
+    """A program that tries to escape. The tests and `autograder doctor --security` run it."""
 
     id: str
-    description: str  # what it tries: the rest of a sentence that begins with "a program cannot"
+    description: str  # what it tries, to complete the sentence "a program cannot ..."
     code: str
     limits: Limits = LIMITS
     network: bool = False
@@ -33,7 +33,7 @@ class Escape:
 
     @property
     def program(self) -> str:
-        """The code, with HIDDEN, the folders of the course that no program may read."""
+        """The code, preceded by HIDDEN: the folders of the course that no program may read."""
         return f"HIDDEN = {[*map(str, (*layout.check_folders(), layout.SOLUTIONS))]}\n{self.code}"
 
 
@@ -261,23 +261,23 @@ ESCAPES = (
     Escape("files", "read hidden checks, solutions, accounts or homes", _READ),
     Escape("processes", "see other processes, or the grader's environment and descriptors", _PROCESSES),
     Escape("memory", "read the memory of another process, or trace it", _MEMORY),
-    Escape("signals", "stop the grader, or anything else outside", _SIGNALS),
+    Escape("signals", "stop the grader or another process outside", _SIGNALS),
     Escape("network", "reach a network or the machine's own ports", _NETWORK),
-    Escape("loopback", "reach more than the grader where it has a network", _NETWORK, network=True),
-    Escape("writing", "write to the system, to settings of the kernel or to the grader", _WRITE),
-    Escape("settings", "open what exists outside of its folders for writing", _SETTINGS, _LONG),
-    Escape("inotify", "take the machine's user all instances of inotify", _INOTIFY),
-    Escape("descriptors", "have so many descriptors on their way that others can pass none", _IN_FLIGHT),
-    Escape("calls", "make namespaces or mounts, use keys, trace, load programs into the kernel", _CALLS),
+    Escape("loopback", "reach anything but the grader if it has a network", _NETWORK, network=True),
+    Escape("writing", "write to the system, the kernel's settings or the grader", _WRITE),
+    Escape("settings", "open a file outside of its folders for writing", _SETTINGS, _LONG),
+    Escape("inotify", "exhaust the inotify instances of the machine's user", _INOTIFY),
+    Escape("descriptors", "exhaust the number of descriptors in flight", _IN_FLIGHT),
+    Escape("calls", "create namespaces or mounts, use keys, trace, or load programs into the kernel", _CALLS),
     Escape("disk", "fill more than its own /tmp and /dev/shm", _FILL),
-    Escape("inodes", "make files without end", _FILES, endings=(Ending.FILES, Ending.MEMORY)),
+    Escape("inodes", "create files without end", _FILES, endings=(Ending.FILES, Ending.MEMORY)),
     Escape("memory eater", "use memory without end", _USE_MEMORY, endings=(Ending.MEMORY,)),
     Escape("unmapped memory", "hold memory that belongs to no process", _UNMAPPED),
-    Escape("socket buffers", "hold memory in buffers of sockets", _SOCKETS, _MORE_MEMORY, endings=(Ending.MEMORY,)),
+    Escape("socket buffers", "hold memory in socket buffers", _SOCKETS, _MORE_MEMORY, endings=(Ending.MEMORY,)),
     Escape("fork bomb", "start processes without end", _FORKS, _HUGE, endings=(Ending.THREADS,)),
     Escape("thread bomb", "start threads without end", _THREADS, endings=(Ending.THREADS,)),
     Escape("output", "print without end", "while True: print('x' * 99)", endings=(Ending.OUTPUT,)),
     Escape("endless loop", "run without end", "while True: pass", _SHORT, endings=(Ending.WALL_TIME,)),
-    Escape("deaf", "live on because it ignores every signal", _IGNORE_SIGNALS, _SHORT, endings=(Ending.WALL_TIME,)),
-    Escape("daemon", "live on by setsid and two forks", _DAEMON),
+    Escape("deaf", "survive by ignoring every signal", _IGNORE_SIGNALS, _SHORT, endings=(Ending.WALL_TIME,)),
+    Escape("daemon", "survive by setsid and two forks", _DAEMON),
 )

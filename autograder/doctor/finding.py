@@ -1,4 +1,4 @@
-"""One finding about the machine, and a list of them as text."""
+"""Findings about the machine, and their text form."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
-VERDICTS = ("Everything needed is here.", "Something needed is missing.")
+VERDICTS = ("Nothing is missing.", "Something is missing.")
 
 
 class Status(str, Enum):
-    """How a finding stands: `weak` works with a restriction, `missing` stops a part of the course."""
+    """The status of a finding: `weak` works with a restriction, `missing` blocks part of the course."""
 
     OK = "ok"
     WEAK = "weak"
@@ -20,21 +20,21 @@ class Status(str, Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """What was looked at, and how it stands."""
+    """The result of one examination."""
 
     name: str
     status: Status
-    found: str  # what was found, in a sentence without its full stop
+    found: str  # a sentence without its full stop
     fix: str = ""  # the one command that fixes it; empty if there is nothing to fix
 
 
 def healthy(findings: Sequence[Finding]) -> bool:
-    """Say whether everything needed is there; a weak finding does not count against it."""
+    """Return whether nothing is missing. Weak findings are acceptable."""
     return all(finding.status is not Status.MISSING for finding in findings)
 
 
 def render(findings: Sequence[Finding], *, width: int = 100, verdicts: tuple[str, str] = VERDICTS) -> str:
-    """Return the findings as aligned lines, the command that fixes a lack under it, and a closing sentence."""
+    """Return the findings as aligned lines, each with the command that fixes it, and a summary."""
     longest = max(len(finding.name) for finding in findings)
     lines = []
     for finding in findings:
@@ -42,7 +42,7 @@ def render(findings: Sequence[Finding], *, width: int = 100, verdicts: tuple[str
         indent = " " * len(head)
         lines += textwrap.wrap(finding.found, width, initial_indent=head, subsequent_indent=indent)
         if finding.fix:
-            # Never wrapped: it is there to be copied.
+            # Not wrapped, so that it can be copied.
             lines.append(f"{indent}fix: {finding.fix}")
     count = {status: sum(finding.status is status for finding in findings) for status in Status}
     verdict = verdicts[0] if healthy(findings) else verdicts[1]

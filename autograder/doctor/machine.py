@@ -14,24 +14,24 @@ from autograder.ros.distribution import DISTRIBUTION
 ROOMY_BYTES = 2 * 1024**3
 
 _SYSCTL = Path("/proc/sys")
-# Kernel settings that forbid user namespaces: the file, the value that forbids, the command that allows.
+# Kernel settings that forbid user namespaces: the file, the value that forbids them, the reason, the fix.
 _FORBIDDING = (
     (
         "kernel.apparmor_restrict_unprivileged_userns",
         "1",
-        "AppArmor restricts user namespaces, as Ubuntu does since 24.04",
+        "AppArmor restricts user namespaces, by default since Ubuntu 24.04",
         "sudo sysctl -w kernel.apparmor_restrict_unprivileged_userns=0",
     ),
     (
         "kernel.unprivileged_userns_clone",
         "0",
-        "the kernel forbids user namespaces to users",
+        "the kernel forbids unprivileged user namespaces",
         "sudo sysctl -w kernel.unprivileged_userns_clone=1",
     ),
     (
         "user.max_user_namespaces",
         "0",
-        "the kernel allows no user namespaces at all",
+        "the kernel does not allow any user namespaces",
         "sudo sysctl -w user.max_user_namespaces=15000",
     ),
 )
@@ -43,7 +43,7 @@ _CONTAINER_OPTIONS = (
 
 
 def python(system: System) -> Finding:
-    """Look at the interpreter and the platform: ROS's wheels support only some."""
+    """Check that the ROS wheels support the interpreter and the platform."""
     version = ".".join(map(str, system.python))
     name, machine = system.platform
     if system.platform != ("Linux", "x86_64"):
@@ -56,10 +56,10 @@ def python(system: System) -> Finding:
 
 
 def environment(system: System) -> Finding:
-    """Look at whether this is a virtual environment: in the system's own Python, versions are not the pinned ones."""
+    """Check that this is a virtual environment, because the system's Python does not have the pinned versions."""
     if system.in_venv:
         return Finding("environment", Status.OK, f"the virtual environment {system.prefix}")
-    found = f"not a virtual environment ({system.prefix}): nothing holds the packages at their pinned versions"
+    found = f"not a virtual environment ({system.prefix}): packages may not have their pinned versions"
     return Finding("environment", Status.WEAK, found, "make setup")
 
 
@@ -70,7 +70,7 @@ def other_users(system: System) -> tuple[Finding, ...]:
 
 
 def compiler(system: System) -> Finding:
-    """Look for the compilers, and for Python's headers, that turn message definitions into libraries."""
+    """Check for the compilers and Python headers that are needed to build message definitions."""
     missing = [command for command in ("gcc", "g++") if system.run([command, "--version"], {}).status != 0]
     if missing:
         found = f"{' and '.join(missing)} not found: message packages cannot be compiled"
@@ -83,7 +83,7 @@ def compiler(system: System) -> Finding:
 
 
 def build_tools(system: System) -> Finding:
-    """Look for colcon and CMake."""
+    """Check for colcon and CMake."""
     missing = [command for command in ("colcon", "cmake") if system.which(command) is None]
     if missing:
         return Finding("build tools", Status.MISSING, f"{' and '.join(missing)} not found", "make setup")
@@ -91,22 +91,25 @@ def build_tools(system: System) -> Finding:
 
 
 def versions(system: System) -> Finding:
-    """Look at whether what students' programs, builds and tests meet has the versions of ROS's platform."""
+    """Check that the packages used by students' programs, builds and tests have the versions of ROS's platform."""
     platform, packages = DISTRIBUTION.platform, DISTRIBUTION.packages
     others = DISTRIBUTION.differences({p.name: system.package(p.name) for p in packages})
     if not others:
         all_of_them = ", ".join(f"{p.name} {p.version}" for p in packages)
-        return Finding("versions", Status.OK, f"those of {platform}: {all_of_them}")
+        return Finding("versions", Status.OK, f"as on {platform}: {all_of_them}")
     found = "; ".join(f"{p.name} {version or 'is not found'} for {p.version}" for p, version in others.items())
     if all(package.differs and version for package, version in others.items()):
-        return Finding("versions", Status.OK, f"those of {platform}, but {found}: the nearest for this Python")
+        return Finding("versions", Status.OK, f"as on {platform}, except {found}: the nearest for this Python")
     return Finding(
-        "versions", Status.WEAK, f"{platform}, the platform of {DISTRIBUTION.title}, has others: {found}", "make setup"
+        "versions",
+        Status.WEAK,
+        f"different from {platform}, the platform of {DISTRIBUTION.title}: {found}",
+        "make setup",
     )
 
 
 def notebooks(system: System) -> Finding:
-    """Look for JupyterLab and nbgrader."""
+    """Check for JupyterLab and nbgrader."""
     versions = {name: system.package(name) for name in ("jupyterlab", "nbgrader", "ipykernel")}
     missing = [name for name, version in versions.items() if version is None]
     if missing:
@@ -115,25 +118,25 @@ def notebooks(system: System) -> Finding:
 
 
 def isolation(system: System) -> Finding:
-    """Try the two namespaces that grading nests: one around a submission, one around the student's code."""
+    """Try the two nested namespaces of grading: one around a submission, one around the student's code."""
     if system.which("bwrap") is None:
         found = "bubblewrap is not installed: submissions cannot be graded in isolation"
         return Finding("isolation", Status.MISSING, found, "sudo apt-get install bubblewrap")
     failure, bounds = system.namespaces_failure(), system.bounds()
     if failure is not None:
         why, fix = _forbidden(system)
-        found = f"bubblewrap cannot make namespaces, one inside the other ({failure.splitlines()[-1]}): {why}"
-        return Finding("isolation", Status.WEAK, f"{found}; grading offers its weaker tier only", fix)
+        found = f"bubblewrap cannot create nested namespaces ({failure.splitlines()[-1]}): {why}"
+        return Finding("isolation", Status.WEAK, f"{found}; only the weaker isolation level is available", fix)
     if "pids" not in bounds:
-        found = "root's processes can be bounded by control groups only, and none can be made: a fork bomb stops it all"
+        found = "only control groups can limit root's processes, but none can be created: a fork bomb would succeed"
         return Finding("isolation", Status.WEAK, found, "adduser grader && su grader")
     if "memory" not in bounds:
         found = (
-            "bubblewrap makes namespaces, one inside the other; no control group can be made, so memory is bounded as "
-            "far as processes show it: buffers of sockets and inodes are not"
+            "bubblewrap creates nested namespaces; no control group can be created, so only the memory of processes "
+            "is limited, but not socket buffers and inodes"
         )
         return Finding("isolation", Status.WEAK, found, "systemd-run --user --scope autograder doctor")
-    found = "bubblewrap makes namespaces, one inside the other; control groups bound memory and processes"
+    found = "bubblewrap creates nested namespaces; control groups limit memory and processes"
     return Finding("isolation", Status.OK, found)
 
 
@@ -147,21 +150,21 @@ def _forbidden(system: System) -> tuple[str, str]:
 
 
 def release(system: System) -> tuple[Finding, ...]:
-    """Look at whether the course has a newer release than this bundle. The course itself is no release."""
+    """Check whether a newer student release is available. The course itself is not a release."""
     own = json.loads(system.read(layout.ROOT / MANIFEST) or "{}")
     newest = json.loads((system.read(Path(own["course"], MANIFEST)) if own.get("course") else None) or "{}")
     if not own:
         return ()
     if newest and newest["version"] > own["version"]:
-        found = f"this is of {own['version']}, and the course has a newer one, of {newest['version']}"
+        found = f"version {own['version']}; a newer one is available, {newest['version']}"
         return (Finding("release", Status.WEAK, found, "autograder update"),)
-    return (Finding("release", Status.OK, f"of {own['version']}"),)
+    return (Finding("release", Status.OK, f"version {own['version']}"),)
 
 
 def space(system: System) -> Finding:
-    """Look at whether there is room for workspaces and builds."""
+    """Check that there is disk space for workspaces and builds."""
     if not system.writable(system.tmp):
-        found = f"{system.tmp} cannot be written to: workspaces and builds go there"
+        found = f"{system.tmp} is not writable, but workspaces and builds go there"
         return Finding("disk", Status.MISSING, found, 'export TMPDIR="$HOME/tmp" && mkdir -p "$TMPDIR"')
     free = system.disk_usage(system.tmp).free
     free_text = f"{free / 1024**3:.1f} GB free in {system.tmp}"
@@ -172,11 +175,11 @@ def space(system: System) -> Finding:
 
 
 def browser(system: System) -> Finding:
-    """Look for a browser that the browser tests can drive; nothing else needs it."""
+    """Check for a browser for the browser tests. Nothing else needs one."""
     for command in ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"):
         if system.which(command) is not None:
             result = system.run([command, "--version"], {})
             if result.status == 0:
                 return Finding("browser", Status.OK, result.last_line)
-    found = "no Chromium that starts: only the tests that drive a browser need it"
+    found = "no working Chromium; only the browser tests need it"
     return Finding("browser", Status.WEAK, found, "sudo apt-get install chromium")

@@ -1,4 +1,4 @@
-"""Findings about ROS 2: which one, whole or not, and the variables that quietly break it."""
+"""Findings about ROS 2: the installation, its completeness, and variables that silently break it."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ node.create_publisher(String, "doctor", 1)
 rclpy.shutdown()
 """
 
-# Variables that rclpy or Fast DDS obey without a word, and what they do to the course.
+# Environment variables that silently change the behaviour of rclpy or Fast DDS, and their effect.
 _STRAY = {
-    "ROS_AUTOMATIC_DISCOVERY_RANGE": "keeps nodes from meeting inside the sandbox",
-    "ROS_LOCALHOST_ONLY": "keeps nodes from meeting inside the sandbox",
+    "ROS_AUTOMATIC_DISCOVERY_RANGE": "prevents discovery inside the sandbox",
+    "ROS_LOCALHOST_ONLY": "prevents discovery inside the sandbox",
     "ROS_STATIC_PEERS": "sends discovery to other machines",
     "ROS_DISCOVERY_SERVER": "sends discovery to a server",
     "FASTRTPS_DEFAULT_PROFILES_FILE": "changes the DDS transport",
     "FASTDDS_DEFAULT_PROFILES_FILE": "changes the DDS transport",
-    "ROS_SECURITY_ENABLE": "asks every node for keys",
+    "ROS_SECURITY_ENABLE": "requires keys from every node",
 }
 _HARMLESS = {"ROS_AUTOMATIC_DISCOVERY_RANGE": ("SUBNET",), "ROS_LOCALHOST_ONLY": ("0",)}
 
 
 def examine(system: System) -> list[Finding]:
-    """Return the findings about ROS 2; without one, only this and the variables are examined."""
+    """Return the findings about ROS 2. If it is missing, only logs and variables are examined."""
     try:
         ros = system.find_ros()
     except WrongDistroError as error:
@@ -55,7 +55,7 @@ def examine(system: System) -> list[Finding]:
 
 
 def installation(system: System, ros: RosEnvironment) -> Finding:
-    """Look at which ROS 2 this is: the course's, and only one of wheels and sourced."""
+    """Check that this is the course's ROS 2, either from wheels or sourced, but not both."""
     manifests = [system.read(_manifest(prefix)) for prefix in ros.prefixes]
     version = re.search(r"<version>\s*([^<\s]+)", next((text for text in manifests if text), ""))
     if version is None:
@@ -65,17 +65,17 @@ def installation(system: System, ros: RosEnvironment) -> Finding:
         other = f"rclpy {version[1]} in {ros.prefixes[0]} is not {DISTRIBUTION.title}'s, which is {DISTRIBUTION.rclpy}"
         return Finding("ROS 2", Status.MISSING, other, "make setup")
     if ros.kind == "sourced" and system.read(_manifest(system.prefix)) is not None:
-        both = f"{version_text}; the wheels are installed as well, and the two mix their libraries"
+        both = f"{version_text}; the wheels are also installed, and the two mix their libraries"
         return Finding("ROS 2", Status.WEAK, both, "make setup")
     return Finding("ROS 2", Status.OK, version_text)
 
 
 def launch(system: System) -> Finding:
-    """Look at which `launch` and `ros2` these are: the real ones, or the course's stand-ins."""
-    told = system.describe_launch()
-    if told == STANDINS:
-        told = "the course's stand-ins; `make real-launch` installs the real ones where GitHub can be reached"
-    return Finding("launch, ros2", Status.OK, told)
+    """Check whether `launch` and `ros2` are the real ones or the course's stand-ins."""
+    description = system.describe_launch()
+    if description == STANDINS:
+        description = "the course's stand-ins; `make real-launch` installs the real ones if GitHub is reachable"
+    return Finding("launch, ros2", Status.OK, description)
 
 
 def _manifest(prefix: Path) -> Path:
@@ -83,21 +83,21 @@ def _manifest(prefix: Path) -> Path:
 
 
 def cmake_files(system: System, ros: RosEnvironment) -> Finding:
-    """Look at whether the wheels' CMake files were corrected; message packages do not compile before."""
+    """Check that the wheels' CMake files were patched. Message packages do not compile otherwise."""
     count = len(system.unpatched_cmake_files(ros.prefixes[0]))
     if count:
-        found = f"{count} CMake files of the wheels name folders of another machine: no message package compiles"
+        found = f"{count} CMake files of the wheels point at another machine's folders: message packages do not compile"
         return Finding("CMake files", Status.MISSING, found, f"{sys.executable} -m autograder.ros.patch_wheels")
     return Finding("CMake files", Status.OK, "the wheels' CMake files point at this environment")
 
 
 def log_folder(system: System, ros: RosEnvironment | None) -> Finding:
-    """Look at ROS_LOG_DIR, without which `rclpy.init` raises."""
+    """Check that the log folder is writable. Otherwise `rclpy.init` raises an exception."""
     chosen = system.environ.get("ROS_LOG_DIR")
     folder = Path(chosen or (ros.variables()["ROS_LOG_DIR"] if ros else system.tmp))
     if system.writable(folder):
         return Finding("ROS logs", Status.OK, f"written to {folder}")
-    found = f"the folder of ROS's log files, {folder}, cannot be written to"
+    found = f"the folder for ROS logs, {folder}, is not writable"
     return Finding(
         "ROS logs", Status.MISSING, found, "unset ROS_LOG_DIR" if chosen else "export ROS_LOG_DIR=~/.ros/log"
     )
@@ -116,7 +116,7 @@ def start(system: System, ros: RosEnvironment) -> Finding:
 
 
 def variables(system: System) -> Finding:
-    """Look for variables, left by another project's shell, that change how nodes meet."""
+    """Check for environment variables, perhaps from another project's shell, that affect discovery."""
     environ = system.environ
     stray = {
         name: effect
@@ -125,12 +125,12 @@ def variables(system: System) -> Finding:
     }
     middleware = environ.get("RMW_IMPLEMENTATION", "")
     if middleware not in ("", "rmw_fastrtps_cpp"):
-        stray["RMW_IMPLEMENTATION"] = f"asks for {middleware}, the course runs on rmw_fastrtps_cpp"
+        stray["RMW_IMPLEMENTATION"] = f"selects {middleware}, but the course needs rmw_fastrtps_cpp"
     domain = environ.get("ROS_DOMAIN_ID", "")
     if domain and not (domain.isdecimal() and int(domain) <= 232):
-        stray["ROS_DOMAIN_ID"] = f"is {domain}, a domain is 0 to 232"
+        stray["ROS_DOMAIN_ID"] = f"is {domain}, but must be 0 to 232"
     if not stray:
-        return Finding("ROS variables", Status.OK, "none that changes how nodes meet")
+        return Finding("ROS variables", Status.OK, "none that affects discovery")
     stops = {"RMW_IMPLEMENTATION", "ROS_DOMAIN_ID"} & set(stray)
     found = "; ".join(f"{name} {effect}" for name, effect in stray.items())
     return Finding("ROS variables", Status.MISSING if stops else Status.WEAK, found, f"unset {' '.join(stray)}")

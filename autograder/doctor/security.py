@@ -1,4 +1,4 @@
-"""`autograder doctor --security`: runs programs that try to get out of a sandbox, and says which of them succeed."""
+"""`autograder doctor --security`: runs programs that try to escape from a sandbox, and reports which succeed."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from autograder.run.sandbox.cell import run_in_cell
 from autograder.run.sandbox.launcher import launch, warm_up
 from autograder.run.sandbox.tiers import namespaces_failure
 
-VERDICTS = ("Every sandbox held.", "Something got out: docs/security.md says what bounds it.")
+VERDICTS = ("Every escape was blocked.", "An escape succeeded: docs/security.md explains the limits.")
 _PROFILE = "lockstep"  # of nodes
 
 
 def attempt(escape: Escape, home: Path, port: int, profile: str | None) -> str:
-    """Try an escape in a sandbox of this cell; return what got out, and an empty string if the sandbox held.
+    """Try an escape in a sandbox inside this worker sandbox. Describe what it reached, or return an empty string.
 
     Args:
-        escape: what is tried.
-        home: an empty folder, which the program can write to.
-        port: a port of the machine outside the cell, where somebody listens.
-        profile: what the interpreter from which the program is forked has imported; it is started if there is none.
+        escape: the escape to try.
+        home: an empty folder that the program can write to.
+        port: an open port of the machine outside the worker sandbox.
+        profile: the import profile of the fork server to fork the program from; None starts a new interpreter.
     """
     program = home / "program.py"
     program.write_text(f"PORT, OUTSIDE = {port}, {os.getpid()}\n{escape.program}")
@@ -43,25 +43,25 @@ def attempt(escape: Escape, home: Path, port: int, profile: str | None) -> str:
     deadline = time.monotonic() + 20
     while (left := processes() - before) and time.monotonic() < deadline:
         time.sleep(0.05)
-    return "; ".join([*wrong, *(f"process {pid} lives on" for pid in left)])
+    return "; ".join([*wrong, *(f"process {pid} survived" for pid in left)])
 
 
 def processes() -> set[int]:
-    """Return the processes of this cell's network namespace that are no zombies; nobody else is in it."""
-    here, found = Path("/proc/self/ns/net").readlink(), set()
+    """Return the processes in this worker sandbox's network namespace, except zombies."""
+    here, pids = Path("/proc/self/ns/net").readlink(), set()
     for pid in map(int, filter(str.isdigit, os.listdir("/proc"))):
         with suppress(OSError):
             state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
             if Path(f"/proc/{pid}/ns/net").readlink() == here and state not in "ZX":
-                found.add(pid)
-    return found
+                pids.add(pid)
+    return pids
 
 
 def examine() -> tuple[Finding, ...]:
-    """Try every escape on this machine, started in a sandbox and forked into it, and say what became of it."""
+    """Try every escape on this machine, both started and forked in a sandbox, and return the findings."""
     failure = namespaces_failure()
     if failure is not None:
-        found = f"not tried: {failure}; without namespaces a student's code can do all that the grader's user can"
+        found = f"not tried: {failure}; without namespaces, a student's code has the rights of the grader's user"
         return (Finding("isolation", Status.MISSING, found, "autograder doctor"),)
     outs: dict[str, str] = {}
     with socket.create_server(("127.0.0.1", 0)) as server:
@@ -76,12 +76,12 @@ def examine() -> tuple[Finding, ...]:
 
 def _finding(escape: Escape, out: str) -> Finding:
     if out:
-        return Finding(escape.id, Status.MISSING, f"not held, a program can {escape.description}: {out}")
-    return Finding(escape.id, Status.OK, f"held: a program cannot {escape.description}")
+        return Finding(escape.id, Status.MISSING, f"not blocked, a program can {escape.description}: {out}")
+    return Finding(escape.id, Status.OK, f"blocked: a program cannot {escape.description}")
 
 
 def main() -> None:
-    """Try every escape in the cell that this process is in; print what got out, a JSON object for each."""
+    """Try every escape in this process's worker sandbox, and print a JSON object for each."""
     activate()
     os.environ["CANARY"] = CANARY
     port, scratch = int(sys.argv[1]), Path(sys.argv[2])
@@ -93,7 +93,7 @@ def main() -> None:
             home = scratch / f"{number}-{profile}"
             home.mkdir()
             if escape.id == "fork bomb" and not counted:
-                outs.append("not tried: nothing bounds the processes of root here")
+                outs.append("not tried: nothing limits root's processes here")
             else:
                 outs.append(attempt(escape, home, port, profile))
         print(json.dumps({escape.id: "; ".join(dict.fromkeys(filter(None, outs)))}), flush=True)

@@ -1,4 +1,4 @@
-"""The doctor's only way to look at the machine: attributes and methods that a test can replace one by one."""
+"""The doctor's only access to the machine: attributes and methods that a test can replace individually."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ COMMAND_TIMEOUT_SECONDS = 60.0
 
 @dataclass(frozen=True)
 class CommandResult:
-    """How a command ended: its exit status and what it wrote, both streams in one."""
+    """A command's exit status and output, with both streams combined."""
 
     status: int
     output: str
 
     @property
     def last_line(self) -> str:
-        """The last line that says something: of a traceback, the error."""
+        """The last line of the output that is not empty, such as the error of a traceback."""
         lines = [line.strip() for line in self.output.splitlines() if line.strip()]
         return lines[-1] if lines else f"exit status {self.status}"
 
@@ -49,7 +49,7 @@ class System:
         self.in_venv = sys.prefix != sys.base_prefix
         self.headers = Path(sysconfig.get_path("include"))
         self.environ: Mapping[str, str] = os.environ
-        # Not gettempdir(): it passes over a TMPDIR that cannot be written to, and that is what is to be found.
+        # Not gettempdir(), which skips a TMPDIR that is not writable and would hide the problem.
         self.tmp = Path(os.environ.get("TMPDIR") or tempfile.gettempdir())
         self.disk_usage = shutil.disk_usage
         self.find_ros = find
@@ -59,12 +59,12 @@ class System:
         self.bounds = cgroup.bounds
 
     def which(self, command: str) -> str | None:
-        """Find a command on PATH, or in the running environment even when that was not activated."""
+        """Find a command on PATH or in the running environment, even if that is not activated."""
         own = str(Path(sys.prefix) / "bin")
         return shutil.which(command, path=os.pathsep.join([own, os.environ.get("PATH", os.defpath)]))
 
     def run(self, command: Sequence[str], variables: Mapping[str, str]) -> CommandResult:
-        """Run a command to its end, with variables added to the environment, in no folder that may be a submission."""
+        """Run a command with additional environment variables, in a folder that cannot be a submission."""
         try:
             done = subprocess.run(
                 command,
@@ -85,14 +85,14 @@ class System:
         return CommandResult(done.returncode, done.stdout)
 
     def read(self, path: Path) -> str | None:
-        """Return a small file's text, or None when there is none."""
+        """Return the text of a small file, or None if it does not exist."""
         try:
             return path.read_text()
         except OSError:
             return None
 
     def writable(self, folder: Path) -> bool:
-        """Return whether a file can be made in a folder, or the folder itself be made."""
+        """Return whether a file can be created in a folder, or the folder itself can be created."""
         nearest = next((path for path in (folder, *folder.parents) if path.exists()), Path("/"))
         try:
             with tempfile.TemporaryFile(dir=nearest):

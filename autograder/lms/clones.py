@@ -1,8 +1,8 @@
-"""Finds the accounts in the names of GitHub Classroom's clones: ASSIGNMENT-ACCOUNT, where either may hold hyphens.
+"""Finds the accounts in the names of GitHub Classroom's clones: ASSIGNMENT-ACCOUNT, where both may contain hyphens.
 
-An account is whatever follows the assignment's name, whole: `hw-ada-bob` is not bob's. `gh classroom clone` puts the
-clones into the folder ASSIGNMENT-submissions. Where the folder has another name, the assignment's is the beginning that
-most clones have; of several, the one after which at least two accounts of the roster stand, and more than after others.
+The account is everything after the assignment's name: `hw-ada-bob` does not belong to bob. `gh classroom clone` puts
+the clones in a folder ASSIGNMENT-submissions. In any other folder, the assignment's name is the prefix that most clones
+share. If several are equally frequent, it is the one followed by the most accounts of the roster, at least two.
 """
 
 from __future__ import annotations
@@ -11,43 +11,43 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 
 FOLDER = "-submissions"
-EVIDENCE = 2  # accounts of the roster; after one, a stranger's account can end like it
+MIN_ACCOUNTS = 2  # of the roster; a single match may be an unknown account that ends with a known one
 
 
-def beginnings(name: str) -> list[str]:
-    """Return what may be the assignment's name in that of a clone, the shortest first."""
+def prefixes(name: str) -> list[str]:
+    """Return the possible names of the assignment in the name of a clone, the shortest first."""
     parts = name.casefold().split("-")
     return ["-".join(parts[:end]) for end in range(1, len(parts))]
 
 
 def assignment_of(names: Sequence[str], folder: str, course_id: str, accounts: Collection[str]) -> str | None:
-    """Return the name that GitHub Classroom has for the assignment of some clones, None if it is unclear.
+    """Return GitHub Classroom's name of the assignment of some clones, or None if it is unclear.
 
     Args:
-        names: those of the clones.
-        folder: the name of the folder that they lie in.
-        course_id: the course's own name of the assignment, which counts where nothing else tells.
-        accounts: those of the roster.
+        names: the names of the clones.
+        folder: the name of the folder that contains them.
+        course_id: the course's own name of the assignment, used as a last resort.
+        accounts: the accounts on the roster.
     """
-    count = Counter(beginning for name in names for beginning in beginnings(name))
+    count = Counter(prefix for name in names for prefix in prefixes(name))
     if not count:
         return None
-    said = folder.casefold().removesuffix(FOLDER)
-    if folder.casefold().endswith(FOLDER) and count[said]:
-        return said
-    likely = [beginning for beginning in count if count[beginning] == max(count.values())]
-    if len(likely) == 1:
-        return likely[0]
+    folder_prefix = folder.casefold().removesuffix(FOLDER)
+    if folder.casefold().endswith(FOLDER) and count[folder_prefix]:
+        return folder_prefix
+    candidates = [prefix for prefix in count if count[prefix] == max(count.values())]
+    if len(candidates) == 1:
+        return candidates[0]
     known = {account.casefold() for account in accounts}
-    fitting = {one: sum(account_in(name, one) in known for name in names) for one in likely}
-    best, second = sorted(likely, key=lambda one: fitting[one], reverse=True)[:2]
-    if fitting[best] >= EVIDENCE and fitting[best] > fitting[second]:
+    matches = {prefix: sum(account_in(name, prefix) in known for name in names) for prefix in candidates}
+    best, second = sorted(candidates, key=lambda prefix: matches[prefix], reverse=True)[:2]
+    if matches[best] >= MIN_ACCOUNTS and matches[best] > matches[second]:
         return best
-    own = course_id.casefold().replace("_", "-")
-    return own if own in likely else None
+    chapter = course_id.casefold().replace("_", "-")
+    return chapter if chapter in candidates else None
 
 
 def account_in(name: str, assignment: str) -> str:
-    """Return the account in the name of a clone, empty if it is of another assignment."""
-    begin = f"{assignment}-"
-    return name.casefold().removeprefix(begin) if name.casefold().startswith(begin) else ""
+    """Return the account in the name of a clone, or an empty string if the clone belongs to another assignment."""
+    prefix = f"{assignment}-"
+    return name.casefold().removeprefix(prefix) if name.casefold().startswith(prefix) else ""

@@ -1,6 +1,6 @@
 """Finds each student's submission in a download. The newest attempt counts, with all of its files.
 
-What fits no student is listed, not dropped.
+Items that match no student are listed, not ignored.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pathlib import Path
 
 from autograder.exceptions import UsageError
 from autograder.grade.batch import submission_in
-from autograder.lms.clones import FOLDER, account_in, assignment_of, beginnings
+from autograder.lms.clones import FOLDER, account_in, assignment_of, prefixes
 from autograder.lms.roster import Roster
 from autograder.lms.submission_names import METADATA, DownloadedItem, read_metadata, read_names, resubmitted
 from autograder.result.class_folder import why_not_a_folder
@@ -28,11 +28,11 @@ class CollectedSubmissions:
     """The submissions in a download, in the order of the roster.
 
     Attributes:
-        submissions: the newest one of each student; the members of a group have one path.
-        late: the students whom the system calls late.
-        older: the names of the submissions that a newer one of the same student replaces.
-        unmatched: what fits no student or is no submission, as pairs of a name and the reason.
-        missing: the students without a submission.
+        submissions: the newest submission of each student; the members of a group share a path.
+        late: students whose submission the system marks as late.
+        older: names of submissions that were replaced by a newer one of the same student.
+        unmatched: pairs (name, reason) of items that match no student or are not submissions.
+        missing: students without a submission.
         times: when each student's submission came, in ISO 8601, where the system says it.
         late_by: the delays that Moodle's table names, in seconds.
     """
@@ -48,9 +48,9 @@ class CollectedSubmissions:
 
 @contextmanager
 def unpacked(download: Path) -> Iterator[Path]:
-    """Give the folder of a download; one that is a zip is unpacked until the block is left.
+    """Yield the folder of a download. A zip is unpacked to a temporary folder.
 
-    Raises UsageError if it is neither a folder nor a zip, or names a file outside of itself.
+    Raises UsageError if it is neither a folder nor a zip, or contains a path outside of itself.
     """
     if download.is_dir():
         yield download
@@ -59,7 +59,7 @@ def unpacked(download: Path) -> Iterator[Path]:
         try:
             with zipfile.ZipFile(download) as archive:
                 outside = [name for name in archive.namelist() if name.startswith("/") or ".." in name.split("/")]
-                if outside:  # it would land inside under another name, perhaps that of another student
+                if outside:  # it would be extracted under another name, perhaps another student's
                     raise ValueError(f"{outside[0]} points outside the archive")
                 archive.extractall(folder)
         except (OSError, zipfile.BadZipFile, NotImplementedError, RuntimeError, ValueError) as error:
@@ -70,17 +70,17 @@ def unpacked(download: Path) -> Iterator[Path]:
 def collect(folder: Path, roster: Roster, assignment: str, scratch: Path) -> CollectedSubmissions:
     """Find each student's submission in an unpacked download.
 
-    In nbgrader's layout, the folder of a student holds one with the name of the assignment. The files of an attempt
-    that has several are copied to a folder in `scratch`.
+    In nbgrader's layout, a student's folder contains a folder with the assignment's name. If an attempt has several
+    files, they are copied to a folder in `scratch`.
     """
-    handed_in, unmatched = _by_student(folder, roster, assignment)
-    newest = {name: _newest(attempts) for name, attempts in handed_in.items()}
+    submitted, unmatched = _by_student(folder, roster, assignment)
+    newest = {name: _newest(attempts) for name, attempts in submitted.items()}
     students = [student for student in roster.students if student.id in newest]
     times = {student.id: max(item.time for item in newest[student.id]) for student in students}
     return CollectedSubmissions(
         {student.id: _together(newest[student.id], assignment, scratch) for student in students},
         tuple(student.id for student in students if student.late or any(item.late for item in newest[student.id])),
-        tuple(item.listed_name for name, there in handed_in.items() for item in there if item not in newest[name]),
+        tuple(item.listed_name for name, items in submitted.items() for item in items if item not in newest[name]),
         tuple(unmatched),
         tuple(student.id for student in roster.students if student.id not in newest),
         {name: time for name, time in times.items() if time},
@@ -90,67 +90,67 @@ def collect(folder: Path, roster: Roster, assignment: str, scratch: Path) -> Col
 
 def newest_items(folder: Path, roster: Roster, assignment: str) -> dict[str, list[DownloadedItem]]:
     """Return the files and folders of each student's newest attempt in an unpacked download."""
-    handed_in, _ = _by_student(folder, roster, assignment)
-    return {name: _newest(attempts) for name, attempts in handed_in.items()}
+    submitted, _ = _by_student(folder, roster, assignment)
+    return {name: _newest(attempts) for name, attempts in submitted.items()}
 
 
 def _by_student(
     folder: Path, roster: Roster, assignment: str
 ) -> tuple[dict[str, list[DownloadedItem]], list[tuple[str, str]]]:
-    """Return what each student handed in, in all attempts, and what fits no student or is no submission."""
+    """Return the items of all attempts by student, and pairs (name, reason) of items that are not submissions."""
     items, unmatched = _items(folder, roster, assignment)
-    handed_in: dict[str, list[DownloadedItem]] = {}
+    submitted: dict[str, list[DownloadedItem]] = {}
     texts: list[tuple[str, DownloadedItem]] = []
     for item in items:
         student = roster.find(item.keys)
         if student is None:
-            unmatched.append((item.listed_name, item.doubt or f"no student of {roster.path.name} fits"))
-        elif why := why_not_a_folder(student.id):
-            unmatched.append((item.listed_name, f"{why} in {roster.path.name}"))
+            unmatched.append((item.listed_name, item.doubt or f"it matches no student in {roster.path.name}"))
+        elif reason := why_not_a_folder(student.id):
+            unmatched.append((item.listed_name, f"{reason} in {roster.path.name}"))
         elif not item.is_submission:
             texts.append((student.id, item))
         else:
-            handed_in.setdefault(student.id, []).append(item)
+            submitted.setdefault(student.id, []).append(item)
     for name, text in texts:
-        orders = {item.order for item in handed_in.get(name, ())}
+        orders = {item.order for item in submitted.get(name, ())}
         if not (text.is_receipt and text.order in orders):
-            unmatched.append((text.listed_name, "it is no file that was handed in"))
-    return handed_in, unmatched
+            unmatched.append((text.listed_name, "it is not a submitted file"))
+    return submitted, unmatched
 
 
 def _items(folder: Path, roster: Roster, assignment: str) -> tuple[list[DownloadedItem], list[tuple[str, str]]]:
     if (folder / METADATA).is_file():
         return read_metadata(folder)
     items = _with_accounts(read_names(folder), folder, roster, assignment)
-    # A zip often holds one folder that holds all.
+    # A zip often contains a single top-level folder.
     if len(items) == 1 and items[0].path.is_dir() and not _is_one(items[0], folder, roster):
         return _items(items[0].path, roster, assignment)
     return items, []
 
 
 def _is_one(item: DownloadedItem, folder: Path, roster: Roster) -> bool:
-    """Return whether the only item of a download is a submission, and not the folder of all."""
+    """Return whether the only item of a download is a submission, not a folder with all submissions."""
     return bool(item.doubt) or roster.find(item.keys) is not None or folder.resolve().name.endswith(FOLDER)
 
 
 def _with_accounts(items: list[DownloadedItem], folder: Path, roster: Roster, assignment: str) -> list[DownloadedItem]:
-    """Return the items of a folder; those that fit nobody by their whole name are clones, and know their account."""
+    """Treat folders whose whole name matches no student as clones, and add the account to their keys."""
     clones = [item for item in items if item.path.is_dir() and roster.find(item.keys) is None]
     accounts = {value for student in roster.students for kind, value in student.keys if kind == "github"}
     names = [item.path.name for item in clones]
-    found = assignment_of(names, folder.resolve().name, assignment, accounts)
-    return [_with_account(item, found, accounts) if item in clones else item for item in items]
+    prefix = assignment_of(names, folder.resolve().name, assignment, accounts)
+    return [_with_account(item, prefix, accounts) if item in clones else item for item in items]
 
 
-def _with_account(item: DownloadedItem, assignment: str | None, accounts: Set[str]) -> DownloadedItem:
+def _with_account(item: DownloadedItem, prefix: str | None, accounts: Set[str]) -> DownloadedItem:
     name = item.path.name
-    if assignment is not None:
-        return replace(item, keys=(("github", account_in(name, assignment)),))
-    possible = [account for one in beginnings(name) if (account := account_in(name, one)) in accounts]
-    if not possible:
+    if prefix is not None:
+        return replace(item, keys=(("github", account_in(name, prefix)),))
+    candidates = [account for each in prefixes(name) if (account := account_in(name, each)) in accounts]
+    if not candidates:
         return item
     doubt = (
-        f"unclear: {' or '.join(possible)}, or an account that only ends like this; name the folder of the clones "
+        f"unclear: {' or '.join(candidates)}, or another account with this ending; name the folder of the clones "
         f"ASSIGNMENT{FOLDER}, as `gh classroom clone` does"
     )
     return replace(item, doubt=doubt)
@@ -165,7 +165,7 @@ def _newest(items: Sequence[DownloadedItem]) -> list[DownloadedItem]:
 
 
 def _together(attempt: Sequence[DownloadedItem], assignment: str, scratch: Path) -> Path:
-    """Return the path of an attempt: a folder that holds one archive alone means the archive."""
+    """Return the path of an attempt. A folder that contains only an archive or a notebook stands for that file."""
     if len(attempt) > 1:
         folder = Path(tempfile.mkdtemp(dir=scratch))
         for number, item in enumerate(attempt):

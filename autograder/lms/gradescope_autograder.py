@@ -1,6 +1,6 @@
 """Writes the autograder that an instructor uploads to Gradescope: a zip with two scripts and the course.
 
-Gradescope unpacks it to `/autograder/source`, runs `setup.sh` once and `run_autograder` for each submission:
+Gradescope unpacks it to `/autograder/source`, runs `setup.sh` once, and runs `run_autograder` for each submission:
 https://gradescope-autograders.readthedocs.io/en/latest/specs/
 """
 
@@ -17,19 +17,19 @@ from autograder.exceptions import UsageError
 from autograder.run.sandbox import Tier
 from autograder.suite import suites
 
-SCRIPTS = layout.ROOT / "assets" / "gradescope"  # both are executable, in the zip too
-# What grading needs besides the course, of which it needs the hidden checks and the reference, too.
+SCRIPTS = layout.ROOT / "assets" / "gradescope"  # both are executable, also in the zip
+# What grading needs in addition to the course with its hidden checks and reference.
 COPIED = ("autograder", "sim", "assets", "pyproject.toml", "requirements.lock", "Makefile")
 
 
 def write_autograder(assignment: str, out: Path, tier: Tier) -> None:
-    """Write the zip `out`, which grades an assignment on Gradescope; `tier` is how students' code is kept apart there.
+    """Write the zip `out`, which grades an assignment on Gradescope with the isolation level `tier`.
 
-    Raises UsageError if the assignment has no hidden checks, or `out` exists already.
+    Raises UsageError if the assignment has no hidden checks, or if `out` already exists.
     """
     suites.hidden(assignment)
     if out.exists():
-        raise UsageError(f"{out} exists already: name a file that does not exist yet")
+        raise UsageError(f"{out} already exists: choose a new file name")
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         copy_tool(COPIED, folder / "course")

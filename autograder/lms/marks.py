@@ -1,10 +1,10 @@
-"""Fills marks into the table that Moodle or Canvas exported, so that the system imports it again.
+"""Fills marks into a table that Moodle or Canvas exported, so that the system can import it.
 
-Moodle: the grading worksheet of the assignment (docs.moodle.org, "Using Assignment"). The column `Grade` is
-filled in, and all else stays.
+Moodle: the grading worksheet of the assignment (docs.moodle.org, "Using Assignment"). The column `Grade` is filled in,
+and everything else is preserved.
 
-Canvas: the export of the gradebook ("How do I import grades in the Gradebook?"). The columns that name students and the
-assignment's column are kept. A column that is new makes a new assignment in Canvas.
+Canvas: the exported gradebook ("How do I import grades in the Gradebook?"). Only the columns that identify students and
+the assignment's column are kept. A new column creates a new assignment in Canvas.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def one_assignment(results: Sequence[Result]) -> str:
     assignments = {result.assignment for result in results}
     if len(assignments) != 1:
         raise UsageError(
-            f"a table takes the marks of one assignment, and these are of {', '.join(sorted(assignments))}"
+            f"a table holds the marks of one assignment, but these belong to {', '.join(sorted(assignments))}"
         )
     return assignments.pop()
 
@@ -89,7 +89,7 @@ Filled = tuple[Rows, dict[str, tuple[str, str]]]
 
 
 def _moodle(roster: Roster, shares: Mapping[str, float], most: float, assignment: str) -> Filled:
-    # The last one is not read here. Moodle refuses a worksheet without it.
+    # The last column is not used here, but Moodle rejects a worksheet without it.
     columns = _columns(roster, ("identifier", "grade", "maximum grade", "last modified (grade)"))
     grade, maximum = columns["grade"], columns["maximum grade"]
     rows, marks = [list(row) for row in roster.rows], {}
@@ -104,14 +104,14 @@ def _moodle(roster: Roster, shares: Mapping[str, float], most: float, assignment
 def _canvas(roster: Roster, shares: Mapping[str, float], most: float, assignment: str) -> Filled:
     columns = _columns(roster, ("student", "id"))
     points = next((row for row in roster.rows if normalized(row[0]) == CANVAS_POINTS), None)
-    wanted = normalized(assignment.replace("_", " "))
-    fitting = [name for name in columns if wanted in name.replace("_", " ")]
-    if len(fitting) > 1:
-        raise UsageError(f"{roster.path}: {len(fitting)} columns are called after {assignment}: rename all but one")
-    if fitting and points is None:
+    title = normalized(assignment.replace("_", " "))
+    matching = [name for name in columns if title in name.replace("_", " ")]
+    if len(matching) > 1:
+        raise UsageError(f"{roster.path}: {len(matching)} columns are named after {assignment}: rename all but one")
+    if matching and points is None:
         raise UsageError(f"{roster.path}: the row `Points Possible` is missing; export the gradebook from Canvas again")
-    column = columns[fitting[0]] if fitting else None
-    kept = [place for name, place in columns.items() if name in CANVAS_NAMES]
+    column = columns[matching[0]] if matching else None
+    name_columns = [index for name, index in columns.items() if name in CANVAS_NAMES]
     heading = assignment if column is None else roster.headings[column]
     if column is not None and points is not None:
         most = _number(points[column], roster)
@@ -121,20 +121,18 @@ def _canvas(roster: Roster, shares: Mapping[str, float], most: float, assignment
         if student.id in shares:
             marks[student.id] = cells[student.row], _points(shares[student.id] * most)
             cells[student.row] = marks[student.id][1]
-    rows = [[*(row[place] for place in kept), cell] for row, cell in zip(roster.rows, cells, strict=True)]
-    return [[*(roster.headings[place] for place in kept), heading], *rows], marks
+    rows = [[*(row[index] for index in name_columns), cell] for row, cell in zip(roster.rows, cells, strict=True)]
+    return [[*(roster.headings[index] for index in name_columns), heading], *rows], marks
 
 
 SYSTEMS = {"canvas": _canvas, "moodle": _moodle}
 
 
 def _columns(roster: Roster, needed: tuple[str, ...]) -> dict[str, int]:
-    columns = {normalized(heading): place for place, heading in enumerate(roster.headings)}
+    columns = {normalized(heading): index for index, heading in enumerate(roster.headings)}
     missing = [name for name in needed if name not in columns]
     if missing:
-        raise UsageError(
-            f"{roster.path}: the column {missing[0]!r} is missing; give the table that the system exported"
-        )
+        raise UsageError(f"{roster.path}: the column {missing[0]!r} is missing; use the table that the system exported")
     width = len(roster.headings)
     short = [number for number, row in enumerate(roster.rows, start=2) if len(row) < width]
     if short:
@@ -146,7 +144,7 @@ def _number(cell: str, roster: Roster) -> float:
     try:
         return float(cell.strip())
     except ValueError:
-        raise UsageError(f"{roster.path}: {cell!r} is no number of points") from None
+        raise UsageError(f"{roster.path}: {cell!r} is not a number of points") from None
 
 
 def _points(value: float) -> str:

@@ -1,8 +1,8 @@
-"""The table of students, as a system exports it: Moodle's grading worksheet, Canvas's gradebook, rosters in CSV.
+"""Reads a table of students that a system exported: Moodle's grading worksheet, Canvas's gradebook, or a CSV roster.
 
-The columns are those of Moodle's assign module (offline grading worksheet), Canvas's gradebook export, GitHub
-Classroom's `classroom_roster.csv`, Gradescope's roster and nbgrader's `db student import`; those of Blackboard's grade
-centre, Brightspace's grades (numbers and logins begin with `#`) and Sakai's `grades.csv` (its headings come third).
+It recognizes the columns of Moodle's offline grading worksheet, Canvas's gradebook export, GitHub Classroom's
+`classroom_roster.csv`, Gradescope's roster, nbgrader's `db student import`, Blackboard's grade centre, Brightspace's
+grades (numbers and logins start with `#`) and Sakai's `grades.csv` (the headings are in the third line).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pathlib import Path
 
 from autograder.exceptions import UsageError
 
-# What a column says of a student, by its heading in lower case.
+# The kind of identity in a column, by its heading in lower case.
 COLUMNS = {
     "identifier": "identifier",
     "id": "id",
@@ -38,21 +38,21 @@ COLUMNS = {
     "last name": "last",
     "status": "status",
 }
-# The first of these that a student has names the folder of the result.
+# The first of these kinds that a student has becomes the name of the result folder.
 NAMES_A_STUDENT = ("login", "number", "email", "identifier", "id", "name")
 # What a text may be that names a student, the most certain first.
 ANY_KIND = ("login", "number", "sis id", "email", "identifier", "id", "github", "name")
 LATE = re.compile(r"\d \w+ late\b")  # in Moodle's status: "Submitted for grading - 1 day 2 hours late"
 PART = re.compile(r"(\d{1,9}) (year|week|day|hour|min|sec)s?\b")  # of a duration, as Moodle's `format_time` writes it
 SECONDS = {"year": 31_536_000, "week": 604_800, "day": 86_400, "hour": 3_600, "min": 60, "sec": 1}
-TITLES = 3  # lines in which the headings may stand; the first ones may be a title
-PARTICIPANT = "participant "  # what Moodle writes before the number that it also puts into file names
-NOT_STUDENTS = ("points possible", "student, test")  # rows of Canvas
+MAX_TITLE_LINES = 3  # lines that may contain the headings; the first ones may be a title
+PARTICIPANT = "participant "  # Moodle's prefix of the number that it also puts in file names
+NOT_STUDENTS = ("points possible", "student, test")  # special rows of Canvas
 
 
 @dataclass(frozen=True)
 class Student:
-    """A student: the name in results, what is known of them as pairs of a kind and a text, and the number of their row.
+    """A student of the roster.
 
     Kinds are values of `COLUMNS`. Kind and text are normalized. Rows are counted from 0, without the headings. `late`
     says whether Moodle's table calls the submission late, and `late_by` by how many seconds, rounded down by Moodle.
@@ -67,7 +67,7 @@ class Student:
 
 @dataclass(frozen=True)
 class Roster:
-    """A table of students: the file, the students in its order, its headings, and all its rows as they are."""
+    """A table of students: its file, the students in order, the headings, and all rows unchanged."""
 
     path: Path
     students: tuple[Student, ...]
@@ -75,12 +75,12 @@ class Roster:
     rows: tuple[tuple[str, ...], ...]
 
     def find(self, keys: tuple[tuple[str, str], ...]) -> Student | None:
-        """Return the student whom keys of one kind mean: the first kind whose keys fit exactly one student."""
+        """Return the student identified by the first kind of key that matches exactly one student, or None."""
         for kind in dict.fromkeys(kind for kind, _ in keys):
-            wanted = {(kind, normalized(value)) for other, value in keys if other == kind}
-            fitting = [student for student in self.students if wanted & student.keys]
-            if len(fitting) == 1:
-                return fitting[0]
+            keys_of_kind = {(kind, normalized(value)) for other, value in keys if other == kind}
+            matching = [student for student in self.students if keys_of_kind & student.keys]
+            if len(matching) == 1:
+                return matching[0]
         return None
 
     def named(self, text: str) -> Student | None:
@@ -89,33 +89,33 @@ class Roster:
 
 
 def normalized(text: str) -> str:
-    """Return the text in Unicode's form NFKC, in one case, with single spaces."""
+    """Return the text in the Unicode form NFKC, case-folded, with single spaces."""
     return " ".join(unicodedata.normalize("NFKC", text).casefold().split())
 
 
 def read_roster(path: Path) -> Roster:
-    """Read a table of students: CSV in UTF-8, with headings in its first line.
+    """Read a table of students from a UTF-8 CSV file, with headings in one of its first lines.
 
-    Raises UsageError if it cannot be read, has no column that names students, or names one twice.
+    Raises UsageError if it cannot be read, has no column that identifies students, or contains a student twice.
     """
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             lines = [tuple(row) for row in csv.reader(file) if any(cell.strip() for cell in row)]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise UsageError(f"{path}: cannot be read as CSV in UTF-8: {error}") from None
+        raise UsageError(f"{path}: cannot be read as UTF-8 CSV: {error}") from None
     if not lines:
         raise UsageError(f"{path}: the table is empty")
-    first = next((place for place, line in enumerate(lines[:TITLES]) if set(_kinds(line)) & set(NAMES_A_STUDENT)), 0)
-    headings, *rows = lines[first:]
+    is_heading = [bool(set(_kinds(line)) & set(NAMES_A_STUDENT)) for line in lines[:MAX_TITLE_LINES]]
+    headings, *rows = lines[is_heading.index(True) if any(is_heading) else 0 :]
     kinds = _kinds(headings)
     if not set(kinds) & set(NAMES_A_STUDENT):
         known = ", ".join(sorted(COLUMNS))
-        raise UsageError(f"{path}: no column names the students; the headings that are known are {known}")
-    students = [found for place, row in enumerate(rows) if (found := _student(kinds, row, place)) is not None]
+        raise UsageError(f"{path}: no column identifies the students; the known headings are {known}")
+    students = [student for index, row in enumerate(rows) if (student := _student(kinds, row, index)) is not None]
     names = [student.id for student in students]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise UsageError(f"{path}: two students are called {', '.join(twice)}; give each a name or number of its own")
+    duplicates = sorted({name for name in names if names.count(name) > 1})
+    if duplicates:
+        raise UsageError(f"{path}: two students are called {', '.join(duplicates)}; give each a unique name or number")
     return Roster(path, tuple(students), headings, tuple(rows))
 
 
@@ -123,7 +123,7 @@ def _kinds(headings: tuple[str, ...]) -> list[str]:
     return [COLUMNS.get(normalized(heading), "") for heading in headings]
 
 
-def _student(kinds: list[str], row: tuple[str, ...], place: int) -> Student | None:
+def _student(kinds: list[str], row: tuple[str, ...], index: int) -> Student | None:
     cells = {kind: cell.strip() for kind, cell in zip(kinds, row, strict=False) if kind and cell.strip()}
     for kind in cells.keys() & {"number", "login"}:
         cells[kind] = cells[kind].removeprefix("#")
@@ -140,4 +140,4 @@ def _student(kinds: list[str], row: tuple[str, ...], place: int) -> Student | No
     status = next((part for part in cells.get("status", "").split(" - ") if LATE.search(part)), "")
     late_by = sum(int(count) * SECONDS[unit] for count, unit in PART.findall(status)) if status else None
     folder = name.replace("/", "-").replace("\0", "")
-    return Student(folder, frozenset(keys), place, bool(status), late_by or None) if name else None
+    return Student(folder, frozenset(keys), index, bool(status), late_by or None) if name else None

@@ -1,12 +1,11 @@
-"""What a chapter's notebook imports: `from autograder.notebook import check, drive, grade, ros`.
+"""The functions that a chapter's notebook imports: `from autograder.notebook import check, drive, grade, ros`.
 
-`ros()` switches ROS 2 on for the kernel. `drive(...)` lets a program of the workspace steer the simulated robot,
-faster than real time; `side_by_side(...)` compares drives. `check(...)` runs the visible checks. `grade(...)` stands in
-the locked cells. `source(...)` does for the kernel what `source install/setup.bash`
-does in a terminal; `simulator(...)` runs the simulator beside it for a while. `graph()` draws the nodes that run and
-their topics; `score(...)` compares one's own drives to a goal.
+`ros()` activates ROS 2 in the kernel. `drive(...)` lets a program from the workspace control the simulated robot,
+faster than real time, and `side_by_side(...)` compares drives. `check(...)` runs the visible checks. `grade(...)` is in
+the locked cells. `source(...)` is the kernel's equivalent of `source install/setup.bash`. `simulator(...)` runs the
+simulator in the background. `graph()` draws the running nodes and their topics. `score(...)` ranks a student's drives.
 
-Students' programs run in processes of their own, never in the kernel.
+Students' programs run in separate processes, never in the kernel.
 """
 
 from __future__ import annotations
@@ -61,15 +60,15 @@ def __getattr__(name: str) -> Any:
 
 
 def ros() -> None:
-    """Switch ROS 2 on for this kernel; after it, `import rclpy` works. Safe to run twice.
+    """Activate ROS 2 in this kernel, so that `import rclpy` works. Safe to call twice.
 
-    From then on, `%%writefile` never destroys what a student wrote in the editor (see `writefile`).
+    From then on, `%%writefile` never overwrites a student's changes from the editor (see `writefile`).
 
-    The kernel gets a ROS domain of its own, unless `ROS_DOMAIN_ID` names one: two notebooks, or two students on one
-    network, do not hear each other.
+    The kernel gets a separate ROS domain, unless `ROS_DOMAIN_ID` is set. Two notebooks, or two students on the same
+    network, therefore do not receive each other's messages.
 
     Raises:
-        RosError: there is no usable ROS 2; the message says how to fix it.
+        RosError: there is no usable ROS 2. The message says how to fix it.
     """
     if not grading():
         from IPython.core.getipython import get_ipython
@@ -79,13 +78,13 @@ def ros() -> None:
         writefile.register(get_ipython())
         # Where it is set, setuptools warns, and colcon shows a block "stderr" for a build without a fault.
         os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-    given = os.environ.get("ROS_DOMAIN_ID")
-    activate(domain=Domain().number if given is None else int(given))
+    domain_id = os.environ.get("ROS_DOMAIN_ID")
+    activate(domain=Domain().number if domain_id is None else int(domain_id))
     os.environ.update(LOGS_TO_STDOUT)
 
 
 def grade(assignment: str, group: str) -> NotGraded:
-    """Say that the hidden checks of `group` decide after the hand-in; nothing is graded in the kernel."""
+    """Say that the hidden checks of `group` run after submission. Nothing is graded in the kernel."""
     return NotGraded(
-        f"{assignment}: the hidden checks of “{group}” are run after you have handed in, outside this notebook."
+        f"{assignment}: the hidden checks of “{group}” run after you have submitted, outside this notebook."
     )

@@ -1,4 +1,4 @@
-"""Finds files of an answer that differ from the cells that write them, for `check`. The files count."""
+"""Finds files of an answer that differ from the cells that write them, for `check`. The grader uses the files."""
 
 from __future__ import annotations
 
@@ -15,54 +15,54 @@ from autograder.submission.intake.writefile import same_text, written_file
 
 
 def differences(assignment: str, workspace: Path, packages: Sequence[str]) -> tuple[str, ...]:
-    """Return a sentence for each file that its cell would write otherwise.
+    """Return a sentence for each file that differs from its cell.
 
-    The saved notebook may be older than the cells on the screen. So it is asked only about what no cell has written
-    since it was saved.
+    The saved notebook may be older than the cells on the screen. It is therefore only compared with files that no cell
+    has written since it was saved.
 
     Args:
         assignment: the name of the chapter.
-        workspace: the workspace, with `src`; the notebook lies beside it.
-        packages: the folders of `src` that are looked at.
+        workspace: the workspace, with `src`. The notebook is beside it.
+        packages: the folders of `src` to compare.
     """
     notebook = _notebook(workspace.resolve().parent, assignment)
     cells = {} if notebook is None else _texts(notebook)
     record = {PurePosixPath(name): value for name, value in read_record(workspace).items()}
     written = {path.relative_to("src"): value for path, value in record.items() if path.is_relative_to("src")}
-    found = []
+    sentences = []
     for path in sorted(p for p in cells.keys() | written.keys() if p.parts and p.parts[0] in packages):
         file, cell, last = workspace / "src" / path, cells.get(path), written.get(path)
         is_answered = cell is not None and STILL_TO_BE_WRITTEN not in cell
         if not file.is_file():
             if is_answered:
-                found.append(f"{SOURCE / path} is not there: run the cell that writes it.")
+                sentences.append(f"{SOURCE / path} is missing: run the cell that writes it.")
             continue
         text = text_of(file.read_bytes())
         if cell is not None and same_text(cell, text):
             continue
         if last is not None and last != digest(text):  # changed since a cell wrote it
             is_stub = cell is not None and not is_answered and digest(cell) == last
-            found += [] if is_stub else [differs(path)]
+            sentences += [] if is_stub else [differs(path)]
         elif is_answered and notebook is not None:
             is_stale = last is not None and notebook.stat().st_mtime <= file.stat().st_mtime
-            found += [] if is_stale else [differs(path)]
-    return tuple(found)
+            sentences += [] if is_stale else [differs(path)]
+    return tuple(sentences)
 
 
 def _notebook(folder: Path, assignment: str) -> Path | None:
-    """Return the assignment's notebook in a folder, under whatever name, or None."""
-    usual = folder / f"{assignment}.ipynb"
-    if usual.is_file():
-        return usual
-    like = [p for p in folder.iterdir() if is_notebook(p.name) and names_assignment(p.name, assignment)]
-    return like[0] if len(like) == 1 else None
+    """Return the assignment's notebook in a folder, even if it was renamed, or None."""
+    default = folder / f"{assignment}.ipynb"
+    if default.is_file():
+        return default
+    renamed = [p for p in folder.iterdir() if is_notebook(p.name) and names_assignment(p.name, assignment)]
+    return renamed[0] if len(renamed) == 1 else None
 
 
 def _texts(notebook: Path) -> dict[PurePosixPath, str]:
-    """Return what the cells of a notebook write below `ws/src`; the last cell that writes a file counts."""
+    """Return the files that the cells of a notebook write to `ws/src`. The last cell that writes a file counts."""
     try:
         cells = read_cells(notebook.read_bytes())
     except (OSError, ValueError):
         return {}
-    found = (written_file(cell["source"]) for cell in cells if cell["cell_type"] == "code")
-    return {path.relative_to(SOURCE): text for path, text in filter(None, found) if path.is_relative_to(SOURCE)}
+    files = (written_file(cell["source"]) for cell in cells if cell["cell_type"] == "code")
+    return {path.relative_to(SOURCE): text for path, text in filter(None, files) if path.is_relative_to(SOURCE)}

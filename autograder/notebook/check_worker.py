@@ -1,10 +1,10 @@
 """The trusted worker process of `drive` and `check`: builds the workspace and runs its programs in sandboxes.
 
-It does so with the code that grades submissions.
+It uses the same code as the grader.
 
 python -m autograder.notebook.check_worker REQUEST DESCRIPTOR
 
-The descriptor is an end of its line (`autograder.run.sandbox.line`), over which it gets built interface packages.
+The descriptor belongs to a socket (`autograder.run.sandbox.line`) from which it gets built interface packages.
 """
 
 from __future__ import annotations
@@ -32,16 +32,16 @@ from autograder.run.sandbox.tiers import Tier
 if TYPE_CHECKING:
     from autograder.run.workspace import Workspace
 
-SEED = 1  # of the visible checks' inputs
+SEED = 1  # for the inputs of visible checks
 
 
 def main() -> None:
-    """Run the request in the file that the command line names."""
+    """Run the request in the file from the command line."""
     request = json.loads(Path(sys.argv[1]).read_text())
     line.take(Connection(int(sys.argv[2])))
     restore_sigint()
     ros = activate()
-    from autograder.run.workspace import Workspace  # once ROS is switched on: it reaches rclpy, and so does what builds
+    from autograder.run.workspace import Workspace  # imports rclpy, so ROS must be active
 
     scratch, out = Path(request["scratch"]), Path(request["out"])
     home = scratch / "home"
@@ -49,8 +49,8 @@ def main() -> None:
     domain = 0 if current_tier() is Tier.BUBBLEWRAP else Domain().number
     workspace = Workspace(scratch / "ws", ros, home, domain=domain)
     shutil.copytree(request["source"], workspace.root / "src", ignore=layout.NOT_COPIED)
-    answer = VERBS[request["verb"]](workspace, out, **request["arguments"])
-    write_json(out / REPLY_FILE, answer)
+    reply = VERBS[request["verb"]](workspace, out, **request["arguments"])
+    write_json(out / REPLY_FILE, reply)
 
 
 def _drive(
@@ -74,7 +74,7 @@ def _drive(
     plan = published or {"types": {}, "steps": []}
     types = types_of(plan)
     if parameter_file:
-        path = workspace.scratch / "parameters.yaml"  # where the sandbox sees it
+        path = workspace.scratch / "parameters.yaml"  # visible in the sandbox
         path.write_text(parameter_file)
         options += ["--params-file", str(path)]
     arguments = ("--ros-args", *options) if options else ()
@@ -85,17 +85,17 @@ def _drive(
         ) as harness:
 
             def publish(state: State) -> bool:
-                """Publish what is planned for the end of the step that begins, as scans are; the drive goes on."""
+                """Publish the messages planned for the end of this step, like the scans. Never end the drive."""
                 for topic, message in messages_at(plan, types, state.time_ns + harness.tick_ns).items():
                     harness.publish(topic, message)
                 return False
 
-            done = drive(harness, from_json(simulation), seconds, until=publish)
+            driven = drive(harness, from_json(simulation), seconds, until=publish)
     except StudentError as error:
         return {"diagnosis": asdict(error.diagnosis)}
-    done.recording.save(out / RECORDING)
-    commands = [[c.seconds, c.message.linear.x, c.message.angular.z] for c in done.commands]
-    return {"diagnosis": asdict(OK), "output": done.output, "commands": commands}
+    driven.recording.save(out / RECORDING)
+    commands = [[c.seconds, c.message.linear.x, c.message.angular.z] for c in driven.commands]
+    return {"diagnosis": asdict(OK), "output": driven.output, "commands": commands}
 
 
 def _check(

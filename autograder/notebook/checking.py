@@ -1,4 +1,4 @@
-"""`check`: the visible checks of an assignment, plain and friendly in the notebook and on the terminal."""
+"""`check` runs the visible checks of an assignment and reports them in a notebook or terminal."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from autograder.suite import Outcome, suites
 from sim.grading import grading
 
 SYMBOLS = {Outcome.PASSED: "✔", Outcome.FAILED: "✘", Outcome.NOT_CHECKED: "○"}
-HIDDEN_CHECKS_HEADING = "After you hand in, {count} more checks judge, with inputs of their own:"
+HIDDEN_CHECKS_HEADING = "After you submit, {count} more checks run with their own inputs:"
 UNCHANGED = "Unchanged since {since}, so nothing was run."
 FAILED_BEFORE = "what failed before"
 INDENT = 'style="margin-left:2em"'
@@ -41,12 +41,12 @@ class Part:
 
 @dataclass(frozen=True)
 class CheckReport:
-    """The visible checks' outcome.
+    """The results of the visible checks.
 
-    `trouble` is what kept the package from being built or the node from running. `later` holds the titles of the checks
-    that judge the packages after they are handed in. `notices` are sentences about files that differ from their cells.
-    `part` is what was checked of the chapter, if not all. `since` is when the checks were run, if nothing has changed
-    and they were not run again.
+    `trouble` is the reason why the package could not be built or the node could not run. `later` are the titles of the
+    checks that run after submission. `notices` are sentences about files that differ from their cells. `part` is the
+    checked part of the chapter, or empty for the whole one. `since` is the time of the stored run, or empty if the
+    checks were run again.
     """
 
     assignment: str
@@ -64,7 +64,7 @@ class CheckReport:
 
     @property
     def summary(self) -> str:
-        """The count in words."""
+        """A sentence with the number of passed checks."""
         good = sum(line.outcome is Outcome.PASSED for line in self.lines)
         checked = ", ".join(filter(None, (self.assignment, self.part)))
         unchanged = f" {UNCHANGED.format(since=self.since)}" if self.since else ""
@@ -72,7 +72,7 @@ class CheckReport:
 
     @property
     def causes(self) -> tuple[Cause, ...]:
-        """The checks, each with those that did not pass because it did not."""
+        """The checks, each with the checks that did not pass because of it."""
         return causes(self.lines, "" if self.trouble is None else self.trouble.sentence)
 
     def __repr__(self) -> str:
@@ -117,15 +117,15 @@ def check(
 ) -> CheckReport | Notice:
     """Run the visible checks of a chapter, or of one exercise of it, on the packages of a workspace.
 
-    The code path is the grader's own: the packages are built by colcon and the node runs in a process of its own. A
-    result is kept while everything that it depends on is the same; the report says since when.
+    It uses the same code as the grader: colcon builds the packages, and the node runs in a separate process. A stored
+    result is reused while everything that it depends on is unchanged. The report then shows its time.
 
     Args:
         assignment: the chapter.
         workspace: a colcon workspace.
-        exercise: the number of an exercise, where the notebook has exercises.
-        step: the number of a step, where it has steps.
-        question: the number of a question, where it has questions.
+        exercise: the number of an exercise, if the notebook has exercises.
+        step: the number of a step, if it has steps.
+        question: the number of a question, if it has questions.
         fresh: whether to run the checks even if nothing has changed.
 
     Raises:
@@ -138,22 +138,22 @@ def check(
 
 
 def part_of(assignment: str, exercise: int | None, step: int | None, question: int | None) -> Part:
-    """Return the part of a chapter that is asked for by the number of an exercise, a step or a question, or all of it.
+    """Return the part of a chapter with the given number of an exercise, step or question, or the whole chapter.
 
     Raises:
-        UsageError: there is no such chapter or part, or two are asked for.
+        UsageError: the chapter or part does not exist, or two parts are given.
     """
     if assignment not in (known := suites.checkable_assignments()):
-        raise UsageError(f"there are no visible checks for {assignment!r}; there are for: {', '.join(known)}")
-    given = zip(KINDS, (exercise, step, question), strict=True)
-    asked = [(kind, number) for kind, number in given if number is not None]
-    if not asked:
+        raise UsageError(f"{assignment!r} has no visible checks; choose one of: {', '.join(known)}")
+    numbers = zip(KINDS, (exercise, step, question), strict=True)
+    chosen = [(kind, number) for kind, number in numbers if number is not None]
+    if not chosen:
         return Part(assignment)
-    if len(asked) > 1:
-        words = " and ".join(f"{kind} {number}" for kind, number in asked)
+    if len(chosen) > 1:
+        words = " and ".join(f"{kind} {number}" for kind, number in chosen)
         raise UsageError(f"{words} are two parts of {assignment}: ask for one at a time, or for the whole chapter")
-    there = exercises(assignment)
-    return Part(assignment, find(assignment, there, *asked[0]).name, there)
+    available = exercises(assignment)
+    return Part(assignment, find(assignment, available, *chosen[0]).name, available)
 
 
 def run_part(
@@ -164,14 +164,14 @@ def run_part(
     first: Sequence[str] = (),
     early: Callable[[CheckReport], None] | None = None,
 ) -> CheckReport:
-    """Run the checks of a part of a chapter, unless a result of the same inputs is kept.
+    """Run the checks of a part of a chapter, unless there is a stored result for the same inputs.
 
     Args:
-        part: what is checked.
+        part: the part to check.
         workspace: a colcon workspace.
         fresh: whether to run the checks even if nothing has changed.
-        first: ids of checks that are run before the others.
-        early: called with what became of those, while the others run.
+        first: ids of checks to run before the others.
+        early: called with the report of those while the others run.
 
     Raises:
         UsageError: there is no such workspace.
@@ -198,10 +198,10 @@ def run_part(
 
 
 def _report(part: Part, workspace: Path, answer: dict[str, Any], since: str = "") -> CheckReport:
-    """Return the report of a worker's answer. The cells are compared with the files as they are now."""
-    found, trouble = answer["diagnosis"], None
-    if found["kind"] != "ok":
-        trouble = Notice(found["sentence"], found["detail"], TROUBLE)
+    """Return the report of a worker's reply. The cells are compared with the current files."""
+    diagnosis, trouble = answer["diagnosis"], None
+    if diagnosis["kind"] != "ok":
+        trouble = Notice(diagnosis["sentence"], diagnosis["detail"], TROUBLE)
     lines = tuple(structure(CheckResult, result) for result in answer["checks"])
     path = layout.judged_later(part.assignment)
     later = json.loads(path.read_text(encoding="utf-8")) if path.is_file() and not part.name else ()
@@ -214,7 +214,7 @@ def _head(line: CheckResult) -> str:
 
 
 def _cause(cause: Cause) -> str:
-    """Return the HTML of a check, with what did not pass because of it folded below it."""
+    """Return the HTML of a check, with its consequences folded below it."""
     row = _row(cause.check)
     if cause.failed:
         rows = "".join(map(_row, cause.failed))
@@ -226,7 +226,7 @@ def _cause(cause: Cause) -> str:
 
 
 def _row(line: CheckResult) -> str:
-    # The colour stands beside the words: there is none that can be read on white as well as on black.
+    # The colour is beside the words, because no text colour is readable on both white and black.
     style = f"border-left: .5em solid {COLOURS[line.outcome]}; padding-left: .4em"
     mark = f'<span style="{style}">{SYMBOLS[line.outcome]} {line.outcome.text}</span>'
     row = f"<div>{mark} &nbsp;{html.escape(line.title)}</div>"

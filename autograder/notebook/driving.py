@@ -1,4 +1,4 @@
-"""`drive`: a program of the student's workspace steers the simulated robot; `side_by_side`: drives in one picture."""
+"""`drive` lets a program from the student's workspace control the simulated robot; `side_by_side` compares drives."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ Parameters = Mapping[str, object] | str | Path
 
 @dataclass(frozen=True, eq=False)
 class DriveReport:
-    """A drive; shown by the player, and as the picture of the robot's track where nothing can play.
+    """A drive. It is shown in the player, or as a picture of the robot's track if the player is not available.
 
     Attributes:
         recording: the run: times, poses, scans, collisions.
-        output: what the program logged and printed.
+        output: the program's log and printed output.
         commands: each command as (seconds, linear.x in m/s, angular.z in rad/s).
     """
 
@@ -59,7 +59,7 @@ class DriveReport:
 
     @property
     def collided_at(self) -> float | None:
-        """The time of the first collision in seconds, None without one."""
+        """The time of the first collision in seconds, or None."""
         rows = self.recording.collided.any(axis=1).nonzero()[0]
         return float(self.recording.times[rows[0]]) if len(rows) else None
 
@@ -73,7 +73,7 @@ class DriveReport:
 
     @property
     def player(self) -> Player:
-        """The run, to be played, with the gap to the nearest thing in time."""
+        """A player of the run, with the distance to the nearest obstacle over time."""
         from sim.view import Margin, Player
 
         gaps = self.recording.clearances.min(axis=1).tolist()
@@ -100,20 +100,20 @@ def drive(
     each_step: EachStep | None = None,
     workspace: str | Path = "ws",
 ) -> DriveReport | Notice:
-    """Build the workspace, let a program steer the robot, and show the track.
+    """Build the workspace, let a program control the robot, and show the track.
 
-    The program is the student's own `main()`, with real rclpy over DDS. It runs in its own process. Its ROS time is
+    The program is the student's own `main()` with the real rclpy over DDS. It runs in its own process. Its ROS time is
     stepped: a minute takes a second or two, and each run gives the same result.
 
     Args:
         package: the package in `ws/src`.
-        executable: its executable, as `ros2 run PACKAGE EXECUTABLE` names it.
-        world: a name of a world or of a ROS map, or a `sim.World`.
-        seconds: of ROS time.
-        faults: what is wrong with the lidar: "nan" (the beams straight ahead read nan), "dead" (no scan after 10 s), or
-            a `sim.Faults`.
-        seed: of the simulator's noise.
-        name: what the node is called, instead of the name in its code.
+        executable: the executable, as in `ros2 run PACKAGE EXECUTABLE`.
+        world: the name of a world or a ROS map, or a `sim.World`.
+        seconds: duration in ROS time.
+        faults: faults of the lidar: "nan" (the beams straight ahead read nan), "dead" (no scan after 10 s), or a
+            `sim.Faults`.
+        seed: seed of the simulator's noise.
+        name: a node name that replaces the one in the code.
         parameters: values by name, or the path of a parameter file.
         each_step: what else is published: a function that is called for each 0.1 s of the drive, before it begins,
             with the seconds since its start (0.1, 0.2, ...). It returns messages by topic, such as
@@ -121,7 +121,7 @@ def drive(
         workspace: the colcon workspace.
 
     Returns:
-        The drive, or a notice that says in a sentence why the robot could not move.
+        The drive, or a notice with the reason why the robot could not move.
 
     Raises:
         UsageError: there is no such world, fault, parameter file or workspace, or what `each_step` returns cannot be
@@ -151,10 +151,10 @@ def drive(
 
 
 def side_by_side(drives: Mapping[str, DriveReport | Notice]) -> Picture | Notice:
-    """Show the tracks of drives next to each other, each under its title; or the first notice among them.
+    """Show the tracks of drives next to each other, each with its title, or the first notice among them.
 
     Args:
-        drives: what `drive` returned, by title; at least one.
+        drives: results of `drive` by their titles, at least one.
     """
     from matplotlib.figure import Figure
 
@@ -180,7 +180,7 @@ def _faults(faults: str | Faults | None) -> Faults:
     if isinstance(faults, Faults):
         return faults
     if faults not in FAULTS:
-        raise UsageError(f"there is no fault {faults!r}; there are: {', '.join(FAULTS)}, or a sim.Faults of your own")
+        raise UsageError(f"unknown fault {faults!r}: use {', '.join(FAULTS)}, or your own sim.Faults")
     return FAULTS[faults]
 
 
@@ -191,7 +191,7 @@ def _parameter_file(parameters: Parameters) -> str:
             return yaml.safe_dump({"/**": {"ros__parameters": dict(parameters)}})
         except yaml.representer.RepresenterError as error:
             kind = type(error.args[-1]).__name__
-            raise UsageError(f"a parameter is a bool, int, float, str or a list of these, not a {kind}") from None
+            raise UsageError(f"a parameter must be a bool, int, float, str or a list of these, not {kind}") from None
     if not Path(parameters).is_file():
-        raise UsageError(f"there is no parameter file {parameters}: give its path from the notebook's folder")
+        raise UsageError(f"parameter file {parameters} not found: give its path relative to the notebook's folder")
     return Path(parameters).read_text()

@@ -1,4 +1,4 @@
-"""`graph`: the running system as a picture: its nodes and the topics between them, by ROS's own graph."""
+"""`graph` draws the ROS graph of the running system: its nodes and the topics between them."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from autograder.ros.discovery import announcing_often
 from sim.grading import grading
 
 HIDDEN_TOPICS = ("/rosout", "/parameter_events", "/clock")
-"""Topics that nearly every node has, which would hide the others."""
+"""Topics of nearly every node, which would clutter the drawing."""
 
-STABLE_SECONDS = 1.0  # real time without a change, after which discovery is over
-ROW, NODE, TOPIC, GAP = 46, 190, 210, 110  # pixels: the height of a row, the widths of boxes, the way between columns
+STABLE_SECONDS = 1.0  # real time without a change until discovery counts as finished
+ROW, NODE, TOPIC, GAP = 46, 190, 210, 110  # pixels: row height, box widths, space between columns
 
 STYLE = """
 .ros-graph { font: 13px system-ui, sans-serif; max-width: 100%; }
@@ -28,7 +28,7 @@ STYLE = """
 
 @dataclass(frozen=True)
 class Graph:
-    """Who publishes, as pairs of a node and a topic, and who subscribes, as pairs of a topic and a node."""
+    """A ROS graph: its publishers as pairs (node, topic), and its subscriptions as pairs (topic, node)."""
 
     nodes: tuple[str, ...]
     topics: dict[str, str]
@@ -41,7 +41,7 @@ class Graph:
         return "\n".join([f"{len(self.nodes)} nodes: {', '.join(self.nodes)}", *arrows])
 
     def _repr_html_(self) -> str:
-        """Return a drawing: publishers, topics, subscribers, from left to right. A node may be at both ends."""
+        """Return a drawing with publishers, topics and subscribers from left to right. A node may be on both sides."""
         left = sorted({node for node, _ in self.published} | (set(self.nodes) - {node for _, node in self.subscribed}))
         right = sorted({node for _, node in self.subscribed})
         topics = sorted(self.topics)
@@ -65,14 +65,14 @@ class Graph:
 
 
 def graph(seconds: float = 10.0) -> Graph | Notice:
-    """Draw the nodes that run now, and the topics between them.
+    """Draw the running nodes and the topics between them.
 
     Args:
-        seconds: how long to look at most. The picture is drawn as soon as there is a node and the graph has
-            not changed for a second.
+        seconds: maximum time to wait. The graph is drawn as soon as there is a node and the graph has not changed for a
+            second.
 
     Raises:
-        ModuleNotFoundError: ROS is not on; call `ros()` first.
+        ModuleNotFoundError: ROS is not active. Call `ros()` first.
     """
     if grading():
         return Notice("The graph is not drawn while the notebook is graded.")
@@ -91,7 +91,7 @@ def graph(seconds: float = 10.0) -> Graph | Notice:
 
 
 def _wait_until_stable(observer: Any, seconds: float) -> Graph:
-    """Read the graph until it has not changed for a while, or the time is over."""
+    """Read the graph until it has not changed for `STABLE_SECONDS`, or until `seconds` have passed."""
     end = time.monotonic() + seconds
     seen, since = _read_graph(observer), time.monotonic()
     while time.monotonic() < min(end, since + STABLE_SECONDS):
@@ -103,17 +103,17 @@ def _wait_until_stable(observer: Any, seconds: float) -> Graph:
 
 
 def _read_graph(observer: Any) -> Graph:
-    """Return the graph as it is now, without hidden nodes, whose names begin with an underscore."""
+    """Return the current graph without hidden nodes, whose names start with an underscore."""
     topics = {name: kinds[0] for name, kinds in observer.get_topic_names_and_types() if name not in HIDDEN_TOPICS}
     published = {(_name(end), topic) for topic in topics for end in observer.get_publishers_info_by_topic(topic)}
     subscribed = {(topic, _name(end)) for topic in topics for end in observer.get_subscriptions_info_by_topic(topic)}
     nodes = {f"{space.rstrip('/')}/{name}" for name, space in observer.get_node_names_and_namespaces()}
-    shown = tuple(sorted(node for node in nodes if not node.rpartition("/")[2].startswith("_")))
+    visible = tuple(sorted(node for node in nodes if not node.rpartition("/")[2].startswith("_")))
     return Graph(
-        shown,
+        visible,
         topics,
-        frozenset(pair for pair in published if pair[0] in shown),
-        frozenset(pair for pair in subscribed if pair[1] in shown),
+        frozenset(pair for pair in published if pair[0] in visible),
+        frozenset(pair for pair in subscribed if pair[1] in visible),
     )
 
 

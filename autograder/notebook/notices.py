@@ -1,4 +1,4 @@
-"""Sentences for a student, shown plainly in a notebook and on a terminal."""
+"""Messages for students, shown without a traceback in a notebook or terminal."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ INFO, TROUBLE = "#0072b2", "#d55e00"
 
 @dataclass(frozen=True)
 class Notice:
-    """A sentence, and lines of output that belong to it; a calm box in a notebook, no traceback."""
+    """A sentence with optional lines of output, shown as a box in a notebook."""
 
     sentence: str
     detail: str = ""
@@ -26,10 +26,10 @@ class Notice:
 
 
 class NotGraded(Notice):
-    """What a locked grade cell says outside of grading.
+    """The output of a locked grade cell outside of grading.
 
-    Its text form is 0.0. nbgrader takes a cell's text for its points, and gives full points to a text that is no
-    number: so its "Validate" button and a plain `nbgrader autograde` give no credit.
+    Its text form is 0.0. nbgrader reads a cell's text as its points and gives full points if the text is not a number.
+    With 0.0, its "Validate" button and a plain `nbgrader autograde` give no points.
     """
 
     def __repr__(self) -> str:

@@ -1,7 +1,7 @@
-"""What a drive publishes besides the simulator: messages that a function of the notebook gives for each step.
+"""Additional messages of a drive, which a function in the notebook returns for each step.
 
-The function runs in the notebook's kernel, before the drive: the process that drives runs no code of a notebook. So it
-knows the time, and not what the robot does. Its messages travel as the bytes that ROS sends.
+The function runs in the notebook's kernel before the drive, because the driving process must not run a notebook's code.
+It therefore knows the time, but not what the robot does. Its messages are sent as serialized ROS messages.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from typing import Any
 
 from autograder.exceptions import UsageError
 
-STEP_SECONDS = 0.1  # of ROS time, between two calls: the simulator's scans come at the same instants
-TAKEN = ("/scan", "/odom", "/clock", "/cmd_vel")  # topics of the simulator and of the program that steers
+STEP_SECONDS = 0.1  # of ROS time between two calls, at the instants of the simulator's scans
+TAKEN = ("/scan", "/odom", "/clock", "/cmd_vel")  # topics of the simulator and of the controlling program
 _TOPIC = re.compile(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
 
 EachStep = Callable[[float], "Mapping[str, Any] | None"]
-"""Gets the seconds since the start, and returns the messages to publish then, by topic, or None for no message."""
+"""Takes the seconds since the start, and returns the messages to publish by topic, or None."""
 
 
 def planned(each_step: EachStep, seconds: float, workspace: Path) -> dict[str, Any]:
@@ -29,11 +29,11 @@ def planned(each_step: EachStep, seconds: float, workspace: Path) -> dict[str, A
 
     Args:
         each_step: the function.
-        seconds: of ROS time, the length of the drive.
+        seconds: the length of the drive in ROS time.
         workspace: the colcon workspace of the program.
 
     Raises:
-        UsageError: what it returned cannot be published. The message says when, and what to do.
+        UsageError: the returned value cannot be published. The message says when it was returned and what to do.
     """
     from rclpy.serialization import serialize_message
 
@@ -64,7 +64,7 @@ def types_of(plan: Mapping[str, Any]) -> dict[str, type]:
 
 
 def messages_at(plan: Mapping[str, Any], types: Mapping[str, type], time_ns: int) -> dict[str, Any]:
-    """Return the messages of a plan for an instant of the drive, in ns since its start; none between two steps."""
+    """Return the messages of a plan for an instant, in ns since the start. There are none between two steps."""
     from rclpy.serialization import deserialize_message
 
     number, rest = divmod(time_ns, round(STEP_SECONDS * 1e9))
@@ -75,7 +75,7 @@ def messages_at(plan: Mapping[str, Any], types: Mapping[str, type], time_ns: int
 def _type_of(topic: str, message: Any, workspace: Path) -> str:
     """Return the ROS name of a message's type. Raises UsageError if it cannot be published on this topic."""
     if not _TOPIC.fullmatch(topic):
-        raise UsageError(f"each_step names the topic {topic!r}, which is no name for a topic")
+        raise UsageError(f"each_step names the topic {topic!r}, which is not a valid topic name")
     if topic in TAKEN:
         raise UsageError(f"each_step cannot publish on {topic}: the simulator and your program use it")
     package, _, _ = type(message).__module__.partition(".")

@@ -1,4 +1,4 @@
-"""`score`: how well a drive found the goal of its world, and the table of one's own drives so far."""
+"""`score` rates how well a drive reached the goal of its world, and shows a table of the student's drives."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from autograder.notebook.simulator_session import SimulatorSession
 from autograder.result.model import write_json
 from sim import Recording
 
-FILE = Path("scores.json")  # nobody else reads it
+FILE = Path("scores.json")  # used only by this module
 COLUMNS = ("", "run", "goal", "driven", "nearest thing")
 
 
 @dataclass(frozen=True)
 class Score:
-    """What a drive achieved.
+    """The score of a drive.
 
     Attributes:
         world: the world's name.
-        run: what the student calls the run.
-        arrived: when the robot's centre reached the goal, in seconds; None if it did not.
-        left: how far it was from the goal when it was nearest, in metres; 0 if it arrived.
-        metres: how far it drove, until it arrived or the drive was over.
-        margin: the smallest gap between its edge and anything, in metres, until then.
+        run: the student's name for the run.
+        arrived: time at which the robot's centre reached the goal, in seconds; None if it did not.
+        left: smallest distance to the goal, in metres; 0 if it arrived.
+        metres: distance driven until it arrived or the drive ended.
+        margin: smallest distance between the robot's edge and an obstacle until then, in metres.
     """
 
     world: str
@@ -42,13 +42,13 @@ class Score:
 
     @property
     def rank(self) -> tuple[bool, bool, float]:
-        """The sort key, smallest first: arrival, then no collision, then the time or the distance that is left."""
+        """The sort key, smallest first: arrival, then no collision, then the time or the remaining distance."""
         touched = self.margin <= 0.0
         return (True, touched, self.left) if self.arrived is None else (False, touched, self.arrived)
 
     @property
     def cells(self) -> tuple[str, str, str, str]:
-        """The score in words."""
+        """The score as the cells of a table row."""
         goal = f"{self.left:.1f} m away" if self.arrived is None else f"after {self.arrived:.1f} s"
         margin = "touched" if self.margin <= 0.0 else f"{self.margin:.2f} m"
         return self.run, goal, f"{self.metres:.1f} m", margin
@@ -56,7 +56,7 @@ class Score:
 
 @dataclass(frozen=True)
 class ScoreTable:
-    """One's own drives in a world, the best one first, and the newest of them."""
+    """The student's drives in a world, best first, and the newest of them."""
 
     scores: tuple[Score, ...]
     newest: Score
@@ -80,39 +80,39 @@ class ScoreTable:
 
 
 def score(drive: DriveReport | SimulatorSession | Notice, run: str = "") -> ScoreTable | Notice:
-    """Add a drive to the table of one's own drives in that world, and show the table.
+    """Add a drive to the table of drives in its world, and show the table.
 
     Args:
-        drive: what `drive(...)` returned, or what `simulator(...)` has recorded, in a world with a goal.
-        run: a name for the run; "run 3" and so on by default.
+        drive: a result of `drive(...)`, or a recording of `simulator(...)`, in a world with a goal.
+        run: a name for the run. The default is "run 3" and so on.
 
     Returns:
-        The table, or the notice that came instead of a drive.
+        The table, or the notice if `drive` is one.
 
     Raises:
-        UsageError: the world has no goal, or the file holds no scores.
+        UsageError: the world has no goal, or the file does not contain scores.
     """
     if isinstance(drive, Notice):
         return drive
     if drive.recording is None:
         return Notice("There is no run to score.")
-    kept = _read()
-    newest = score_of(drive.recording, run or f"run {len(kept) + 1}")
-    kept.append(newest)
-    write_json(FILE, [asdict(each) for each in kept])
+    scores = _read()
+    newest = score_of(drive.recording, run or f"run {len(scores) + 1}")
+    scores.append(newest)
+    write_json(FILE, [asdict(each) for each in scores])
     return ScoreTable(
-        tuple(sorted((each for each in kept if each.world == newest.world), key=lambda s: s.rank)), newest
+        tuple(sorted((each for each in scores if each.world == newest.world), key=lambda s: s.rank)), newest
     )
 
 
 def score_of(recording: Recording, run: str) -> Score:
-    """Return the score of the way to the first goal, of that robot which did best.
+    """Return the score of the best robot on the way to the first goal.
 
     Raises UsageError if the world has no goal.
     """
     world = recording.simulation.world
     if not world.goals:
-        raise UsageError(f"the world {world.name!r} has no goal: drive in another one, such as 'maze'")
+        raise UsageError(f"the world {world.name!r} has no goal: use another one, such as 'maze'")
     return min((_of_robot(recording, run, robot) for robot in range(recording.poses.shape[1])), key=lambda s: s.rank)
 
 
@@ -120,12 +120,12 @@ def _of_robot(recording: Recording, run: str, robot: int) -> Score:
     world = recording.simulation.world
     goal, track = world.goals[0], recording.poses[:, robot, :2]
     gaps = np.hypot(*(track - (goal.x, goal.y)).T) - goal.radius
-    there = gaps <= 0.0
-    end = int(np.argmax(there)) if there.any() else len(track) - 1
+    in_goal = gaps <= 0.0
+    end = int(np.argmax(in_goal)) if in_goal.any() else len(track) - 1
     return Score(
         world=world.name,
         run=run,
-        arrived=round(float(recording.times[end]), 2) if there.any() else None,
+        arrived=round(float(recording.times[end]), 2) if in_goal.any() else None,
         left=round(max(0.0, float(gaps.min())), 2),
         metres=round(float(np.hypot(*np.diff(track[: end + 1], axis=0).T).sum()), 2),
         margin=0.0
@@ -140,4 +140,4 @@ def _read() -> list[Score]:
     try:
         return [Score(**entry) for entry in json.loads(FILE.read_text(encoding="utf-8"))]
     except (ValueError, TypeError) as error:
-        raise UsageError(f"{FILE}: holds no scores ({error}); remove the file to begin a new table") from None
+        raise UsageError(f"{FILE} does not contain scores ({error}): delete the file to start a new table") from None

@@ -1,4 +1,4 @@
-"""`simulator`: simulates robots in a process of their own, in real time, while other programs talk to them over ROS."""
+"""`simulator` simulates robots in a separate process, in real time. Other programs communicate with them over ROS."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from sim.recording import Recording, load_recording
 if TYPE_CHECKING:
     from sim.view import Player
 
-READY_SECONDS = 180.0  # real time: the first simulation on a machine compiles the engine, on a busy one for a minute
+READY_SECONDS = 180.0  # real time: the first simulation compiles the engine, which takes a minute on a busy machine
 
 
 class SimulatorSession:
-    """What the robots did while they were simulated; the track is there once the block is over."""
+    """A recording of the simulated robots. The track is available after the block."""
 
     def __init__(self) -> None:
         self.recording: Recording | None = None
 
     @property
     def track(self) -> Player | Notice:
-        """The robots' tracks: the player, and a picture where nothing can play."""
+        """The robots' tracks, as a player or as a picture."""
         if self.recording is None:
             return Notice("The robot has not been simulated yet.")
         from sim.view import Player
@@ -43,15 +43,15 @@ class SimulatorSession:
 def simulator(
     world: str = "empty_room", speed: float = 1.0, robots: Sequence[str] = ("",)
 ) -> Iterator[SimulatorSession]:
-    """Simulate robots in a world while the block runs: /scan, /odom and /clock come from it, /cmd_vel moves a robot.
+    """Simulate robots while the block runs. The simulator publishes /scan, /odom and /clock and obeys /cmd_vel.
 
-    The simulator is a program of its own, as on a real robot. Its log is printed in the cell. The robots have the size
-    of the one that `drive` has.
+    The simulator is a separate program, like a real robot. Its log is printed in the cell. The robots are as large as
+    in `drive`.
 
     Args:
-        world: its name.
-        speed: simulated seconds in a second of real time.
-        robots: the namespaces of the robots, one robot each; "" is a robot without a namespace.
+        world: name of the world.
+        speed: simulated seconds per second of real time.
+        robots: the namespace of each robot; "" means no namespace.
 
     Raises:
         UsageError: there is no such world.

@@ -1,7 +1,7 @@
-"""`source`: what a terminal's `source install/setup.bash` does, for a notebook's kernel that already runs.
+"""`source` is the equivalent of `source install/setup.bash` for a notebook's running kernel.
 
-The loader of a running process searches the folders that it knew at its start. So the libraries of a sourced package
-are loaded by their paths, at the moment in which Python first asks for the package's compiled part.
+The dynamic loader of a running process only searches the folders that it knew at its start. The libraries of a sourced
+package are therefore loaded by their paths when Python first imports the package's compiled part.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from autograder.ros.environment import site_packages
 from sim.grading import grading
 
 KINDS = ("msg", "srv", "action")
-NOT_WHILE_GRADING = "The workspace is built and used after the notebook has been executed, outside of it."
+NOT_WHILE_GRADING = "The workspace is built and used outside the notebook, after it has been executed."
 
 
 def source(workspace: str | Path = "ws") -> Notice:
     """Let this kernel, and the programs that it starts, use a built workspace.
 
-    After it, the workspace's packages can be imported and found. Call it again after another build. A kernel that has
-    loaded an interface cannot load its new form; the notice says so then.
+    Afterwards, the workspace's packages can be imported and found. Call it again after another build. A kernel that has
+    loaded an interface cannot load a new version of it. In that case, the notice says so.
 
     Args:
         workspace: a colcon workspace after `colcon build`.
@@ -53,21 +53,21 @@ def source(workspace: str | Path = "ws") -> Notice:
     importlib.invalidate_caches()
     stale = [prefix.name for prefix in prefixes if _FINDER.is_stale(prefix)]
     if stale:
-        sentence = f"This kernel still holds the old {', '.join(stale)}: choose Kernel, Restart, and run from the top."
+        sentence = f"This kernel still uses the old {', '.join(stale)}: choose Kernel, Restart, and run from the top."
         return Notice(sentence, colour=TROUBLE)
     return Notice(f"This kernel can use {', '.join(prefix.name for prefix in prefixes)}.")
 
 
 class _Libraries(MetaPathFinder):
-    """Finds no module; loads the libraries of a sourced package before its compiled part is imported.
+    """Loads the libraries of a sourced package before its compiled part is imported. It does not find modules itself.
 
     Attributes:
-        prefixes: where each sourced package is installed.
+        prefixes: the install prefix of each sourced package.
     """
 
     def __init__(self) -> None:
         self.prefixes: dict[str, Path] = {}
-        self._loaded: dict[str, str] = {}  # the interfaces that a package had when its libraries were loaded
+        self._loaded: dict[str, str] = {}  # a fingerprint of each package's interfaces when its libraries were loaded
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
@@ -80,24 +80,24 @@ class _Libraries(MetaPathFinder):
         return None
 
     def is_stale(self, prefix: Path) -> bool:
-        """Return whether this process has loaded other interfaces of a package than are installed now."""
+        """Return whether this process has loaded a different version of a package's interfaces than is installed."""
         return self._loaded.get(prefix.name, fingerprint := _fingerprint(prefix)) != fingerprint
 
-    def _load(self, library: Path, wanted_by: tuple[str, ...] = ()) -> None:
-        """Load a library, after those of sourced packages that it needs.
+    def _load(self, library: Path, required_by: tuple[str, ...] = ()) -> None:
+        """Load a library, after the libraries of sourced packages that it needs.
 
-        One that cannot be loaded is left to the import that follows, which says what is wrong.
+        If it cannot be loaded, the subsequent import raises the error.
         """
         try:
             ctypes.CDLL(str(library))
         except OSError as error:
             missing = str(error).partition(":")[0]  # "libNAME.so: cannot open shared object file: ..."
-            found = next((path for path in self._places(missing) if path.is_file()), None)
-            if found is not None and missing not in wanted_by:
-                self._load(found, (*wanted_by, missing))
-                self._load(library, (*wanted_by, missing))
+            dependency = next((path for path in self._candidates(missing) if path.is_file()), None)
+            if dependency is not None and missing not in required_by:
+                self._load(dependency, (*required_by, missing))
+                self._load(library, (*required_by, missing))
 
-    def _places(self, name: str) -> list[Path]:
+    def _candidates(self, name: str) -> list[Path]:
         return [] if "/" in name else [prefix / "lib" / name for prefix in self.prefixes.values()]
 
 
@@ -105,19 +105,19 @@ _FINDER = _Libraries()
 
 
 def _prefixes(workspace: str | Path) -> list[Path]:
-    """Return where each package of a workspace is installed."""
+    """Return the install prefix of each package of a workspace."""
     root = Path(workspace).resolve()
     if not root.is_dir():
-        raise UsageError(f"there is no folder {workspace}: run this from the assignment's folder, where ws is")
+        raise UsageError(f"there is no folder {workspace}: run this in the assignment's folder, which contains ws")
     install = root / "install"
-    found = sorted(path for path in install.iterdir() if (path / "share").is_dir()) if install.is_dir() else []
-    if not found:
-        raise UsageError(f"{workspace} has nothing built in it: run colcon build in {workspace}, and read what it says")
-    return found
+    prefixes = sorted(path for path in install.iterdir() if (path / "share").is_dir()) if install.is_dir() else []
+    if not prefixes:
+        raise UsageError(f"{workspace} has not been built: run colcon build in {workspace}, and read its output")
+    return prefixes
 
 
 def _fingerprint(prefix: Path) -> str:
-    """Return a digest of a package's installed interfaces, by name and text."""
+    """Return a digest of the names and texts of a package's installed interfaces."""
     digest = hashlib.sha256()
     for kind in KINDS:
         for path in sorted((prefix / "share" / prefix.name / kind).glob(f"*.{kind}")):
@@ -126,5 +126,5 @@ def _fingerprint(prefix: Path) -> str:
 
 
 def _put_first(variable: str, paths: Sequence[Path]) -> None:
-    kept = [part for part in os.environ.get(variable, "").split(os.pathsep) if part and Path(part) not in paths]
-    os.environ[variable] = os.pathsep.join([*map(str, paths), *kept])
+    others = [part for part in os.environ.get(variable, "").split(os.pathsep) if part and Path(part) not in paths]
+    os.environ[variable] = os.pathsep.join([*map(str, paths), *others])

@@ -1,6 +1,6 @@
-"""`shell` and `running`: commands in a notebook as in a terminal in which the workspace has been sourced.
+"""`shell` and `running` run commands in a notebook as in a terminal with a sourced workspace.
 
-A cell must end, and so does what it starts: `running` presses Ctrl-C when its block is over.
+A cell must end, and so must the programs that it starts: `running` sends Ctrl-C at the end of its block.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from autograder.submission.exercise_stubs import explain
 from sim.grading import grading
 
 NOT_WHILE_GRADING = "Commands are not run while the notebook is graded."
-STOP_SECONDS = 30.0  # real time for what Ctrl-C ends; `ros2 launch` itself gives its nodes 10
+STOP_SECONDS = 30.0  # real time for a command to end after Ctrl-C; `ros2 launch` itself gives its nodes 10
 _STEP = 0.05
 _BUILD = re.compile(r"\bcolcon\b[^|;&]*\bbuild\b(?:[^|;&]*--packages-select(?P<packages>(?: +[\w.]+)+))?")
 _SOURCED = '[ ! -f "$0" ] || . "$0" || exit; eval "$1"'
@@ -32,12 +32,12 @@ _SOURCED = '[ ! -f "$0" ] || . "$0" || exit; eval "$1"'
 def shell(command: str, *, seconds: float = 600.0, workspace: str | Path = "ws") -> None:
     """Run a command to its end and print its output.
 
-    A build of packages whose files are still to be written is not run: their names are printed instead.
+    A build is not run if its packages contain unsolved exercises. Their names are printed instead.
 
     Args:
         command: as typed in a terminal, in the assignment's folder.
-        seconds: after so long, Ctrl-C is pressed, and a line says so.
-        workspace: sourced first, once it has been built.
+        seconds: time after which Ctrl-C is sent, with a message.
+        workspace: the workspace to source first, if it has been built.
 
     Raises:
         UsageError: there is no such workspace.
@@ -60,13 +60,13 @@ def shell(command: str, *, seconds: float = 600.0, workspace: str | Path = "ws")
 def running(
     command: str, *, until: str | Sequence[str] = "", seconds: float = 30.0, workspace: str | Path = "ws"
 ) -> Iterator[None]:
-    """Run a command while the block runs; print its output, and press Ctrl-C in the end.
+    """Run a command while the block runs. Print its output, and send Ctrl-C at the end.
 
     Args:
         command: as typed in a terminal, in the assignment's folder.
-        until: a text, or several; the block begins once the command has printed them all, or has ended.
-        seconds: after so long without them, the block begins all the same, and a line says what was not printed.
-        workspace: sourced first, once it has been built.
+        until: one or more texts. The block starts when the command has printed all of them, or has ended.
+        seconds: time after which the block starts anyway, with a message about the missing texts.
+        workspace: the workspace to source first, if it has been built.
 
     Raises:
         UsageError: there is no such workspace.
@@ -76,7 +76,7 @@ def running(
         yield
         return
     texts = [until] if isinstance(until, str) else until
-    # All programs of the block announce themselves often: `ros2 node list` then finds them all within a second.
+    # All programs in the block announce themselves often, so that `ros2 node list` finds them within a second.
     with announcing_often(), _Terminal(command, Path(workspace)) as terminal:
         terminal.wait(lambda: all(text in terminal.output() for text in texts), seconds)
         terminal.show()
@@ -90,7 +90,7 @@ def running(
 
 
 def _unwritten(command: str, workspace: Path) -> str:
-    """Return what is to be said instead of a colcon build that must fail, because a file holds an exercise's stub."""
+    """Return a message instead of a colcon build that must fail because a file still contains an exercise's stub."""
     if not (build := _BUILD.search(command)):
         return ""
     source = workspace / "src"
@@ -100,14 +100,14 @@ def _unwritten(command: str, workspace: Path) -> str:
 
 
 class _Terminal:
-    """A command in a session of its own, which writes to a file: a full pipe could hold it up."""
+    """A command in a separate session. It writes to a file, because a full pipe could block it."""
 
     def __init__(self, command: str, workspace: Path) -> None:
         if not workspace.is_dir():
-            raise UsageError(f"there is no folder {workspace}: run this from the assignment's folder")
+            raise UsageError(f"there is no folder {workspace}: run this in the assignment's folder")
         self._file = tempfile.TemporaryFile()  # noqa: SIM115  # closed by __exit__
         self._shown = 0
-        # With this variable, a build prints warnings about byte code that look like errors of the package.
+        # With this variable, a build prints byte-code warnings that look like errors in the package.
         inherited = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
         path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
         self._process = subprocess.Popen(
@@ -129,21 +129,21 @@ class _Terminal:
 
     @property
     def runs(self) -> bool:
-        """Whether the command has not ended."""
+        """Whether the command is still running."""
         return self._process.poll() is None
 
     def output(self) -> str:
-        """Return all that the command has printed so far."""
+        """Return the command's output so far."""
         return os.pread(self._file.fileno(), os.fstat(self._file.fileno()).st_size, 0).decode(errors="replace")
 
     def show(self) -> None:
-        """Print what has not been printed yet."""
+        """Print the new output."""
         text = self.output()
         print(text[self._shown :], end="", flush=True)
         self._shown = len(text)
 
     def wait(self, condition: Callable[[], bool], seconds: float) -> None:
-        """Wait for a condition or the command's end, at most so long."""
+        """Wait for a condition or the command's end, for at most `seconds`."""
         deadline = time.monotonic() + seconds
         while not condition() and time.monotonic() < deadline:
             try:
@@ -153,7 +153,7 @@ class _Terminal:
             return
 
     def end(self) -> None:
-        """Press Ctrl-C if the command still runs; print the rest, and how it ended if it failed by itself."""
+        """Send Ctrl-C if the command is still running. Print the rest of its output, and its status if it failed."""
         pressed = self.runs
         if pressed:
             self._signal(signal.SIGINT)
@@ -166,7 +166,7 @@ class _Terminal:
             print(f"[exit status {status}]")
 
     def _signal(self, number: signal.Signals) -> None:
-        """Signal the whole session, as a terminal does, if it has not ended."""
+        """Send a signal to the whole session, as a terminal does, unless it has ended."""
         try:
             os.killpg(self._process.pid, number)
         except ProcessLookupError:

@@ -1,4 +1,4 @@
-"""Starts a trusted worker for a notebook's kernel. It gets its request as JSON, and its reply is files."""
+"""Starts a trusted worker for a notebook's kernel. The request is JSON, and the reply consists of files."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from autograder.suite.fingerprint import places
 
 REQUEST = "request.json"
 REPLY_FILE = "answer.json"
-EARLY_FILE = "early.json"  # what is known before the rest is
+EARLY_FILE = "early.json"  # the first part of the reply
 RECORDING = "recording.npz"
 
 
 class _Early:
-    """Tells once what a file says that is there before the worker has ended."""
+    """Passes the first part of a reply to a listener as soon as its file exists, once."""
 
     def __init__(self, file: Path, listener: Callable[[dict[str, Any]], None] | None) -> None:
         self._file, self._listener = file, listener
 
     def has_looked(self) -> bool:
-        """Look for the file; return that this was done."""
+        """Look for the file. Always returns True."""
         if self._listener is not None and self._file.is_file():
             listener, self._listener = self._listener, None
             listener(json.loads(self._file.read_text(encoding="utf-8")))
@@ -43,13 +43,13 @@ class _Early:
 def run_in_worker(
     verb: str, workspace: Path, *, early: Callable[[dict[str, Any]], None] | None = None, **arguments: Any
 ) -> Iterator[tuple[dict[str, Any], Path]]:
-    """Start a worker that does `drive` or `check`, and wait; yield its reply and the folder with its files.
+    """Run `drive` or `check` in a worker, and yield its reply and the folder with its files.
 
     Args:
         verb: `drive` or `check`.
-        workspace: the student's.
-        early: called once with what is known before the rest is, while the worker goes on.
-        arguments: those of the verb.
+        workspace: the student's workspace.
+        early: called once with the first part of the reply, while the worker continues.
+        arguments: the verb's arguments.
 
     Raises:
         UsageError: there is no such workspace.
@@ -57,7 +57,7 @@ def run_in_worker(
     """
     source = workspace / "src"
     if not source.is_dir():
-        raise UsageError(f"there is no folder {source}: run this from the assignment's folder, where ws/src is")
+        raise UsageError(f"there is no folder {source}: run this in the assignment's folder, which contains ws/src")
     tier = best_tier()
     ours, theirs = Pipe()
     with tempfile.TemporaryDirectory(prefix="request-") as folder, ours:
@@ -66,12 +66,12 @@ def run_in_worker(
             place = place_of(source.resolve(), tier, scratch)
             request = {"verb": verb, "source": place, "out": folder, "scratch": scratch}
             request["arguments"] = arguments
-            file = Path(folder) / REQUEST  # a command line has no room for the walls of a large map
+            file = Path(folder) / REQUEST  # a large map does not fit on a command line
             file.write_text(json.dumps(request, default=str))
             return [sys.executable, "-m", "autograder.notebook.check_worker", str(file), str(theirs.fileno())]
 
-        shown = places(assignment, parts=("visible",)) if (assignment := arguments.get("assignment")) else []
-        view = View(shown=tuple(shown), submitted=(source.resolve(),), writable=(Path(folder),))
+        visible_paths = places(assignment, parts=("visible",)) if (assignment := arguments.get("assignment")) else []
+        view = View(shown=tuple(visible_paths), submitted=(source.resolve(),), writable=(Path(folder),))
         with theirs, in_cell(command, tier, NOTEBOOK_CELL, view=view, pass_fds=(theirs.fileno(),)) as (process, _):
             theirs.close()  # once the worker has ended, nobody holds its end
             tell = _Early(Path(folder) / EARLY_FILE, early)

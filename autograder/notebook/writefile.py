@@ -1,8 +1,8 @@
-"""The course's `%%writefile`: it writes a file as IPython's does, and never destroys a student's work.
+"""The course's `%%writefile`, which writes a file like IPython's but never destroys a student's work.
 
-It makes the folders of a file that are missing, and says so, because a misspelt name would make one, too.
-A cell that still holds an exercise's stub does not replace a file that the student has written by other means. A file
-that was changed since a cell last wrote it is copied to `replaced/` in its workspace before a cell replaces it.
+It creates missing folders of the file and says so, because a misspelt name would create one, too. A cell that still
+contains an exercise's stub does not replace a file that the student wrote in another way. A file that was changed since
+a cell last wrote it is copied to `replaced/` in its workspace before a cell replaces it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ REPLACED = "replaced"
 
 
 def register(shell: InteractiveShell | None) -> None:
-    """Let `%%writefile` of this shell be the course's; without a shell, do nothing. Safe to call twice."""
+    """Replace `%%writefile` of this shell by the course's. Without a shell, do nothing. Safe to call twice."""
     if shell is None:
         return
     in_shell: Any = shell  # IPython has no types
@@ -41,10 +41,10 @@ def register(shell: InteractiveShell | None) -> None:
 
 
 def write(line: str, cell: str, original: Any) -> None:
-    """Write a cell's text to the file that `line` names, unless that would destroy a student's work.
+    """Write a cell's text to the file named by `line`, unless that would destroy a student's work.
 
-    The file's old text is compared as a whole. A record that is lost makes copies, never losses. `line` is what stands
-    behind `%%writefile`, `original` is IPython's own magic, which writes the file and says so.
+    The whole old text is compared. If the record is lost, the result is an extra copy, never lost work. `line` is the
+    text after `%%writefile`, and `original` is IPython's own magic, which writes the file and prints a message.
     """
     parse: Any = magic_arguments.parse_argstring
     arguments = parse(original, line)
@@ -54,18 +54,18 @@ def write(line: str, cell: str, original: Any) -> None:
     _make_folder(path.parent)
     if arguments.append:
         original(line, cell)
-        if on_disk is None or record.get(name) == digest(on_disk):  # cells alone have written it
+        if on_disk is None or record.get(name) == digest(on_disk):  # only cells have written it
             write_json(home / RECORD, {**record, name: digest((on_disk or "") + cell)})
         return
     if on_disk is not None and on_disk != cell:
         if cell.count(STUB) > on_disk.count(STUB):
             _show(
-                f"{path} was kept as it is: the file holds your text, and this cell the exercise's stub. "
+                f"{path} was kept as it is: the file contains your text, but this cell contains the exercise's stub. "
                 "To start again from the stub, delete the file and run the cell."
             )
             return
         if record.get(name) != digest(on_disk):
-            _show(f"{path} was changed outside of this cell. Its old text is kept in {_keep_copy(path, home)}.")
+            _show(f"{path} was changed outside of this cell. Its old text was copied to {_keep_copy(path, home)}.")
     original(line, cell)
     write_json(home / RECORD, {**record, name: digest(cell)})
 
@@ -89,7 +89,7 @@ def _show(sentence: str) -> None:
 
 
 def _workspace(path: Path) -> Path:
-    """Return the workspace `ws` that a file lies in, or the file's folder."""
+    """Return the workspace `ws` that contains a file, or the file's folder."""
     return next((folder for folder in path.parents if folder.name == "ws"), path.parent)
 
 
@@ -100,11 +100,11 @@ def _text(path: Path) -> str | None:
 
 
 def _keep_copy(path: Path, home: Path) -> Path:
-    """Copy a file to the first free name in the workspace's folder of replaced files; return the copy's path."""
+    """Copy a file to an unused name in the workspace's folder of replaced files, and return the copy's path."""
     top = home / REPLACED
     stem = top / os.path.relpath(path, home)
     stem.parent.mkdir(parents=True, exist_ok=True)
-    (top / "COLCON_IGNORE").touch()  # a copy of package.xml is no package
+    (top / "COLCON_IGNORE").touch()  # a copied package.xml must not count as a package
     number = 1
     while (copy := stem.with_name(f"{stem.name}.{number}")).exists():
         number += 1

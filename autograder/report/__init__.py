@@ -1,1 +1,1 @@
-"""What people read of a result: feedback pages, and exports for other programs."""
+"""Presents results: feedback pages for people, and exports for other programs."""

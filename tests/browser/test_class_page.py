@@ -63,7 +63,7 @@ def test_the_table_sorts_by_a_click_on_a_header(page: Page, table: Locator) -> N
 
 
 @pytest.mark.promise("its filter shows those who missed one check")
-def test_the_table_shows_who_is_looked_for_also_after_a_look_at_one_page(page: Page, table: Locator) -> None:
+def test_the_table_keeps_its_filter_after_visiting_a_page(page: Page, table: Locator) -> None:
     page.get_by_label("Find").fill("muller still")
     assert names(table) == ["Zoë Müller"]
     expect(page.get_by_role("status")).to_have_text("1 of 5")

@@ -55,7 +55,7 @@ def test_the_track_is_shown_and_hints_unfold(
 
 
 @pytest.mark.parametrize("width", [1280, 390])
-def test_what_came_with_a_failure_unfolds_below_it(
+def test_consequences_unfold_below_their_cause(
     page: Page,
     make_result: Callable[..., Result],
     make_check: Callable[..., Check],

@@ -95,7 +95,7 @@ def test_a_file_and_its_cell_that_were_both_changed_are_both_kept(page: Page, la
     copy = Path("ws", REPLACED, Path(FILE).relative_to("ws")).with_suffix(".py.1")
     assert (chapter / FILE).read_text() == CELL.partition("\n")[2]
     assert (chapter / copy).read_text() == ANSWER
-    assert f"{FILE} was changed outside of this cell. Its old text is kept in {copy}." in told
+    assert f"{FILE} was changed outside of this cell. Its old text was copied to {copy}." in told
 
 
 def test_the_student_interface_has_no_button_validate(page: Page, lab: Lab, chapter: Path) -> None:

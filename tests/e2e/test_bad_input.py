@@ -72,7 +72,7 @@ FORGED = "import os\nkernel = get_ipython().kernel\nsession, io = kernel.session
         pytest.param("io.send(memoryview(__import__('mmap').mmap(-1, 3 << 30)), copy=False)", id="of 3 GB"),
     ],
 )
-def test_a_message_that_no_kernel_sends_ends_the_run_at_most_and_files_written_before_count(message: str) -> None:
+def test_a_message_that_no_kernel_sends_at_most_ends_the_run_and_earlier_files_count(message: str) -> None:
     answer = in_cell(executed, ["%%writefile before.txt\nkept", f"{FORGED}{message}\nprint('sent')", "1 + 1"])
     assert answer["files"] == ["before.txt"]
     assert answer["left"] == []

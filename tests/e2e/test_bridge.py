@@ -168,7 +168,7 @@ def test_a_command_that_is_not_finite_is_not_obeyed(listener: Listener, simulato
     assert all(math.isfinite(message.pose.pose.position.x) for message in odometry)
 
 
-def test_the_simulator_takes_twist_stamped_if_its_parameter_says_so(listener: Listener, simulator: Start) -> None:
+def test_the_simulator_accepts_twist_stamped_if_its_parameter_says_so(listener: Listener, simulator: Start) -> None:
     odometry = listener.hear(Odometry, "/odom")
     publisher = listener.node.create_publisher(TwistStamped, "/cmd_vel", 10)
     simulator(WORLDS / "empty_room.yaml", "engine:=numpy", "stamped_cmd_vel:=true")
@@ -274,7 +274,7 @@ sys.exit(main(sys.argv))
 """
 
 
-def test_a_recording_is_whole_when_the_interrupt_comes_in_the_middle_of_a_row(ros_domain: int, tmp_path: Path) -> None:
+def test_a_recording_is_complete_even_if_interrupted_in_the_middle_of_a_row(ros_domain: int, tmp_path: Path) -> None:
     parameters = (f"world:={WORLDS / 'empty_room.yaml'}", "engine:=numpy", f"recording:={tmp_path / 'run.npz'}")
     arguments = [text for parameter in parameters for text in ("-p", parameter)]
     process = subprocess.run(

@@ -53,7 +53,7 @@ def built(folder: Path, fills: str) -> Path:
     ("fills", "told"),
     [(UNREADABLE, "words/secret, which cannot be read (Permission denied)"), (LONG, "has more than 1024 bytes")],
 )
-def test_what_cannot_be_kept_is_a_failed_build_with_a_sentence(
+def test_a_build_that_cannot_be_stored_is_a_failed_build_with_a_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fills: str, told: str
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))

@@ -100,14 +100,14 @@ def test_a_changed_argument_is_seen(workspace: Workspace) -> None:
     assert outcome.arguments == ([],)
 
 
-def test_a_subclass_that_equals_everything_comes_back_as_a_plain_number(workspace: Workspace) -> None:
+def test_a_subclass_that_equals_everything_returns_as_a_plain_number(workspace: Workspace) -> None:
     (outcome,) = calls(workspace, "demo", call("lie"))
     assert type(outcome.value) is float
     assert outcome.value == 1.0
     assert outcome.value != 2.0
 
 
-def test_an_exception_is_known_by_what_it_is_an_instance_of(workspace: Workspace) -> None:
+def test_an_exception_is_recognized_by_its_class_and_base_classes(workspace: Workspace) -> None:
     absent, pretender = calls(workspace, "demo", call("absent"), call("pretends"))
     assert absent.raised == "Absent"
     assert absent.kinds == ("Absent", "ValueError", "Exception", "BaseException", "object")

@@ -45,7 +45,7 @@ def test_pkg_create_writes_the_files_of_the_record(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize("assignment", MADE)
-def test_no_check_takes_a_point_for_a_file_that_pkg_create_wrote(
+def test_no_check_deducts_a_point_for_a_file_that_pkg_create_wrote(
     assignment: str, workers: WorkerPool, tmp_path: Path
 ) -> None:
     def write(folder: Path) -> None:

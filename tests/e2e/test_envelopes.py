@@ -78,7 +78,7 @@ def test_each_envelope_has_all_points_or_is_unclear(a_class: Path) -> None:
 
 
 @pytest.mark.promise("`--dry-run` grades nothing")
-def test_a_dry_run_names_what_counts_and_what_is_not_used(a_class: Path) -> None:
+def test_a_dry_run_lists_the_graded_and_the_unused_files(a_class: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "autograder", "grade", str(a_class), "--assignment", CHAPTER, "--dry-run"],
         capture_output=True,
@@ -88,7 +88,12 @@ def test_a_dry_run_names_what_counts_and_what_is_not_used(a_class: Path) -> None
     )
     assert done.returncode == 1
     told = " ".join((done.stdout + done.stderr).split())
-    for words in ("Not used: readme.txt.", "unclear seven.7z is a 7z archive", "Not graded: notes.txt", "files count"):
+    for words in (
+        "Not used: readme.txt.",
+        "unclear seven.7z is a 7z archive",
+        "Not graded: notes.txt",
+        "files are graded",
+    ):
         assert words in told
     assert not (a_class / "results").exists()
 
@@ -121,4 +126,4 @@ def test_all_files_of_a_canvas_attempt_and_all_members_of_a_gradescope_group_cou
     done, results = grade(tmp_path / "group" / "down", "--roster", str(roster))
     assert done.returncode == 0, done.stderr
     assert marks(results) == dict.fromkeys(("200", "201"), results["200"]["max_score"])
-    assert "Nothing handed in" not in done.stdout
+    assert "Not submitted" not in done.stdout

@@ -77,7 +77,7 @@ def test_without_namespaces_a_submission_has_no_result_and_the_output_says_why(h
 @pytest.mark.promise(
     "autograder gradescope 02_nodes --out 02_nodes.zip", "The zip contains `setup.sh`, `run_autograder`, and the course"
 )
-def test_the_zip_holds_what_setup_needs_and_nothing_that_was_built(home: Path) -> None:
+def test_the_zip_contains_everything_for_setup_and_no_build_products(home: Path) -> None:
     names = set(zipfile.ZipFile(home / "upload.zip").namelist())
     assert {"setup.sh", "run_autograder", "course/Makefile", "course/requirements.lock"} <= names
     assert not [name for name in names if "__pycache__" in name or name.startswith("course/tests")]
@@ -90,9 +90,9 @@ def test_the_zip_holds_what_setup_needs_and_nothing_that_was_built(home: Path) -
     ("arguments", "message"),
     [
         (["00_welcome"], "there are no hidden checks for '00_welcome'; there are for: 01_package_structure"),
-        ([ASSIGNMENT], "exists already: name a file that does not exist yet"),
+        ([ASSIGNMENT], "already exists: choose a new file name"),
     ],
-    ids=["no checks", "exists already"],  # one that names a chapter would be made a home for on another worker
+    ids=["no checks", "already exists"],  # one that names a chapter would be made a home for on another worker
 )
 def test_a_wrong_call_of_the_gradescope_command_is_a_usage_error(
     home: Path, arguments: list[str], message: str

@@ -112,7 +112,7 @@ def test_a_check_is_replayed_with_the_seed_of_its_result(
     arguments = ["replay", str(tmp_path), "--check", "room", "--submission", submission, "--mcap", "--no-open"]
     said = CliRunner().invoke(cli.group, arguments)
     assert said.exit_code == 0, said.output
-    assert "is not what was graded then" not in said.output
+    assert "differs from the graded submission" not in said.output
     folder = tmp_path / "replay" / "room"
     assert (folder / "room-track" / "room-track.mcap").is_file()
     picture = next(artifact for artifact in together["zip"].artifacts if artifact.check == "room")
@@ -178,7 +178,7 @@ def _link(folder: Path) -> None:
         ),
     ],
 )
-def test_a_submission_that_cannot_be_read_is_unclear_and_no_zero(
+def test_a_submission_that_cannot_be_read_is_unclear_instead_of_zero(
     write: Callable[[Path], object], kind: Kind, words: str, tmp_path: Path
 ) -> None:
     (tmp_path / "alice").mkdir()
@@ -297,7 +297,7 @@ def test_a_missing_submission_or_assignment_is_a_usage_error(reference: Path, tm
         grade_submission(Job(reference, "77_none", "a", 1, tmp_path / "out"))
 
 
-def test_a_machine_without_namespaces_refuses_to_grade_with_the_weak_tier(
+def test_a_machine_without_namespaces_refuses_to_grade_at_the_weak_isolation_level(
     reference: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tiers, "namespaces_failure", lambda: "no user namespaces")
@@ -307,7 +307,7 @@ def test_a_machine_without_namespaces_refuses_to_grade_with_the_weak_tier(
 
 
 @pytest.mark.promise("`--isolation process` still grades there")
-def test_the_weaker_tier_is_named_in_the_result(reference: Path, tmp_path: Path) -> None:
+def test_the_weaker_isolation_level_is_named_in_the_result(reference: Path, tmp_path: Path) -> None:
     shutil.copytree(reference, tmp_path / "alice")
     (tmp_path / "alice" / "src" / PACKAGE / "setup.py").unlink()
     graded = grade_submission(Job(tmp_path / "alice", ASSIGNMENT, "a", 1, tmp_path / "out", Tier.PROCESS))

@@ -42,7 +42,7 @@ FILLS = {
 
 
 @pytest.mark.parametrize(("fill", "kind"), [*((fill, "messages") for fill in FILLS), ("sparse files", "program")])
-def test_what_may_not_be_installed_is_a_failed_build_with_a_sentence_and_is_neither_copied_nor_kept(
+def test_forbidden_installed_files_fail_the_build_with_a_sentence_and_are_not_copied(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fill: str, kind: str
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))

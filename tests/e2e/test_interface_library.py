@@ -59,6 +59,6 @@ def talk(scratch: Path) -> dict[str, Any]:
     }
 
 
-def test_code_in_a_library_of_messages_runs_in_the_sandbox_alone() -> None:
+def test_code_in_a_message_library_runs_only_in_the_sandbox() -> None:
     answer = in_cell(talk)
     assert answer == {"level": 50, "trip": True, "said": ["PAYLOAD ran"], "outside": False, "loaded": []}

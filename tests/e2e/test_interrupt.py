@@ -42,7 +42,7 @@ def resume(folder: Path) -> Iterator[subprocess.Popen[str]]:
 
 
 @pytest.mark.promise("Ctrl-C loses nothing")
-def test_ctrl_c_ends_a_class_and_resume_goes_on(tmp_path: Path) -> None:
+def test_ctrl_c_ends_a_class_and_resume_continues_it(tmp_path: Path) -> None:
     for student in STUDENTS:
         package = tmp_path / "class" / student / "src" / "my_robot_package"
         package.mkdir(parents=True)
@@ -59,7 +59,9 @@ def test_ctrl_c_ends_a_class_and_resume_goes_on(tmp_path: Path) -> None:
         process.send_signal(signal.SIGINT)
         said = process.stdout.read()
     assert process.returncode == 130
-    assert said.endswith("\nStopped. What is graded is in results: the same command with --resume grades the rest.\n")
+    assert said.endswith(
+        "\nStopped. Finished results are in results: the same command with --resume grades the rest.\n"
+    )
     assert (alice.is_file(), bob.is_file(), carol.exists()) == (True, True, False)
     before = alice.stat().st_mtime_ns, bob.stat().st_mtime_ns
 

@@ -119,8 +119,10 @@ def test_a_zip_of_moodle_is_graded_and_its_worksheet_gets_the_marks(
 
     graded = autograder("grade", "download.zip", "--assignment", assignment, "--roster", "worksheet.csv", "-j", "2")
     assert graded.returncode == 1, graded.stderr  # somebody is not in the roster
-    assert "Not graded: Eve Stranger_999_assignsubmission_file_: no student of worksheet.csv fits." in graded.stderr
-    assert "onlinetext_: it is no file that was handed in." in graded.stderr
+    assert (
+        "Not graded: Eve Stranger_999_assignsubmission_file_: it matches no student in worksheet.csv." in graded.stderr
+    )
+    assert "onlinetext_: it is not a submitted file." in graded.stderr
     told = json.loads((tmp_path / "results" / "handed_in.json").read_text())
     assert len(told["missing"]) == students - len(given)
     assert len(told["late"]) == sum(late for _, late in given.values())

@@ -257,7 +257,7 @@ def test_the_wall_clock_and_sleep_follow_ros_time() -> None:
 
 
 @pytest.mark.parametrize("program", ["OWN_CONTEXT", "BY_EVENTS"])
-def test_a_program_with_a_context_or_an_executor_of_its_own_is_stepped(program: str) -> None:
+def test_a_program_with_its_own_context_or_executor_is_stepped(program: str) -> None:
     heard, _, _, notes = in_cell(alone, getattr(programs, program), 0.35)
     assert not notes
     assert heard == [[0.1, "tick"], [0.2, "tick"], [0.3, "tick"]]
@@ -338,7 +338,7 @@ def forged(scratch: Path) -> Any:
     return twice(run)
 
 
-def test_bytes_that_are_no_message_of_their_type_are_dropped_and_counted() -> None:
+def test_bytes_that_are_not_a_message_of_their_type_are_dropped_and_counted() -> None:
     assert in_cell(forged) == [[s, "hello"] for s in (0.1, 0.2, 0.3) for _ in range(5)]
 
 
@@ -475,11 +475,11 @@ spin(Listener)
     ],
     ids=["at the start", "at a message", "at a timer"],
 )
-def test_other_programs_go_on_if_a_program_that_may_fail_ends(text: str) -> None:
+def test_other_programs_continue_if_a_program_that_may_fail_ends(text: str) -> None:
     assert in_cell(sparing, text) == ["1", ["map", "server"], ""]
 
 
-def test_a_program_that_may_fail_takes_part_and_its_crash_is_named_once_it_must_not_fail() -> None:
+def test_a_program_that_may_fail_takes_part_and_its_crash_is_named_if_it_must_not_fail() -> None:
     answer, running, sentence = in_cell(sparing, CRASHING.format(period=0.7, reading="pass"))
     assert (answer, running) == ("1", ["map", "server", "spared"])
     assert sentence.startswith("spared: ")
@@ -508,7 +508,7 @@ def sparing_in_real_time(scratch: Path, text: str) -> Any:
 @pytest.mark.parametrize(
     "text", ["raise ValueError('out of range')", CRASHING.format(period=0.7, reading="pass")], ids=["start", "timer"]
 )
-def test_in_real_time_other_programs_go_on_and_a_program_that_must_not_fail_is_named(text: str) -> None:
+def test_in_real_time_other_programs_continue_and_a_program_that_must_not_fail_is_named(text: str) -> None:
     answer, running, sentence = in_cell(sparing_in_real_time, text)
     assert (answer, running) == ("1", ["map", "server"])
     assert sentence.startswith("spared: ")

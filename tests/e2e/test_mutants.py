@@ -53,7 +53,7 @@ def test_a_submission_gets_its_expected_result(case: Case, workers: WorkerPool, 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("assignment", SURVEYED)
-def test_mutants_of_each_population_are_killed_or_have_a_reason(assignment: str, workers: WorkerPool) -> None:
+def test_generated_mutants_of_each_chapter_are_killed_or_have_a_reason(assignment: str, workers: WorkerPool) -> None:
     found = generated_mutants(assignment)
     mutants = {mutant.id: mutant for mutant in found.mutants}
     asked = sorted(mutants.keys() - reasons(assignment, found).keys())

@@ -101,7 +101,7 @@ def test_the_gradebook_has_the_points_that_the_grader_gave(
     assert sum(maximum for _, maximum, _ in graded.grades(student).values()) == result.max_score
 
 
-def test_the_reference_has_all_points_the_flawed_some_and_the_empty_none(results: dict[str, Result]) -> None:
+def test_the_reference_gets_all_points_flawed_answers_some_and_empty_ones_none(results: dict[str, Result]) -> None:
     assert results["reference"].percent == results["odd"].percent == 100.0
     assert 0.0 < results["flawed"].percent < 100.0
     assert results["empty"].score == 0.0

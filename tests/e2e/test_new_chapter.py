@@ -103,15 +103,15 @@ def test_the_notebook_of_a_new_chapter_runs_as_source_and_as_released(course: Pa
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        ("chapter mapping", "'mapping' is no name for a chapter: take two digits and a name, such as 10_mapping"),
-        ("chapter 11_import", "'11_import' is no name for a chapter"),
-        ("chapter 11_mapping", "solutions/mapping exists already: take another name"),
+        ("chapter mapping", "'mapping' is not a chapter name: use two digits and a name, such as 10_mapping"),
+        ("chapter 11_import", "'11_import' is not a chapter name"),
+        ("chapter 11_mapping", "solutions/mapping already exists: choose another name"),
         (
             "chapter 19_launch",
             "a package cannot be called 'launch', which is a package of ROS. "
             "Choose another name: autograder new chapter 19_launch --package my_launch",
         ),
-        ("course mine", "mine exists already: take another name"),
+        ("course mine", "mine already exists: choose another name"),
     ],
     # One that names a chapter would be made a course for on another worker.
     ids=["no number", "a keyword", "the package exists", "a package of ROS", "the course exists"],

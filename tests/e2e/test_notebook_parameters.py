@@ -59,7 +59,7 @@ def test_a_parameter_file_gives_a_robot_the_parameters_of_its_name(right: Path) 
     assert stop(porter) == pytest.approx(1.0, abs=0.02)
 
 
-def test_a_start_that_the_node_refuses_is_reported_in_a_sentence_also_side_by_side(right: Path) -> None:
+def test_a_start_that_the_node_rejects_is_reported_in_a_sentence_also_side_by_side(right: Path) -> None:
     refused = drive(*PROGRAM, seconds=1, parameters={"safety_distance": 2.0}, workspace=right)
     assert isinstance(refused, Notice)
     assert "safety_distance (2 m) must be below slow_distance (1 m)" in refused.sentence
@@ -67,12 +67,12 @@ def test_a_start_that_the_node_refuses_is_reported_in_a_sentence_also_side_by_si
 
 
 def test_a_missing_parameter_file_is_named(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"there is no parameter file .*nowhere.yaml: give its path"):
+    with pytest.raises(UsageError, match=r"parameter file .*nowhere.yaml not found: give its path"):
         drive(*PROGRAM, parameters=tmp_path / "nowhere.yaml")
 
 
 def test_a_value_that_no_parameter_can_have_is_named() -> None:
-    with pytest.raises(UsageError, match="a parameter is a bool, int, float, str or a list of these, not a complex"):
+    with pytest.raises(UsageError, match="a parameter must be a bool, int, float, str or a list of these, not complex"):
         drive(*PROGRAM, parameters={"speed": 1j})
 
 

@@ -221,7 +221,7 @@ def imports(scratch: Path, profile: str, code: str) -> list[str]:
         ("colcon", "import setuptools\nsetuptools.no_such_thing"),
     ],
 )
-def test_a_program_that_lacks_an_import_lacks_it_when_it_is_forked(profile: str, code: str) -> None:
+def test_a_missing_import_is_also_missing_in_a_forked_program(profile: str, code: str) -> None:
     started, forked = in_cell(imports, profile, code)
     assert forked.splitlines()[-1] == started.splitlines()[-1]
 

@@ -77,7 +77,7 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.promise(
-    "`make public-packages` builds the Python packages of ros2/examples", "It runs their tests by `colcon test`"
+    "`make public-packages` builds the Python packages of ros2/examples", "It runs their tests with `colcon test`"
 )
 def test_colcon_runs_the_tests_of_each_package(workspace: Path) -> None:
     command = "colcon test --return-code-on-test-failure"
@@ -92,7 +92,7 @@ def test_colcon_runs_the_tests_of_each_package(workspace: Path) -> None:
     assert all(int(count) >= 3 for count in counts.values()), counts
 
 
-@pytest.mark.promise("lets their servers and clients, publishers and subscribers meet")
+@pytest.mark.promise("lets their servers and clients, publishers and subscribers communicate")
 @pytest.mark.parametrize(("first", "ready", "second", "said"), PAIRS)
 def test_two_public_programs_exchange_messages(
     workspace: Path, ros_domain: int, first: str, ready: str | None, second: str, said: str

@@ -101,7 +101,7 @@ def test_check_of_the_release_runs_without_the_instructors_modules(bundle: Path)
     "Students unpack it and type `autograder update FOLDER`.",
     "A later release, of one chapter or all, updates the folders that students already have:",
 )
-def test_a_release_of_one_chapter_updates_a_bundle_of_all_chapters(bundle: Path, tmp_path: Path) -> None:
+def test_a_release_of_one_chapter_updates_a_release_of_all_chapters(bundle: Path, tmp_path: Path) -> None:
     mine = shutil.copytree(bundle, tmp_path / "mine")
     later = tmp_path / "later"
     assert run("02_nodes", "--out", str(later), "--newest", str(later)).exit_code == 0
@@ -113,14 +113,14 @@ def test_a_release_of_one_chapter_updates_a_bundle_of_all_chapters(bundle: Path,
     environment = {**os.environ, "PYTHONPATH": str(mine)}
     done = subprocess.run(update, cwd=mine, env=environment, text=True, capture_output=True)
     assert done.returncode == 0, done.stderr
-    assert "files updated. This is the release of 20" in done.stdout
-    assert "You had changed sim/world.py: your version is sim/world.py.yours now." in done.stdout
+    assert "files updated. This is now the release 20" in done.stdout
+    assert "You had changed sim/world.py: your version is now sim/world.py.yours." in done.stdout
     assert answer.read_text() == "a student's"
     assert gone.read_bytes() == (later / "sim" / "world.py").read_bytes()
     assert {path.name for path in (mine / "chapters").iterdir()} == {p.name for p in (bundle / "chapters").iterdir()}
 
 
-def test_a_students_pytest_has_none_of_the_options_of_the_courses_own_tests(bundle: Path) -> None:
+def test_a_students_pytest_does_not_use_the_options_of_the_courses_tests(bundle: Path) -> None:
     """The students' lock has no pytest-timeout, and a warning in a student's test is no error."""
     folder = bundle / "chapters" / "06_testing" / "ws"
     test = folder / "test_warns.py"
@@ -134,7 +134,7 @@ def test_a_students_pytest_has_none_of_the_options_of_the_courses_own_tests(bund
 
 def test_a_folder_that_exists_is_not_written_to(tmp_path: Path) -> None:
     result = run("--out", str(tmp_path))
-    assert "exists already: name a folder that does not exist yet" in str(result.exception)
+    assert "already exists: choose a new folder" in str(result.exception)
     assert list(tmp_path.iterdir()) == []
 
 

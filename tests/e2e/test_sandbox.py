@@ -104,7 +104,7 @@ def test_the_system_is_read_only_and_what_is_writable_is_limited() -> None:
     assert _out("writing", "settings", "disk") == []
 
 
-def test_what_the_kernel_counts_for_the_machine_s_user_is_left_for_others() -> None:
+def test_a_sandbox_cannot_exhaust_the_kernel_s_limits_per_user() -> None:
     assert _out("inotify", "descriptors") == []
 
 
@@ -150,7 +150,7 @@ def meets(scratch: Path, code: str) -> dict[str, bool]:
     return answers
 
 
-def test_a_node_reaches_the_cell_s_loopback_and_a_build_does_not() -> None:
+def test_a_node_reaches_the_worker_sandbox_s_loopback_and_a_build_does_not() -> None:
     code = "import socket\nsocket.create_connection(('127.0.0.1', PORT), timeout=5)\nprint('REACHED')"
     assert in_cell(meets, code) == {"True": True, "False": False}
 
@@ -178,7 +178,7 @@ def test_neither_the_grader_nor_anything_outside_can_be_signalled_or_traced() ->
 @pytest.mark.promise("With `--isolation process` it has both", "students' code could then read the checks")
 @pytest.mark.parametrize("way", ["started"], indirect=True)
 @pytest.mark.parametrize("name", ["files", "processes", "network", "unmapped memory"])
-def test_without_a_sandbox_the_same_programs_get_out(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_sandbox_the_same_programs_escape(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CANARY", CANARY)
     code = next(escape.program for escape in ESCAPES if escape.id == name)
     with socket.create_server(("127.0.0.1", 0)) as server:
@@ -224,7 +224,7 @@ def pretends(scratch: Path) -> list[Any]:
         return [process.returncode, process.output]
 
 
-def test_a_sandbox_that_cannot_be_made_is_no_failure_of_the_program() -> None:
+def test_a_sandbox_that_cannot_be_created_is_not_a_failure_of_the_program() -> None:
     for said in in_cell(unmade):
         assert re.match("The sandbox could not be made: bwrap: Can't find source path /.*: No such file", said), said
 
@@ -292,7 +292,7 @@ def test_the_processes_of_root_s_sandbox_are_counted_by_the_kernel() -> None:
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root has control groups of its own")
 @BOUNDED
 @pytest.mark.parametrize("way", ["started"], indirect=True)  # the weak tier knows no other
-def test_the_weak_tier_ends_a_fork_bomb_of_root() -> None:
+def test_the_weak_isolation_level_ends_a_fork_bomb_of_root() -> None:
     code = "import os\nwhile True:\n    try: os.fork()\n    except OSError: pass"
     before = _bombs(code)
     answer = in_cell(inside, code, {**SMALL, "memory": 4 * GIB}, True, tier=Tier.PROCESS)
@@ -327,7 +327,7 @@ ORDINARY = 4711  # a user of no name
 
 @pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can be somebody else")
 @pytest.mark.parametrize("way", ["started"], indirect=True)  # the doctor tries both
-def test_sandboxes_of_an_ordinary_user_block_what_those_of_root_block() -> None:
+def test_sandboxes_of_an_ordinary_user_block_the_same_escapes_as_those_of_root() -> None:
     """The exception is what only a control group limits, if an ordinary user can make none."""
     if not all(path.stat().st_mode & 1 for path in (Path(__file__), *Path(__file__).parents) if path.is_dir()):
         pytest.skip("an ordinary user cannot read this folder")

@@ -56,7 +56,7 @@ def test_notebooks_of_a_second_course_keep_the_rules_and_its_tables_name_its_che
 
 
 @pytest.mark.nightly
-def test_the_proof_of_a_second_course_succeeds(autograder: Run) -> None:
+def test_the_verification_of_a_second_course_succeeds(autograder: Run) -> None:
     done = autograder("verify", "--quick", "-j", "2", "--json", "proof.json")
     assert done.returncode == 0, done.stdout + done.stderr
     for name in RIGHT:

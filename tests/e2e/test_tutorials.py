@@ -180,9 +180,9 @@ def text(page: Step) -> Page:
 
 
 @pytest.mark.promise(
-    "`make tutorials` does what the Python tutorials of Jazzy's documentation say",
-    '`make tutorials PYTEST_ARGS="-k NAME"` does one of them',
-    "It takes commands, code and changes of files from the pages",
+    "`make tutorials` executes the Python tutorials in Jazzy's documentation",
+    '`make tutorials PYTEST_ARGS="-k NAME"` executes one of them',
+    "It takes commands, code and file changes from the pages",
 )
 @pytest.mark.nightly
 @pytest.mark.skipif(not os.environ.get(SOURCE), reason=f"{SOURCE} names no clone")

@@ -117,7 +117,7 @@ def taken_over(monkeypatch: pytest.MonkeyPatch, code: str, **names: object) -> N
     )
 
 
-def test_a_worker_that_is_taken_over_sees_its_submission_and_its_chapter_and_nothing_else(
+def test_a_compromised_worker_sees_only_its_submission_and_its_chapter(
     classroom: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("A_KEY", "secret")
@@ -136,7 +136,7 @@ def test_a_worker_that_is_taken_over_sees_its_submission_and_its_chapter_and_not
     assert "Traceback" not in log
 
 
-def test_a_worker_that_is_taken_over_can_write_to_its_own_scratch_folder_alone(
+def test_a_compromised_worker_can_write_only_to_its_scratch_folder(
     classroom: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     taken_over(monkeypatch, WRITE, GROUPS=["/sys/fs/cgroup"])
@@ -157,7 +157,7 @@ def test_a_worker_that_is_taken_over_can_write_to_its_own_scratch_folder_alone(
         pytest.param(CLIMB, "paths that lead out of it", id="a path that leads out"),
     ],
 )
-def test_what_a_worker_that_is_taken_over_says_harms_nobody_else(
+def test_the_reply_of_a_compromised_worker_harms_no_other_student(
     classroom: Path, monkeypatch: pytest.MonkeyPatch, code: str, logged: str
 ) -> None:
     stored = classroom / "results" / "bob" / "result.json"
@@ -188,7 +188,7 @@ print("BUILT", [str(path.relative_to(job.scratch)) for path in (job.scratch / "b
 """
 
 
-def test_what_is_kept_for_others_is_what_an_untouched_worker_makes_of_the_sources_that_it_is_kept_under(
+def test_shared_builds_come_from_an_untouched_worker_and_match_their_sources(
     classroom: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(classroom / "cache"))
@@ -206,7 +206,7 @@ def test_what_is_kept_for_others_is_what_an_untouched_worker_makes_of_the_source
 
 
 @pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can be somebody else")
-def test_root_grades_what_root_alone_can_read(classroom: Path) -> None:
+def test_root_grades_files_that_only_root_can_read(classroom: Path) -> None:
     for path in (classroom / "alice", *(classroom / "alice").rglob("*")):
         path.chmod(0o700 if path.is_dir() else 0o600)
     result = grade(classroom, "alice")
@@ -245,7 +245,7 @@ except OSError: out("is refused")
 
 
 @pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can be somebody else")
-def test_root_is_given_up_without_namespaces_too(classroom: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_root_privileges_are_also_dropped_without_namespaces(classroom: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for path in (classroom / "alice", *(classroom / "alice").rglob("*")):
         path.chmod(0o700 if path.is_dir() else 0o600)
     stored = classroom / "results" / "bob" / "result.json"

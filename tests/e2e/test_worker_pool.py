@@ -71,7 +71,7 @@ def servers() -> Servers:
     return lambda: sorted(_running() - before)
 
 
-def test_a_shared_cell_gives_the_same_results_as_a_cell_for_each_submission(
+def test_a_shared_sandbox_gives_the_same_results_as_one_for_each_submission(
     reference: Path, half: Path, servers: Servers, tmp_path: Path
 ) -> None:
     with WorkerPool(Tier.BUBBLEWRAP, 1) as workers:

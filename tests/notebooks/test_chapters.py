@@ -149,7 +149,7 @@ def drawing(figure: Path) -> str:
 
 
 @pytest.mark.parametrize("script", sorted(ROOT.glob("assets/figures/*/make.py")), ids=lambda path: path.parent.name)
-def test_a_chapters_figures_are_what_their_script_draws(script: Path, tmp_path: Path) -> None:
+def test_a_chapters_figures_are_up_to_date_with_their_script(script: Path, tmp_path: Path) -> None:
     runpy.run_path(str(script))["main"](tmp_path)
     committed = ROOT / "chapters" / script.parent.name / "figures"
     names = {path.name for path in committed.iterdir()}

@@ -1,6 +1,6 @@
-"""Keeps the notebooks and the reference solutions equal, checks the notebooks and executes them.
+"""Keeps notebooks and reference solutions in sync, checks the notebooks, and executes them.
 
-`solutions/` is the single source. The metadata of a cell or a notebook names the files that it copies (`cells`).
-`sync` writes the copies and finds the outdated ones. `execute` executes one of the `forms` of a notebook: the source,
-the solved or the released one.
+`solutions/` is the single source. The metadata of cells and notebooks name the files that they copy (`cells`). `sync`
+writes the copies and finds outdated ones. `execute` executes a notebook in one of its `forms`: source, solved or
+released.
 """

@@ -1,11 +1,11 @@
-"""Reads the course's own metadata of notebooks and cells, of which `metadata.schema.json` beside this module has all.
+"""Reads the course's metadata of notebooks and cells, which `metadata.schema.json` beside this module defines.
 
-A cell that writes a file into the student's workspace names the file of the reference that it copies:
+A cell that writes a file to the student's workspace names the reference file that it copies:
 
     {"course": {"source": "wheels/wheels/wheel_node.py", "target": "ws/src/wheels/wheels/wheel_node.py",
                 "hide": ["WheelNode.turn"]}}
 
-Sources are paths in `solutions/`, targets are paths in the chapter's folder.
+Sources are paths in `solutions/`. Targets are paths in the chapter's folder.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ WHOLE = "`course`"
 
 @dataclass(frozen=True)
 class CopiedFile:
-    """The reference file that a cell copies. The metadata call its hidden functions `hide`, its hidden lines `cut`."""
+    """A reference file that a cell copies. Its hidden functions are `hide` in the metadata, its hidden lines `cut`."""
 
     source: PurePosixPath
     target: PurePosixPath
@@ -41,7 +41,7 @@ class CopiedFile:
     hidden_lines: tuple[tuple[str, str], ...]
 
     def expected_text(self) -> str:
-        """Return the source that the cell must have. Raises CourseError if the reference does not have it all."""
+        """Return the source that the cell must have. Raises CourseError if something is missing in the reference."""
         text = strip_licence(read_solution(self.source))
         try:
             text = mark_functions(text, self.hidden_functions) if self.hidden_functions else text
@@ -52,7 +52,7 @@ class CopiedFile:
 
 
 def copied_file(cell: NotebookNode) -> CopiedFile | None:
-    """Return the reference file that a code cell copies, or None if it copies none."""
+    """Return the reference file that a code cell copies, or None."""
     course = metadata(cell)
     if "source" not in course:
         return None
@@ -63,23 +63,23 @@ def copied_file(cell: NotebookNode) -> CopiedFile | None:
 
 
 def given_files(notebook: NotebookNode) -> dict[PurePosixPath, PurePosixPath]:
-    """Return the chapter's files that are copies of reference files, as target to source."""
+    """Return the chapter's copies of reference files, as a mapping from target to source."""
     pairs = metadata(notebook).get("given", {})
     return {PurePosixPath(target): PurePosixPath(source) for target, source in pairs.items()}
 
 
 def group(cell: NotebookNode) -> str | None:
-    """Return the group of checks that a grade cell stands for, or None."""
+    """Return the group of checks that belongs to a grade cell, or None."""
     return metadata(cell).get("group")
 
 
 def is_graded(cell: NotebookNode) -> bool:
-    """Return whether nbgrader takes points from this cell."""
+    """Return whether nbgrader reads points from this cell."""
     return bool(cell.metadata.get("nbgrader", {}).get("grade"))
 
 
 def is_manually_graded(cell: NotebookNode) -> bool:
-    """Return whether students write in this cell and a person gives the points in nbgrader's formgrader."""
+    """Return whether students write in this cell and a person awards the points in nbgrader's formgrader."""
     return is_graded(cell) and is_solution(cell)
 
 
@@ -89,23 +89,23 @@ def is_solution(cell: NotebookNode) -> bool:
 
 
 def metadata(node: NotebookNode) -> Mapping[str, Any]:
-    """Return the `course` part of a cell's or a notebook's metadata. Raises CourseError if it breaks the schema."""
+    """Return the `course` metadata of a cell or notebook. Raises CourseError if they do not match the schema."""
     course: Mapping[str, Any] = node.metadata.get("course", {})
     if not _METADATA.is_valid(course):
         wrong = "; ".join(sentence for _, sentence in broken_schema(course, _SCHEMA, WHOLE))
-        raise CourseError(f"the metadata are wrong: {wrong}")
+        raise CourseError(f"the metadata are invalid: {wrong}")
     return course
 
 
 def broken_metadata(name: str, notebook: NotebookNode) -> Iterator[Finding]:
-    """Yield what is wrong with the `course` part of the metadata of a notebook of this name, and of its cells."""
+    """Yield the problems in the `course` metadata of a notebook with this name, and of its cells."""
     for cell, node in ((None, notebook), *((cell.id, cell) for cell in notebook.cells)):
         for _, sentence in broken_schema(node.metadata.get("course", {}), _SCHEMA, WHOLE):
-            yield Finding(name, cell, f"the metadata are wrong: {sentence}")
+            yield Finding(name, cell, f"the metadata are invalid: {sentence}")
 
 
 def read_solution(source: PurePosixPath) -> str:
-    """Return the text of a reference file. Raises CourseError if there is none."""
+    """Return the text of a reference file. Raises CourseError if the file does not exist."""
     path = layout.SOLUTIONS / source
     if not path.is_file():
         raise CourseError(f"the reference has no file {source}; look in solutions/")

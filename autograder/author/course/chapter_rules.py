@@ -1,6 +1,6 @@
-"""All rules for a chapter, applied at once: a mistake in one file hides none in another.
+"""Applies all rules to a chapter at once, so that a mistake in one file does not hide one in another.
 
-Nothing is graded. What can be read is read, whether the suites can be imported or not.
+Nothing is graded. All readable files are examined, whether the suites can be imported or not.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ KINDS = (suites.VISIBLE, suites.HIDDEN)
 
 @dataclass(frozen=True)
 class ReadChecks:
-    """The checks of a chapter with all files around them.
+    """The checks of a chapter and all related files.
 
     Attributes:
-        findings: what is wrong with these files.
+        findings: the problems in these files.
         checks: the visible and the hidden checks, or None if they cannot be imported.
         points: the points of each group of hidden checks, or None if they cannot be imported.
         places: file and line of each check, by `VISIBILITY ID`.
@@ -50,11 +50,11 @@ class ReadChecks:
 
 @dataclass(frozen=True)
 class ReadChapter:
-    """A chapter with all that is wrong with it.
+    """A chapter with all its problems.
 
     Attributes:
-        findings: what is wrong with it.
-        notebook: its notebook, or None if that cannot be read, or has wrong metadata.
+        findings: its problems.
+        notebook: its notebook, or None if it cannot be read or has invalid metadata.
         hidden: its hidden checks, or None if they cannot be imported.
     """
 
@@ -94,12 +94,12 @@ def read_checks(assignment: str) -> ReadChecks:
     try:
         hidden, visible = suites.hidden(assignment), suites.visible(assignment)
         checks, points = (*visible.checks, *hidden.checks), hidden.groups
-    except Exception as error:  # whatever the module of an author raises
-        found += [] if found else [_import_error(error, folder)]  # what was found says it better
+    except Exception as error:  # an author's module may raise anything
+        found += [] if found else [_import_error(error, folder)]  # earlier findings are more precise
     written = read[suites.HIDDEN]
     sources = written.sources
     if not all((layout.SOLUTIONS / source).is_dir() for source in sources):
-        sources = ()  # one of the names is wrong, which is said already
+        sources = ()  # one of the names is wrong, which was already reported
     known = None if checks is None else [check.id for check in checks if check.visibility is Visibility.HIDDEN]
     ids = [*written.places] if known is None and written.is_complete else known
     found += broken_packages(sources)
@@ -109,7 +109,7 @@ def read_checks(assignment: str) -> ReadChecks:
 
 
 def require_checks(assignments: Iterable[str]) -> None:
-    """Raise a CourseError with all that is wrong with the suites of assignments that cannot be imported."""
+    """Raise a CourseError with all problems of the suites that cannot be imported."""
     graded = suites.graded_assignments()
     read = [read_checks(name) for name in assignments if name in graded]
     if wrong := [str(finding) for each in read if each.checks is None for finding in each.findings]:
@@ -117,7 +117,7 @@ def require_checks(assignments: Iterable[str]) -> None:
 
 
 def _import_error(error: Exception, folder: Path) -> Finding:
-    """Return the finding of a suite that raises an error, at the last line of the chapter's that took part."""
+    """Return the finding for a suite that raises an error, at the last line of the traceback in the chapter."""
     frames = [each for each in traceback.extract_tb(error.__traceback__) if Path(each.filename).is_relative_to(folder)]
     top = folder / (suites.VISIBLE if suites.VISIBLE in str(error) else suites.HIDDEN) / "__init__.py"
     file, line = (shown(Path(frames[-1].filename)), frames[-1].lineno) if frames else (shown(top), 1)
@@ -127,7 +127,7 @@ def _import_error(error: Exception, folder: Path) -> Finding:
 
 
 def _notebook(chapter: Chapter) -> tuple[NotebookNode | None, list[Finding]]:
-    """Return the notebook of a chapter, or None and why it cannot be read."""
+    """Return the notebook of a chapter, or None and the reason why it cannot be read."""
     try:
         return chapter.read(), []
     except CourseError as error:
@@ -140,7 +140,7 @@ def _notebook(chapter: Chapter) -> tuple[NotebookNode | None, list[Finding]]:
 
 
 def _broken_notebook(chapter: Chapter, notebook: NotebookNode, read: ReadChecks) -> list[Finding]:
-    """Return what is wrong with a notebook. Rules that need its checks are left out if these are wrong."""
+    """Return the problems in a notebook. Rules that need its checks are skipped if the checks are invalid."""
     if not notebook.cells:
         return broken_rules(chapter.notebook_path.name, notebook)
     name = chapter.notebook_path.name
@@ -155,7 +155,7 @@ def _broken_notebook(chapter: Chapter, notebook: NotebookNode, read: ReadChecks)
 
 
 def _applied(name: str, rule: Callable[[], Iterable[Finding]]) -> Iterator[Finding]:
-    """Yield the findings of a rule; nbgrader has errors of its own for cells that it cannot release."""
+    """Yield the findings of a rule, including nbgrader's own errors for cells that it cannot release."""
     try:
         yield from rule()
     except (CourseError, RuntimeError) as error:
@@ -163,7 +163,7 @@ def _applied(name: str, rule: Callable[[], Iterable[Finding]]) -> Iterator[Findi
 
 
 def placed(finding: Finding, text: str) -> Finding:
-    """Return a finding in a notebook with its line: of what it names, or of its cell, or the first."""
+    """Add the line to a finding in a notebook: that of the quoted text, of its cell, or the first line."""
     if finding.line is not None:
         return finding
     lines = text.splitlines()

@@ -1,7 +1,7 @@
-"""The rules for a chapter's contract: each sentence is in the cell that names it, and has a check.
+"""The rules for a chapter's requirements: each one occurs in the cell that names it, and has a check.
 
-A cell that names sentences of the contract has to name all of them. Each row of a table, each bullet, and the docstring
-of each function that the student writes has to contain one of these sentences, or a text in `explains`.
+A cell that names requirements must name all of them. Each table row, each bullet, and the docstring of each function
+that the student writes must contain a requirement or a text in `explains`.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from autograder.suite.quotation import quote
 
 
 def broken_contract(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> list[Finding]:
-    """Return the sentences without a check, the checks without a sentence, and what students are not shown.
+    """Return the requirements without a check, the checks without a requirement, and texts that students do not see.
 
-    Findings call the notebook by `name`. `checks` are all of its chapter, visible and hidden.
+    Findings refer to the notebook by `name`. `checks` are all checks of its chapter, visible and hidden.
     """
     return [*broken_cells(name, notebook), *broken_holding(name, notebook, checks, {})]
 
 
 def broken_cells(name: str, notebook: NotebookNode) -> Iterator[Finding]:
-    """Yield the cells whose contract is not what a student reads there."""
+    """Yield the cells whose requirements differ from the released text."""
     for cell in in_form(notebook, Form.RELEASED).cells:
         yield from (Finding(name, cell.id, message) for message in _cell(cell))
 
@@ -36,46 +36,46 @@ def broken_cells(name: str, notebook: NotebookNode) -> Iterator[Finding]:
 def broken_holding(
     name: str, notebook: NotebookNode, checks: Sequence[Check], places: Mapping[str, tuple[str, int]]
 ) -> Iterator[Finding]:
-    """Yield the sentences without a check, and the checks without a sentence.
+    """Yield the requirements without a check, and the checks without a requirement.
 
-    `places` has the file and line of checks, by `VISIBILITY ID`. A check whose place is not known is the notebook's.
+    `places` maps `VISIBILITY ID` of a check to its file and line. A check without one is attributed to the notebook.
     """
     known = sentences(notebook.cells)
-    held = {sentence for check in checks for sentence in check.holds}
+    covered = {sentence for check in checks for sentence in check.holds}
     for sentence in known.values():
-        if not sentence.unchecked and sentence.id not in held:
-            yield Finding(name, None, f"no check holds the sentence {sentence.id!r} of the contract")
-        if sentence.unchecked and sentence.id in held:
-            yield Finding(name, None, f"the sentence {sentence.id!r} is said to be unchecked, and a check holds it")
+        if not sentence.unchecked and sentence.id not in covered:
+            yield Finding(name, None, f"no check covers the requirement {sentence.id!r}")
+        if sentence.unchecked and sentence.id in covered:
+            yield Finding(name, None, f"the requirement {sentence.id!r} is marked as unchecked, but a check covers it")
     for check in checks:
         unknown = ", ".join(repr(each) for each in check.holds if each not in known)
         if unknown or not check.holds:
-            message = f"holds {unknown}, which no cell names" if unknown else "holds no sentence of the contract"
+            message = f"covers {unknown}, which no cell names" if unknown else "covers no requirement"
             file, line = places.get(f"{check.visibility.value} {check.id}", (name, None))
             yield Finding(file, None, f"the {check.visibility.value} check {check.id!r} {message}", line)
 
 
 def _cell(cell: NotebookNode) -> Iterator[str]:
-    """Yield what is wrong with the contract of a released cell."""
+    """Yield the problems with the requirements of a released cell."""
     course = metadata(cell)
     contract, explains = course.get("contract", {}), course.get("explains", [])
     named = {name: [texts] if isinstance(texts, str) else texts for name, texts in contract.items()}
-    shown = _words(cell.source)
+    released_text = _words(cell.source)
     for name, text in [(name, text) for name, texts in named.items() for text in texts] + [
         ("explains", text) for text in explains
     ]:
-        if _words(text) not in shown:
-            yield f"{name!r}: its released text does not hold the sentence {text!r}"
+        if _words(text) not in released_text:
+            yield f"{name!r}: its released text does not contain the sentence {text!r}"
         elif quote(cell, text) is None:
-            yield f"{name!r}: {text!r} is not a row, a sentence or a part of one in what a student reads"
+            yield f"{name!r}: {text!r} is not a row, a sentence or part of one in the released text"
     for name in course.get("unchecked", {}):
         if name not in named:
-            yield f"{name!r} is said to be unchecked, and the cell's contract does not have it"
+            yield f"{name!r} is marked as unchecked, but is not a requirement of the cell"
     texts = [_words(text) for each in (*named.values(), explains) for text in each]
     hidden = course.get("hide", [])
     for piece in _pieces(cell, hidden) if contract or hidden else ():
         if not any(text in piece for text in texts):
-            yield f"neither its contract nor `explains` names a sentence of {piece!r}"
+            yield f"neither `contract` nor `explains` names a sentence of {piece!r}"
 
 
 def _pieces(cell: NotebookNode, hidden: Sequence[str]) -> Iterator[str]:
@@ -84,7 +84,7 @@ def _pieces(cell: NotebookNode, hidden: Sequence[str]) -> Iterator[str]:
         functions = {name.rpartition(".")[2] for name in hidden}
         try:
             tree = ast.parse(cell.source.partition("\n")[2]) if functions else ast.Module([], [])
-        except SyntaxError:  # the cell differs from the reference then, which is found elsewhere
+        except SyntaxError:  # the cell differs from the reference, which another rule reports
             return
         for node in ast.walk(tree):
             if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name in functions:

@@ -1,4 +1,4 @@
-"""The rules for a course as a whole: its `course.yaml`, syllabus and worlds, and folders that belong to no chapter."""
+"""The rules for a whole course: its `course.yaml`, syllabus and worlds, and folders that do not belong to a chapter."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ from sim import WorldError, load_world
 
 
 def broken_course_file() -> tuple[Finding, ...]:
-    """Return what is wrong with the `course.yaml` of this process. Nothing else of a course can be read without it."""
+    """Return the problems in the current `course.yaml`, without which no other part of the course can be read."""
     root = Path(os.environ.get(layout.COURSE_VARIABLE) or layout.ROOT)
     path = root / layout.COURSE_FILE
     return read_yaml(path, str(path)).findings if path.is_file() else ()
 
 
 def broken_course(read: Mapping[str, ReadChapter], *, whole: bool) -> list[Finding]:
-    """Return what is wrong with the course besides its chapters.
+    """Return the problems of the course outside of its chapters.
 
     Args:
         read: chapters by their names.
-        whole: whether these are all chapters. What only a part of them shows is not looked at otherwise.
+        whole: whether these are all chapters. Rules that need all of them are skipped otherwise.
     """
     found = list(_coverage(read, whole))
     return [*_folders(), *_worlds(), *found] if whole else found
 
 
 def _folders() -> Iterator[Finding]:
-    """Yield folders that have the place of a chapter's and not its name, so that nothing would look at them."""
+    """Yield a finding for each folder that looks like a chapter but would be ignored because of its name."""
     known = layout.assignments()
     for folder in sorted(path for path in layout.CHAPTERS.glob("*") if path.is_dir() and path.name[:1] not in "._"):
         if folder.name not in known and (books := sorted(path.name for path in folder.glob("*.ipynb"))):
@@ -58,7 +58,7 @@ def _worlds() -> Iterator[Finding]:
 
 
 def _coverage(read: Mapping[str, ReadChapter], whole: bool) -> Iterator[Finding]:
-    """Yield what differs between the syllabus and the chapters that can be read."""
+    """Yield the differences between the syllabus and the readable chapters."""
     path = layout.course().root / layout.course().syllabus
     if not path.is_file():
         yield Finding(shown(path), None, "is missing: it names the objectives of the course")

@@ -1,7 +1,7 @@
-"""The error that the course's own tool raises."""
+"""The error for mistakes in a course."""
 
 from autograder.exceptions import AutograderError
 
 
 class CourseError(AutograderError):
-    """A notebook, its metadata or the reference solution is wrong. The message names the place and the reason."""
+    """A notebook, its metadata or the reference solution is invalid. The message names the place and the reason."""

@@ -24,18 +24,18 @@ from autograder.author.course.sync import Chapter
 from autograder.plain_text import clean
 from autograder.ros.domains import Domain
 
-# Run before the first cell rather than set in the environment: Jupyter's own start-up and the tools that a cell calls
-# (colcon, CMake) are not the notebook's to answer for.
+# Run before the first cell instead of being set in the environment, because the notebook is not responsible for
+# warnings of Jupyter's start-up or of the tools that a cell calls (colcon, CMake).
 STRICT = """import warnings
 warnings.simplefilter('error')
-# ipykernel's word about itself, when it shuts down; as an error it would keep the kernel from ending.
+# A warning of ipykernel's own when it shuts down. As an error, it would prevent the kernel from ending.
 warnings.filterwarnings('default', message='For consistency across implementations')
 """
 
 
 @dataclass(frozen=True)
 class Execution:
-    """How a notebook ran: the executed notebook, as far as it came, and which cell failed and what it said, or None."""
+    """The execution of a notebook: the notebook as far as it was executed, and the failed cell's error, or None."""
 
     chapter: str
     form: Form
@@ -45,7 +45,7 @@ class Execution:
 
     @property
     def ok(self) -> bool:
-        """Say whether it ran to its end."""
+        """Whether it ran to its end."""
         return self.failure is None
 
 
@@ -57,10 +57,10 @@ def run_notebook(
     report: Path | None = None,
     packages: Path | None = None,
 ) -> Execution:
-    """Execute a chapter's notebook in a ROS domain of its own; the chapter's folder is left as it is.
+    """Execute a chapter's notebook in a separate ROS domain, without changing the chapter's folder.
 
-    A cell may take `timeout` seconds. The executed notebook is kept at `report`, and `ws/src` in
-    the folder `packages`.
+    A cell may take `timeout` seconds. The executed notebook is saved to `report`, and `ws/src` to the folder
+    `packages`.
     """
     notebook = in_form(chapter.read(), form)
     started = time.monotonic()
@@ -77,7 +77,7 @@ def run_notebook(
 
 @contextmanager
 def working_copy(folder: Path) -> Iterator[Path]:
-    """Copy a chapter's folder, without what was built there; yield the copy and remove it afterwards."""
+    """Yield a temporary copy of a chapter's folder without build products."""
     with tempfile.TemporaryDirectory(prefix=f"{folder.name}-") as scratch:
         copy = Path(scratch) / folder.name
         shutil.copytree(folder, copy, ignore=layout.NOT_COPIED)
@@ -85,14 +85,14 @@ def working_copy(folder: Path) -> Iterator[Path]:
 
 
 def execute(notebook: NotebookNode, folder: Path, timeout: float, domain: int) -> str | None:
-    """Execute a notebook in place, in a kernel of its own that runs in `folder`; return what went wrong, or None.
+    """Execute a notebook in place, in a new kernel that runs in `folder`. Return the error, or None.
 
     A cell may take `timeout` seconds. `domain` is the kernel's `ROS_DOMAIN_ID`.
     """
     client = NotebookClient(
         notebook, kernel_name="python3", timeout=timeout, resources={"metadata": {"path": str(folder)}}
     )
-    # Sockets in a folder of ours: a port can be taken by somebody else between choosing and binding it.
+    # Sockets in our own folder, because another process may take a port between choosing and binding it.
     manager = client.create_kernel_manager()
     manager.transport = "ipc"
     manager.ip, manager.connection_file = str(folder.parent / "k"), str(folder.parent / "k.json")
@@ -100,7 +100,7 @@ def execute(notebook: NotebookNode, folder: Path, timeout: float, domain: int) -
     begun: list[str] = []
     client.on_cell_start = lambda cell, cell_index: begun.append(cell.id)
     try:
-        # A loop that is closed at its end; nbclient's own call leaves one in each thread.
+        # asyncio.run closes its loop, but nbclient's own call leaves one open in each thread.
         asyncio.run(client.async_execute(env={**os.environ, "ROS_DOMAIN_ID": str(domain)}))
     except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
         return f"cell {begun[-1]!r}: {clean(str(error))}"

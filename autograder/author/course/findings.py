@@ -1,4 +1,4 @@
-"""A problem in a file of a course, with the place where its author finds it."""
+"""A problem in a file of a course, and its location."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ class Finding:
     """A problem in a file: what is wrong and what to do.
 
     Attributes:
-        file: the name of the notebook, or the path of another file, below the course's folder.
-        cell: the id of the notebook's cell, or None if it concerns no single cell.
+        file: the name of the notebook, or the path of another file, relative to the course's folder.
+        cell: the id of the notebook's cell, or None if it does not concern a single cell.
         message: what is wrong and what to do.
-        line: the line of the file, from 1, or None if it concerns no single line.
+        line: the line of the file, from 1, or None if it does not concern a single line.
     """
 
     file: str
@@ -28,5 +28,5 @@ class Finding:
         return f"{where}: {self.message}"
 
 
-# A finding with what corrects it in place, or None where the author has to.
+# A finding with a function that fixes it in place, or None if the author has to fix it.
 Difference = tuple[Finding, Callable[[], None] | None]

@@ -1,6 +1,6 @@
-"""The rule for the arguments of checks: each is a fixture of the chapter, of every chapter, or of pytest.
+"""The rule for the arguments of checks: each must be a fixture of the chapter, of the grader, or of pytest.
 
-pytest finds a name that nobody defines only when a submission is graded.
+pytest itself only reports an undefined fixture when a submission is graded.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ OF_PYTEST = ("request", "tmp_path", "tmp_path_factory", "monkeypatch", "capsys",
 
 
 def unknown_fixtures(folder: Path, modules: Iterable[PythonFile]) -> Iterator[Finding]:
-    """Yield the arguments of checks, and of fixtures, that no fixture has the name of.
+    """Yield a finding for each argument of a check or fixture that does not name a fixture.
 
     Args:
         folder: the folder of a suite, in the folder of its chapter's checks.
@@ -45,14 +45,14 @@ def unknown_fixtures(folder: Path, modules: Iterable[PythonFile]) -> Iterator[Fi
 
 
 def _fixtures(file: PythonFile) -> list[str]:
-    """Return the names of the fixtures that a file defines, and all that it imports: one of these may be a fixture."""
+    """Return the names of the fixtures that a file defines, and of its imports, which may be fixtures."""
     imports = (node for node in ast.walk(file.tree) if isinstance(node, ast.ImportFrom))
     imported = [alias.asname or alias.name for node in imports for alias in node.names]
     return [function.name for function in file.functions() if "fixture" in decorators(function)] + imported
 
 
 def _parameters(function: Function) -> list[str]:
-    """Return the arguments that `pytest.mark.parametrize` fills."""
+    """Return the arguments that `pytest.mark.parametrize` provides."""
     calls = (each for each in decorators(function).items() if each[0] == "parametrize")
     found: list[str] = []
     for _, call in calls:

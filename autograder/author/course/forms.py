@@ -1,4 +1,4 @@
-"""The three forms of a notebook: as its author has it, as a student who solved it has it, and as it is released."""
+"""The three forms of a notebook: source, solved and released."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from nbformat import NotebookNode
 from autograder.author.course.solution_markers import strip_markers
 from autograder.submission.exercise_stubs import CODE_STUB
 
-# The settings of nbgrader for each form that it makes.
+# nbgrader's settings for each form that it creates.
 SETTINGS = {
     "ClearSolutions": {"code_stub": {"python": CODE_STUB}},
-    # A mark scheme stands in the locked cell of its question, where autograding brings it back.
+    # A mark scheme is in the locked cell of its question, where autograding restores it.
     "ClearMarkScheme": {"enforce_metadata": False},
 }
 
 
 class Form(str, Enum):
-    """The forms of a notebook: as its author wrote it, solved, or as students get it."""
+    """The forms of a notebook: as written by its author, as solved by a student, and as released to students."""
 
     SOURCE = "source"
     SOLVED = "solved"
@@ -30,16 +30,16 @@ class Form(str, Enum):
 def in_form(notebook: NotebookNode, form: Form) -> NotebookNode:
     """Return a copy of a source notebook in the given form, without outputs.
 
-    nbgrader's own preprocessors make the released form, so it is the text that students get.
+    nbgrader's own preprocessors create the released form, so it is exactly what students get.
     """
-    made: NotebookNode = copy.deepcopy(notebook)
+    result: NotebookNode = copy.deepcopy(notebook)
     if form is Form.SOLVED:
-        for cell in made.cells:
+        for cell in result.cells:
             cell.source = strip_markers(cell.source)
-        made = _preprocessed(made, "ClearMarkScheme")
+        result = _preprocessed(result, "ClearMarkScheme")
     elif form is Form.RELEASED:
-        made = _preprocessed(
-            made,
+        result = _preprocessed(
+            result,
             "LockCells",
             "ClearSolutions",
             "ClearOutput",
@@ -47,12 +47,12 @@ def in_form(notebook: NotebookNode, form: Form) -> NotebookNode:
             "ClearHiddenTests",
             "ClearMarkScheme",
         )
-    nbformat.validate(made)
-    return made
+    nbformat.validate(result)
+    return result
 
 
 def _preprocessed(notebook: NotebookNode, *steps: str) -> NotebookNode:
-    # Here because nbgrader takes a second to import, and the source form does not need it.
+    # Imported here because nbgrader takes a second to import, and the source form does not need it.
     from nbgrader import preprocessors
     from traitlets.config import Config
 

@@ -1,4 +1,4 @@
-"""The rules for `mutants.yaml` and the files beside it: each edit fits the reference, and each check has a mutant."""
+"""The rules for `mutants.yaml` and related files: each edit matches the reference, and each check has a mutant."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def read_or_raise(path: Path) -> Any:
     """Return the data of one of these files.
 
     Raises:
-        CourseError: it is not YAML, or breaks its schema. The message has all that is wrong, line by line.
+        CourseError: it is not YAML, or violates its schema. The message lists all problems, line by line.
     """
     read = read_yaml(path, str(path))
     if read.findings:
@@ -30,13 +30,13 @@ def read_or_raise(path: Path) -> Any:
 def broken_mutants(
     folder: Path, shown: str, checks: Collection[str] | None, sources: Collection[str]
 ) -> Iterator[Finding]:
-    """Yield what is wrong with the files of mutants of a chapter.
+    """Yield the problems in a chapter's mutant files.
 
     Args:
         folder: the folder of the chapter's checks.
-        shown: the path by which findings name this folder.
-        checks: the ids of the hidden checks; None if they are not known.
-        sources: the folders of the reference that an answer is made of; none if they are not known.
+        shown: the folder's path in findings.
+        checks: the ids of the hidden checks; None if they are unknown.
+        sources: the folders of the reference that form an answer; empty if they are unknown.
     """
     for name in (SURVIVORS, SNAPSHOT):
         if (folder / name).is_file():
@@ -55,7 +55,7 @@ def broken_mutants(
 
 
 def unproven_checks(folder: Path, shown: str, checks: Collection[str]) -> Iterator[Finding]:
-    """Yield the hidden checks for which no mutant was written, and which none is recorded to fail."""
+    """Yield a finding for each hidden check without a mutant that was written for it or is recorded to fail it."""
     file = _read_mutants(folder, shown)
     entries = [entry for _, entry in _entries(file)]
     proven = {str(entry.get("check")) for entry in entries}
@@ -76,7 +76,7 @@ def _read_mutants(folder: Path, shown: str) -> YamlFile:
 
 
 def _entries(file: YamlFile) -> Iterator[tuple[Place, dict[str, Any]]]:
-    """Yield the place of each mutant of a file, and what the file says of it; its schema says what is none."""
+    """Yield the place and the entry of each mutant in a file. The schema reports invalid entries."""
     listed = file.data.get("mutants") if isinstance(file.data, dict) else None
     for index, entry in enumerate(listed if isinstance(listed, list) else ()):
         if isinstance(entry, dict):
@@ -84,13 +84,13 @@ def _entries(file: YamlFile) -> Iterator[tuple[Place, dict[str, Any]]]:
 
 
 def _recorded(row: Any, checks: Collection[str]) -> Collection[str]:
-    """Return the checks that a row of the snapshot says are failed."""
+    """Return the failed checks in a row of the snapshot."""
     failed = row["fails"] if isinstance(row, dict) else row
     return checks if failed == "all" else failed
 
 
 def _edits(file: YamlFile, place: Place, entry: dict[str, Any], sources: Collection[str]) -> Iterator[Finding]:
-    """Yield what is wrong with the edits of a mutant, each of which changes what the ones before it left."""
+    """Yield the problems in the edits of a mutant. Each edit applies to the result of the previous ones."""
     texts: dict[str, str | None] = {}
     edits = entry.get("edits")
     for index, edit in enumerate(edits if isinstance(edits, list) else ()):

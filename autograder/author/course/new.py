@@ -1,7 +1,7 @@
-"""Writes a new chapter, or a new course, from the files in `assets/new`.
+"""Creates a new chapter or a new course from the templates in `assets/new`.
 
-A new chapter is a small one that works: a notebook, a contract, a reference, visible and hidden checks, mutants and a
-variant, which pass the proof. Its author makes it into another one, step by step.
+A new chapter is small but complete: a notebook, requirements, a reference, visible and hidden checks, mutants and a
+variant. It passes verification. Its author adapts it step by step.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple
         node: the name of the package's node, of its executable and of its module.
 
     Raises:
-        UsageError: a name is not of its form or is taken, or one of the folders is there. Nothing is written then.
+        UsageError: a name is invalid or taken, or one of the folders exists. In that case nothing is written.
     """
     named = NAME.fullmatch(assignment)
     if named is None or not is_package_name(named[1]):
-        raise UsageError(f"{assignment!r} is no name for a chapter: take two digits and a name, such as 10_mapping")
+        raise UsageError(f"{assignment!r} is not a chapter name: use two digits and a name, such as 10_mapping")
     title = named[1].replace("_", " ").capitalize()
     package = package or named[1]
     _require_free("package", package, f"autograder new chapter {assignment} --package my_{named[1]}")
@@ -46,7 +46,7 @@ def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple
     node_class = node.title().replace("_", "")
     if node_class in IMPORTED_CLASSES:
         raise UsageError(
-            f"a node {node!r} would have the class {node_class}, which its module imports, too. Choose another name"
+            f"a node {node!r} would have the class {node_class}, which its module also imports. Choose another name"
         )
     folders = (layout.CHAPTERS / assignment, layout.CHECKS / f"ch{assignment}", layout.SOLUTIONS / package)
     words = {
@@ -68,47 +68,47 @@ def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple
 
 
 def write_course(folder: Path) -> None:
-    """Write a course without chapters to a new folder, with what a repository needs for it.
+    """Create a course without chapters in a new folder, with the files that a repository needs.
 
-    Raises UsageError if the folder is there.
+    Raises UsageError if the folder exists.
     """
     _require_new(folder)
     title = folder.name.replace("_", " ").replace("-", " ").capitalize()
-    # A .gitignore among the templates would be one of this repository's.
+    # Git would apply a .gitignore among the templates to this repository.
     words = {"NEW_COURSE": folder.name, "NEW_TITLE": title, "NEW_DOT_": "."}
     _write(TEMPLATES / "course", folder, words)
 
 
-def _require_free(what: str, name: str, instead: str) -> None:
+def _require_free(kind: str, name: str, alternative: str) -> None:
     if not is_package_name(name):
-        raise UsageError(f"{name!r} is no name for a {what}: take small letters, digits and single underscores")
-    if whose := taken_by(name):
-        raise UsageError(f"a {what} cannot be called {name!r}, which is {whose}. Choose another name: {instead}")
+        raise UsageError(f"{name!r} is not a {kind} name: use lower-case letters, digits and single underscores")
+    if owner := taken_by(name):
+        raise UsageError(f"a {kind} cannot be called {name!r}, which is {owner}. Choose another name: {alternative}")
 
 
 def _require_new(*folders: Path) -> None:
     for folder in folders:
         if folder.exists():
-            raise UsageError(f"{folder} exists already: take another name")
+            raise UsageError(f"{folder} already exists: choose another name")
 
 
 def _write(template: Path, folder: Path, words: Mapping[str, str]) -> None:
-    """Copy a folder of text files, with words replaced in names and texts."""
+    """Copy a folder of text files, with placeholders replaced in names and texts."""
 
-    def worded(text: str) -> str:
-        for word, put in words.items():
-            text = text.replace(word, put)
+    def filled(text: str) -> str:
+        for placeholder, value in words.items():
+            text = text.replace(placeholder, value)
         return text
 
     for source in sorted(path for path in template.rglob("*") if path.is_file() and "__pycache__" not in path.parts):
-        target = folder / worded(str(source.relative_to(template)))
+        target = folder / filled(str(source.relative_to(template)))
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(worded(source.read_text(encoding="utf-8")), encoding="utf-8")
+        target.write_text(filled(source.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 def _complete(chapter: Chapter) -> None:
-    """Write what follows from the rest: copies of the reference, points, minutes, and what will be judged later."""
-    importlib.invalidate_caches()  # the checks were not there when their folder was last looked at
+    """Write the generated parts: copies of the reference, points, minutes, and the titles of hidden checks."""
+    importlib.invalidate_caches()  # Python may have cached the folder without the new checks
     sync_chapter(chapter)
     notebook = chapter.read()
     first = notebook.cells[0]

@@ -1,4 +1,4 @@
-"""The rules for committed notebooks: no outputs, valid nbgrader metadata, headings in order, alternative texts."""
+"""The rules for committed notebooks: no outputs, valid nbgrader metadata, correct headings, alternative texts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ALT = re.compile(r"""\balt=(["'])\s*[^"'\s]""", re.IGNORECASE)
 
 
 def broken_rules(name: str, notebook: NotebookNode) -> list[Finding]:
-    """Return the rules that a source notebook of this file name breaks."""
+    """Return the rules that a source notebook with this file name breaks."""
     try:
         nbformat.validate(notebook)
     except nbformat.ValidationError as error:
@@ -78,8 +78,8 @@ def _nbgrader(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
     from nbgrader.nbgraderformat import SCHEMA_VERSION, MetadataValidator, ValidationError
 
     for cell in notebook.cells:
-        found = cell.metadata.get("nbgrader")
-        if found is not None and found.get("schema_version") != SCHEMA_VERSION:
+        nbgrader_data = cell.metadata.get("nbgrader")
+        if nbgrader_data is not None and nbgrader_data.get("schema_version") != SCHEMA_VERSION:
             yield cell.id, f"its nbgrader metadata must say schema_version {SCHEMA_VERSION}"
             return
     try:
@@ -88,29 +88,29 @@ def _nbgrader(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
         yield None, f"its nbgrader metadata is not valid: {error}"
         return
     for cell in notebook.cells:
-        found = cell.metadata.get("nbgrader", {})
+        nbgrader_data = cell.metadata.get("nbgrader", {})
         try:
             named = group(cell)
         except CourseError as error:
             yield cell.id, str(error)
             continue
-        if is_graded(cell) and not is_manually_graded(cell) and (not found.get("locked") or named is None):
+        if is_graded(cell) and not is_manually_graded(cell) and (not nbgrader_data.get("locked") or named is None):
             yield cell.id, 'a grade cell is locked and names its group of checks: {"course": {"group": ...}}'
         if is_manually_graded(cell):
             yield from ((cell.id, message) for message in _manual(cell, named))
-        if MARK_SCHEME in cell.source and not found.get("locked"):
-            yield cell.id, "holds a mark scheme but is not locked: lock it, so that autograding can restore it"
-        if "BEGIN SOLUTION" in cell.source and not found.get("solution"):
-            yield cell.id, "holds a solution but is not marked as a solution cell"
+        if MARK_SCHEME in cell.source and not nbgrader_data.get("locked"):
+            yield cell.id, "contains a mark scheme but is not locked: lock it, so that autograding can restore it"
+        if "BEGIN SOLUTION" in cell.source and not nbgrader_data.get("solution"):
+            yield cell.id, "contains a solution but is not marked as a solution cell"
 
 
 def _manual(cell: NotebookNode, named: str | None) -> Iterator[str]:
     marks = cell.metadata.nbgrader
     if marks.get("locked"):
-        yield "is locked, but students answer in it: unlock it"
+        yield "is locked, but students must write in it: unlock it"
     if not marks.get("points"):
         yield "a manually graded cell needs points above 0"
     if named is not None:
-        yield f"a person gives its points: it cannot stand for the group {named!r} of checks, too"
+        yield f"is graded by a person and cannot also belong to the group {named!r} of checks"
     if "BEGIN SOLUTION" not in cell.source:
-        yield "a manually graded cell holds a model answer, between the solution marks"
+        yield "a manually graded cell needs a model answer between the solution markers"

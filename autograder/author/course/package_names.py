@@ -1,7 +1,7 @@
-"""The names that a new package or node may not have, because Python, pip, ROS or colcon uses them.
+"""Names that a new package or node must not have, because Python, pip, ROS or colcon uses them.
 
-A student's package is found before what is installed. One that is called `launch` would take the place of ROS's own,
-and programs that import that would fail for a reason that no student can see.
+A student's package is found before installed ones. A package called `launch` would hide ROS's own, and programs that
+import it would fail for a reason that a student cannot see.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from importlib import metadata
 from pathlib import Path
 
 FORM = re.compile(r"[a-z](?:_?[a-z0-9]+)*")
-# Released packages of ROS. Most are not installed here, but they are where a student goes on.
+# Released ROS packages. Most are not installed here, but students will meet them elsewhere.
 ROS_PACKAGES = Path(__file__).with_name("ros_packages.json")
-# Of PyPI, and not installed with the course: a robot's programs import them sooner or later.
+# PyPI packages that are not installed with the course, but that robot programs often import.
 OFTEN_INSTALLED = {
     *("cv2", "flask", "gym", "gymnasium", "jax", "keras", "networkx", "numba", "open3d", "opencv", "pandas", "pillow"),
     *("pygame", "pyserial", "requests", "scipy", "serial", "shapely", "sklearn", "sympy", "tensorflow", "torch"),
@@ -28,12 +28,12 @@ USED_BY_TOOLS = {"build", "install", "log", "src", "ws", "setup", "conftest", "t
 
 
 def is_package_name(name: str) -> bool:
-    """Return whether a name has the form that ROS wants of a package, and Python of a module."""
+    """Return whether a name is valid for a ROS package and a Python module."""
     return FORM.fullmatch(name) is not None and not keyword.iskeyword(name)
 
 
 def taken_by(name: str) -> str:
-    """Return what has a name already, such as "a package of ROS", or "" if the name is free."""
+    """Return the owner of a name, such as "a package of ROS", or "" if the name is free."""
     if name in sys.stdlib_module_names:
         return "a module of Python's standard library"
     if name in _ros_packages():
@@ -43,7 +43,7 @@ def taken_by(name: str) -> str:
     if name.replace("_", "-") in _pip_packages():
         return "a package that pip installed"
     if _is_importable(name):
-        return "a module that Python can import already"
+        return "a module that Python can already import"
     return "a package of PyPI that robots often use" if name in OFTEN_INSTALLED else ""
 
 
@@ -54,12 +54,12 @@ def _ros_packages() -> frozenset[str]:
 
 @cache
 def _pip_packages() -> frozenset[str]:
-    """Return the names of what pip installed, as pip compares them."""
+    """Return the normalized names of the packages that pip installed."""
     named = (str(found.metadata["Name"]) for found in metadata.distributions())
     return frozenset(re.sub(r"[-_.]+", "-", name).lower() for name in named)
 
 
 def _is_importable(name: str) -> bool:
-    """Return whether a module has this name. A mere folder on Python's path, which has no file of Python, is none."""
+    """Return whether a module has this name. A folder on Python's path without Python files does not count."""
     spec = importlib.util.find_spec(name)
     return spec is not None and spec.origin is not None

@@ -1,6 +1,6 @@
 """Compares the points of a notebook's grade cells with those of its hidden suite.
 
-The suite has no points for the cells that a person grades.
+Cells that a person grades are ignored, because the suite has no points for them.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from autograder.author.course.findings import Difference, Finding
 
 
 def point_differences(name: str, notebook: NotebookNode, points: Mapping[str, float]) -> Iterator[Difference]:
-    """Yield the grade cells whose points, group or place differ from the suite's, and the groups without a cell.
+    """Yield the grade cells whose points, group or order differ from the suite's, and the groups without a cell.
 
-    Findings call the notebook by `name`. `points` are those of each group of its hidden suite.
+    Findings refer to the notebook by `name`. `points` are the points of each group of its hidden suite.
     """
     seen: dict[str, None] = {}
     for cell in notebook.cells:
@@ -25,7 +25,7 @@ def point_differences(name: str, notebook: NotebookNode, points: Mapping[str, fl
             continue
         named, has = group(cell), cell.metadata.nbgrader.get("points")
         if named is None or named not in points:
-            message = f"stands for no group of the suite ({named!r}); its groups: {', '.join(points) or 'none'}"
+            message = f"names the unknown group {named!r}; the suite's groups are {', '.join(points) or 'none'}"
             yield Finding(name, cell.id, message), None
         elif named in seen:
             yield Finding(name, cell.id, f"is the second cell of group {named!r}"), None
@@ -36,7 +36,7 @@ def point_differences(name: str, notebook: NotebookNode, points: Mapping[str, fl
         seen.setdefault(str(named))
     for named in points:
         if named not in seen:
-            yield Finding(name, None, f"no grade cell stands for group {named!r}"), None
+            yield Finding(name, None, f"group {named!r} has no grade cell"), None
     order = [named for named in points if named in seen]
     if [named for named in seen if named in points] != order:
-        yield Finding(name, None, f"its grade cells do not stand in the order of the suite: {', '.join(order)}"), None
+        yield Finding(name, None, f"its grade cells are not in the order of the suite: {', '.join(order)}"), None

@@ -1,4 +1,4 @@
-"""Reads the Python files of a course without running them: their syntax, their names, and the checks in them."""
+"""Parses the Python files of a course without running them: their syntax, names and checks."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class PythonFile:
     """A Python file.
 
     Attributes:
-        shown: the path by which findings name it.
-        tree: what it holds, or nothing if it does not parse.
-        findings: why it does not parse.
+        shown: its path in findings.
+        tree: its syntax tree, which is empty if the file cannot be parsed.
+        findings: the reason why it cannot be parsed.
     """
 
     shown: str
@@ -28,15 +28,15 @@ class PythonFile:
     findings: tuple[Finding, ...] = ()
 
     def finding(self, node: ast.AST | None, message: str) -> Finding:
-        """Return a finding at a node, or in the first line."""
+        """Return a finding at a node, or at the first line."""
         return Finding(self.shown, None, message, getattr(node, "lineno", 1))
 
     def functions(self) -> list[Function]:
-        """Return the functions at the top of the file."""
+        """Return the top-level functions of the file."""
         return [node for node in self.tree.body if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
 
     def constants(self) -> Iterator[tuple[str, ast.expr]]:
-        """Yield the names in capitals that the file sets at its top, with their values."""
+        """Yield the file's top-level constants (upper-case names) with their values."""
         for node in self.tree.body:
             targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
             value = getattr(node, "value", None)
@@ -46,7 +46,7 @@ class PythonFile:
 
 
 def read_python(path: Path, shown: str) -> PythonFile:
-    """Read a Python file that is there."""
+    """Parse an existing Python file."""
     try:
         return PythonFile(shown, ast.parse(path.read_bytes(), filename=shown))
     except SyntaxError as error:
@@ -56,7 +56,7 @@ def read_python(path: Path, shown: str) -> PythonFile:
 
 
 def decorator_name(decorator: ast.expr) -> str:
-    """Return the name of a decorator, without its module and its arguments."""
+    """Return the name of a decorator without its module and arguments."""
     function = decorator.func if isinstance(decorator, ast.Call) else decorator
     return function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
 
@@ -67,7 +67,7 @@ def decorators(function: Function) -> dict[str, ast.expr]:
 
 
 def declaration(function: Function) -> ast.Call | None:
-    """Return the decorator that declares a function a check, or None: it is called `check`, or says points."""
+    """Return the decorator that declares a check (it is called `check` or has points), or None."""
     calls = (each for each in function.decorator_list if isinstance(each, ast.Call))
     return next((call for call in calls if decorator_name(call) == "check" or argument(call, "points")), None)
 
@@ -78,7 +78,7 @@ def argument(call: ast.Call, name: str) -> ast.expr | None:
 
 
 def literal(node: ast.expr | None) -> Any:
-    """Return the value of an expression without names and calls, or None."""
+    """Return the value of a literal expression, or None."""
     try:
         return None if node is None else ast.literal_eval(node)
     except ValueError:

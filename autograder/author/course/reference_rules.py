@@ -1,4 +1,4 @@
-"""The rules for the packages of the reference, and for what lies beside a chapter's suites."""
+"""The rules for the packages of the reference, and for other files beside a chapter's suites."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MANIFEST = "package.xml"
 
 
 def broken_packages(packages: Collection[str]) -> Iterator[Finding]:
-    """Yield what is wrong with these folders of the reference. One without a manifest is none of ROS's packages."""
+    """Yield the problems in these folders of the reference. A folder without a manifest is not a ROS package."""
     for name in packages:
         folder = layout.SOLUTIONS / name
         if (folder / MANIFEST).is_file():
@@ -26,13 +26,13 @@ def broken_packages(packages: Collection[str]) -> Iterator[Finding]:
 
 
 def broken_python(folder: Path) -> Iterator[Finding]:
-    """Yield the Python files of a chapter's checks that do not parse, besides those of the suites themselves."""
+    """Yield a finding for each unparsable Python file of a chapter's checks, except the suites' own files."""
     for path in sorted([*folder.glob("*.py"), *folder.glob("support/**/*.py"), *folder.glob("*/conftest.py")]):
         yield from read_python(path, shown(path)).findings
 
 
 def broken_variants(folder: Path, packages: Collection[str]) -> Iterator[Finding]:
-    """Yield the variants of a chapter that change nothing that is graded."""
+    """Yield a finding for each variant of a chapter that does not change any graded file."""
     for variant in sorted(path for path in folder.glob("*") if path.is_dir()):
         for package in sorted(path.name for path in variant.iterdir()):
             if packages and package not in packages:

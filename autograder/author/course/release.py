@@ -1,7 +1,7 @@
-"""Writes the students' bundle: released notebooks, the simulator, and the part of the autograder that students run.
+"""Writes a student release: released notebooks, the simulator, and the part of the autograder that students run.
 
-The bundle holds no hidden check, no solution and no proof of the grader. It is a project of its own: `make lab` works
-in it.
+It contains no hidden checks, no solutions and no verification. It is a self-contained project in which `make lab`
+works.
 """
 
 from __future__ import annotations
@@ -20,25 +20,25 @@ from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import Chapter, chapters
 from autograder.exceptions import UsageError
 
-# Files and whole folders that are copied beside the course.
+# Files and folders that are copied in addition to the course.
 IMAGE = (".binder", ".devcontainer")
 COPIED = ("sim", "autograder", "assets/worlds", "pyproject.toml", "requirements.lock", "LICENSE", *IMAGE)
-STUDENT_FILES = layout.ROOT / "assets" / "students"  # the README and the Makefile of the bundle
-# The entries of a chapter's folder of checks that students get.
+STUDENT_FILES = layout.ROOT / "assets" / "students"  # the README and the Makefile of a student release
+# The parts of a chapter's folder of checks that students get.
 STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})
-# The modules of the command line that students get: their verbs, and what these need.
+# The command-line modules that students get: their verbs and the dependencies of these.
 STUDENT_CLI = frozenset({"__init__.py", "options.py", "terminal.py", "check.py", "doctor.py", "ros.py", "update.py"})
 WITHHELD = ("author/course", "author/verification", "grade/cluster", "lms", "report")  # parts for instructors only
 
 
 def write_bundle(out: Path, names: tuple[str, ...] = (), newest: str = "") -> list[str]:
-    """Write the students' bundle of these chapters (all by default) to the new folder `out`; return their names.
+    """Write a student release of these chapters (all by default) to the new folder `out`, and return their names.
 
-    Its version is the present time. `newest` is the folder where students' machines find the newest release. Raises
-    UsageError if `out` exists or a chapter does not. Nothing is written then.
+    Its version is the current time. `newest` is the folder where students' machines find the newest release. Raises
+    UsageError, and writes nothing, if `out` exists or a chapter does not.
     """
     if out.exists():
-        raise UsageError(f"{out} exists already: name a folder that does not exist yet")
+        raise UsageError(f"{out} already exists: choose a new folder")
     chosen = chapters(names)
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{out.name}-", dir=out.parent) as scratch:
@@ -60,19 +60,19 @@ def write_bundle(out: Path, names: tuple[str, ...] = (), newest: str = "") -> li
 
 
 def copy_tool(parts: Iterable[str], folder: Path) -> None:
-    """Copy files and folders that lie around the autograder, without any course's checks, to `folder`."""
+    """Copy files and folders of the autograder's repository to `folder`, without any course's checks."""
     _copy(layout.ROOT, parts, folder)
     for chapter in (folder / "autograder" / "checks").glob("ch*"):
         shutil.rmtree(chapter)
 
 
 def copy_course(parts: Iterable[str], folder: Path) -> None:
-    """Copy those files and folders of the course that it has, by their paths in it, to `folder`."""
+    """Copy files and folders of the course to `folder`, if they exist. `parts` are paths relative to the course."""
     _copy(layout.course().root, (part for part in parts if (layout.course().root / part).exists()), folder)
 
 
 def _copy(root: Path, parts: Iterable[str], folder: Path) -> None:
-    """Copy what lies below `root`, without what tools left behind."""
+    """Copy parts of `root` without files that tools have left behind."""
     for part in parts:
         source, target = root / part, folder / part
         if source.is_dir():
@@ -92,6 +92,6 @@ def _withhold(bundle: Path) -> None:
 
 
 def write_released(chapter: Chapter, folder: Path) -> None:
-    """Write the folder of a chapter as students get it."""
+    """Write a chapter's folder as students get it."""
     shutil.copytree(chapter.folder, folder, ignore=layout.NOT_COPIED)
     nbformat.write(in_form(chapter.read(), Form.RELEASED), folder / chapter.notebook_path.name)

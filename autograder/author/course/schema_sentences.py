@@ -1,6 +1,6 @@
-"""Says in a sentence what breaks a JSON schema, and where.
+"""Describes violations of a JSON schema in sentences.
 
-The sentence of `anyOf`, `pattern` and the like is the `description` that stands beside them in the schema.
+For `anyOf`, `pattern` and similar keywords, the sentence is the `description` beside them in the schema.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ KINDS = ((bool, "true or false"), (str, "a text"), ((int, float), "a number"), (
 
 
 def broken_schema(data: Any, schema: Mapping[str, Any], whole: str = "the file") -> Iterator[tuple[Place, str]]:
-    """Yield each place of plain data that breaks a schema, with what is wrong there. A sentence comes once.
+    """Yield each place in plain data that violates a schema, with a sentence. Each sentence is yielded once.
 
-    Sentences call the data `whole`, and a part of them by its place.
+    Sentences refer to the whole data as `whole`, and to a part by its place.
     """
     told: dict[tuple[Place, str], None] = {}
     for error in sorted(Draft202012Validator(schema).iter_errors(data), key=lambda each: [*map(str, each.path)]):
@@ -42,20 +42,20 @@ def broken_schema(data: Any, schema: Mapping[str, Any], whole: str = "the file")
 
 @cache
 def file_schema(name: str) -> dict[str, Any]:
-    """Return the schema of the file of this name, such as `mutants.yaml`."""
+    """Return the schema for files with this name, such as `mutants.yaml`."""
     schemas: dict[str, Any] = json.loads(SCHEMAS.read_text(encoding="utf-8"))
     return {"$ref": f"#/$defs/{name}", "$defs": schemas["$defs"]}
 
 
 def meant(name: str, known: Iterable[str]) -> str:
-    """Return the end of a sentence about an unknown name: what its author may have meant, or what there is."""
+    """Return the end of a sentence about an unknown name: a similar known name, or all known names."""
     known = list(known)
     close = difflib.get_close_matches(name, known, n=1)
     return f"did you mean `{close[0]}`?" if close else f"there are: {', '.join(known) or 'none'}"
 
 
 def _sentences(error: Any, here: str) -> Iterator[tuple[Place, str]]:
-    """Yield what is wrong at an error of jsonschema's, which may be several keys below its place, called `here`."""
+    """Yield sentences for an error of jsonschema, which may concern several keys below the place `here`."""
     schema, rule, wanted, instance = error.schema, error.validator, error.validator_value, error.instance
     if rule == "additionalProperties" and wanted is False:
         known = list(schema["properties"])
@@ -81,12 +81,12 @@ def _sentences(error: Any, here: str) -> Iterator[tuple[Place, str]]:
 
 
 def _named(place: Place) -> str:
-    """Return a place as a person writes it: `mutants[2].edits[0].find`."""
+    """Return a place in readable form: `mutants[2].edits[0].find`."""
     return "".join(f"[{part}]" if part.isdigit() else f".{part}" for part in place).lstrip(".")
 
 
 def _id(data: Any, error: ValidationError) -> str:
-    """Return the `id` of the innermost mapping around an error that has one, in brackets, or an empty string."""
+    """Return the `id` of the innermost enclosing mapping that has one, in brackets, or an empty string."""
     found, inside = "", data
     for part in error.absolute_path:
         inside = inside[part]

@@ -1,7 +1,7 @@
 """Writes nbgrader's solution markers around answers. nbgrader removes the text between them from a release.
 
-In Python the answers are the bodies of named functions, which `ast` finds. In any other text they are the lines between
-two named lines. A name that is not in the text is an error, because the answer would otherwise be released.
+In Python, the answers are the bodies of the given functions, located with `ast`. In other files, they are the lines
+between two given lines. A missing function or line is an error, because the answer would otherwise be released.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 def mark_functions(text: str, hide: Sequence[str]) -> str:
     """Return Python source with solution markers around the bodies of the functions in `hide`.
 
-    Signature, decorators and docstring stay outside the markers, because the student needs them. Names are qualified:
-    `main`, `RobotController.control_loop`. Raises CourseError if any of the bodies cannot be marked.
+    Signature, decorators and docstring are outside the markers, because the student needs them. Names are qualified:
+    `main`, `RobotController.control_loop`. Raises CourseError if one of the bodies cannot be marked.
     """
     try:
         functions = list(_functions(ast.parse(text)))
@@ -31,19 +31,19 @@ def mark_functions(text: str, hide: Sequence[str]) -> str:
         raise CourseError(f"the source does not parse: {error.msg} in line {error.lineno}") from error
     regions = []
     for name in hide:
-        found = [function for qualified, function in functions if qualified == name]
-        if len(found) != 1:
+        matches = [function for qualified, function in functions if qualified == name]
+        if len(matches) != 1:
             known = ", ".join(sorted({qualified for qualified, _ in functions})) or "none"
-            raise CourseError(f"function {name!r} occurs {len(found)} times in the source; its functions: {known}")
-        regions.append(_region(name, found[0]))
+            raise CourseError(f"function {name!r} occurs {len(matches)} times in the source; its functions: {known}")
+        regions.append(_region(name, matches[0]))
     return _marked(text, regions)
 
 
 def mark_lines(text: str, cuts: Sequence[tuple[str, str]]) -> str:
     """Return text of any kind with solution markers around the lines between each pair of lines.
 
-    The lines of a pair stand without indentation. Each occurs once in the text. An empty string stands for the start or
-    the end of the file. Raises CourseError if any of the regions cannot be marked.
+    The lines of a pair are given without indentation. Each must occur once in the text. An empty string means the start
+    or the end of the file. Raises CourseError if one of the regions cannot be marked.
     """
     lines = text.splitlines()
     regions = []
@@ -56,17 +56,17 @@ def mark_lines(text: str, cuts: Sequence[tuple[str, str]]) -> str:
 
 
 def strip_markers(text: str) -> str:
-    """Return the text without solution markers, as a student who solved it has it."""
+    """Return the text without solution markers, as in a solved notebook."""
     return "\n".join(line for line in text.split("\n") if line.strip() not in (BEGIN, END))
 
 
 def _marked(text: str, regions: list[tuple[int, int, int]]) -> str:
-    """Return text with markers around regions: the indices of the first line and behind the last, the indentation."""
+    """Return text with markers around regions: (index of the first line, index after the last, indentation)."""
     if BEGIN in text or END in text:
-        raise CourseError("the source holds solution markers: remove them, they belong in notebooks only")
+        raise CourseError("the source contains solution markers: remove them, they belong only in notebooks")
     regions.sort()
     if any(before[1] > after[0] for before, after in pairwise(regions)):
-        raise CourseError("parts inside each other cannot both be hidden")
+        raise CourseError("nested parts cannot both be hidden")
     lines = text.splitlines()
     for first, end, indent in reversed(regions):
         lines[end:end] = [" " * indent + END]
@@ -74,14 +74,14 @@ def _marked(text: str, regions: list[tuple[int, int, int]]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _line_index(lines: Sequence[str], wanted: str, default: int) -> int:
-    """Return the index of the line `wanted`, or the default for an empty string."""
-    if not wanted:
+def _line_index(lines: Sequence[str], text: str, default: int) -> int:
+    """Return the index of the line `text`, or the default for an empty string."""
+    if not text:
         return default
-    found = [index for index, line in enumerate(lines) if line.strip() == wanted]
-    if len(found) != 1:
-        raise CourseError(f"the line {wanted!r} occurs {len(found)} times in the source")
-    return found[0]
+    indices = [index for index, line in enumerate(lines) if line.strip() == text]
+    if len(indices) != 1:
+        raise CourseError(f"the line {text!r} occurs {len(indices)} times in the source")
+    return indices[0]
 
 
 def _functions(node: ast.AST, prefix: str = "") -> Iterator[tuple[str, Function]]:
@@ -99,10 +99,10 @@ def _region(name: str, function: Function) -> tuple[int, int, int]:
     """Return the region of a function's body after its docstring, for `_marked`."""
     if ast.get_docstring(function, clean=False) is None:
         raise CourseError(f"function {name!r} has no docstring: write one, students see it in place of the body")
-    # The region starts right after the docstring: a comment above the first statement may hold a part of the answer.
+    # The region starts right after the docstring, because a comment above the first statement may reveal the answer.
     first, end = function.body[0].end_lineno, function.body[-1].end_lineno
     assert first is not None, "ast.parse sets it"
     assert end is not None, "ast.parse sets it"
     if first >= end:
-        raise CourseError(f"function {name!r} has nothing to hide on lines of its own after its docstring")
+        raise CourseError(f"function {name!r} has no separate lines to hide after its docstring")
     return first, end, function.body[0].col_offset

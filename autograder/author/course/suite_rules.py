@@ -1,7 +1,7 @@
-"""The rules for the modules of a suite, which are read and not run: what `__init__.py` says, how checks are declared.
+"""The rules for the modules of a suite: the settings in `__init__.py` and the declarations of checks.
 
-`autograder.suite.suites` ends at the first mistake, and Python has its own words for many. Here each one is a sentence
-with its file and line, all at once.
+`autograder.suite.suites` stops at the first mistake, often with one of Python's own messages. This module parses the
+files without running them, and reports all mistakes at once, each as a sentence with its file and line.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ HELPERS = ("__init__.py", "conftest.py")
 
 @dataclass(frozen=True)
 class ReadSuite:
-    """A suite as it is written, whether it can be run or not.
+    """A parsed suite, which may be invalid.
 
     Attributes:
-        findings: what is wrong with it.
+        findings: its problems.
         places: file and line of each check, by its id.
-        sources: the folders of the reference that it grades, as far as they can be told.
-        is_complete: whether `places` has every check.
+        sources: the folders of the reference that it grades, as far as they are known.
+        is_complete: whether `places` contains every check.
     """
 
     findings: tuple[Finding, ...]
@@ -52,13 +52,13 @@ class ReadSuite:
 
 
 def shown(path: Path) -> str:
-    """Return the path by which findings name a file: below the course's folder, where it lies there."""
+    """Return a file's path for findings: relative to the course's folder, if it is inside."""
     root = layout.course().root
     return str(path.relative_to(root) if path.is_relative_to(root) else path)
 
 
 def read_suite(assignment: str, kind: str) -> ReadSuite:
-    """Read the suite of an assignment of this kind, "visible" or "hidden"."""
+    """Parse the "visible" or "hidden" suite of an assignment."""
     folder = layout.CHECKS / f"ch{assignment}" / kind
     top = folder / "__init__.py"
     if not top.is_file():
@@ -84,7 +84,7 @@ def read_suite(assignment: str, kind: str) -> ReadSuite:
 
 
 def _described(file: PythonFile, folder: Path, modules: dict[str, PythonFile]) -> Iterator[Finding]:
-    """Yield what is wrong with the `__init__.py` of a suite."""
+    """Yield the problems in the `__init__.py` of a suite."""
     values = dict(file.constants())
     for name, value in values.items():
         said = literal(value)
@@ -120,7 +120,7 @@ def _described(file: PythonFile, folder: Path, modules: dict[str, PythonFile]) -
 
 
 def _checks(file: PythonFile, places: dict[str, tuple[str, int]], has_tables: bool) -> Iterator[Finding]:
-    """Yield what is wrong with the checks that a module declares, and write down where each stands."""
+    """Yield the problems in a module's declarations of checks, and add the location of each check to `places`."""
     for node in file.tree.body:
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
             yield from _dependencies(file, node.value, places, None, has_tables)
@@ -161,7 +161,7 @@ def _checks(file: PythonFile, places: dict[str, tuple[str, int]], has_tables: bo
 def _dependencies(
     file: PythonFile, call: ast.Call, places: dict[str, tuple[str, int]], id: str | None, has_tables: bool
 ) -> Iterator[Finding]:
-    """Yield the names of other checks that a declaration has, and that do not stand before it."""
+    """Yield a finding for each check that a declaration names but that is not declared before it."""
     whose = "the group" if id is None else f"the check `{id}`"
     for name in ("needs", "after"):
         said = literal(argument(call, name))
@@ -178,17 +178,17 @@ def _dependencies(
 
 
 def _declared(module: PythonFile) -> Iterator[Function]:
-    """Yield the functions of a module that are checks, or that pytest would take for one."""
+    """Yield the functions of a module that are checks, or that pytest would treat as checks."""
     for function in module.functions():
         if function.name.startswith(PREFIX) or declaration(function) or "check_each_row" in decorators(function):
             yield function
 
 
 def _has_tables(file: PythonFile) -> bool:
-    """Return whether a module declares checks by the rows of a table, whose names cannot be read."""
+    """Return whether a module declares checks with the rows of a table, whose names cannot be parsed."""
     return any("check_each_row" in decorators(function) for function in file.functions())
 
 
 def _texts(value: object) -> tuple[str, ...]:
-    """Return a tuple or list of texts as a tuple, and nothing for any other value."""
+    """Return a tuple or list of texts as a tuple, or an empty tuple for any other value."""
     return tuple(value) if isinstance(value, (tuple, list)) and all(isinstance(each, str) for each in value) else ()

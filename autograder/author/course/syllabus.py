@@ -1,9 +1,9 @@
-"""The syllabus, and which cells and hidden checks of the course cover it.
+"""The syllabus, and the cells and hidden checks of the course that cover it.
 
-A syllabus is a YAML file. It lists a text's objectives, sections, examples, steps and questions, and its errors. The
-metadata of cells name the items that they cover (`covers`) and the `errata` that they correct. Those of a notebook name
-the errata that its packages correct, and for each objective the cell with the exercise's heading and the groups of
-hidden checks that test it (`objectives`).
+A syllabus is a YAML file. It lists the objectives, sections, examples, steps, questions and errors of a text. The
+metadata of a cell name the items that it covers (`covers`) and the `errata` that it corrects. The metadata of a
+notebook name the errata that its packages correct. For each objective, they also name the cell with the exercise's
+heading and the groups of hidden checks that test it (`objectives`).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _HEADING = re.compile(r"^#{1,6} +(?!BEGIN |END )(.+)$", re.MULTILINE)
 
 @dataclass(frozen=True)
 class Syllabus:
-    """The contents of the chapter that the course teaches, by key.
+    """The contents of the textbook chapter, by key.
 
     `items` are sections, examples, steps and questions. `errata` are pairs of an error and its correction.
     """
@@ -40,7 +40,7 @@ class Syllabus:
 
     @classmethod
     def read(cls, path: Path | None = None) -> Syllabus:
-        """Read a YAML file, that of the course by default. Raises CourseError with all that is wrong with it."""
+        """Read a YAML file, by default the course's. Raises CourseError with all of its problems."""
         path = path or layout.course().root / layout.course().syllabus
         if not path.is_file():
             raise CourseError(f"{path}: is missing: it names the objectives of the course")
@@ -63,7 +63,7 @@ class Location:
 
 @dataclass(frozen=True)
 class ExerciseRow:
-    """The heading of an exercise, the key of the objective that it serves, and the hidden checks that test it."""
+    """The heading of an exercise, the key of its objective, and the hidden checks that test it."""
 
     objective: str
     chapter: str
@@ -75,7 +75,7 @@ class ExerciseRow:
 class SyllabusCoverage:
     """The parts of the syllabus that notebooks cover: exercises, and the locations of each item and erratum.
 
-    The findings name what nothing covers, and what the syllabus does not have.
+    The findings list syllabus entries that nothing covers, and keys that the syllabus does not contain.
     """
 
     rows: tuple[ExerciseRow, ...]
@@ -87,7 +87,7 @@ class SyllabusCoverage:
 def find_coverage(
     syllabus: Syllabus, chapters: Sequence[tuple[str, NotebookNode, Sequence[Check]]]
 ) -> SyllabusCoverage:
-    """Find what chapters cover, each given as its name, its source notebook and its hidden checks."""
+    """Find the coverage by chapters. Each is a tuple of its name, its source notebook and its hidden checks."""
     rows: list[ExerciseRow] = []
     items: dict[str, list[Location]] = {key: [] for key in syllabus.items}
     errata: dict[int, list[Location]] = {number: [] for number in syllabus.errata}
@@ -118,13 +118,13 @@ def find_coverage(
 
 
 def _locations(name: str, notebook: NotebookNode) -> Iterator[tuple[str | None, Location, Any]]:
-    """Yield (cell id, location, course metadata) of the notebook, whose id is None, and of each cell."""
-    title = next((found[1] for cell in notebook.cells if (found := _HEADING.search(cell.source))), name)
+    """Yield (cell id, location, course metadata) for the notebook, with the id None, and for each cell."""
+    title = next((match[1] for cell in notebook.cells if (match := _HEADING.search(cell.source))), name)
     yield None, Location(name, title), metadata(notebook)
     heading = title
     for cell in notebook.cells:
-        if cell.cell_type == "markdown" and (found := _HEADING.search(cell.source)):
-            heading = found[1]
+        if cell.cell_type == "markdown" and (match := _HEADING.search(cell.source)):
+            heading = match[1]
         yield cell.id, Location(name, heading), metadata(cell)
 
 

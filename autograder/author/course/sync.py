@@ -1,4 +1,4 @@
-"""Copies the reference solutions and the points of the suites into the notebooks, and finds what differs from them."""
+"""Copies the reference solutions and the points of the suites into the notebooks, and finds differences."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SHOWN_LINES = 12
 
 @dataclass(frozen=True)
 class Chapter:
-    """The folder of a chapter. Its notebook has the same name."""
+    """A chapter's folder, with a notebook of the same name."""
 
     folder: Path
 
@@ -40,18 +40,18 @@ class Chapter:
         return self.folder / f"{self.folder.name}.ipynb"
 
     def read(self) -> NotebookNode:
-        """Read the notebook. Raises CourseError if there is none, or it is none of this format."""
+        """Read the notebook. Raises CourseError if it is missing or has another format."""
         if not self.notebook_path.is_file():
             raise CourseError(f"{self.folder.name}: the folder has no notebook {self.folder.name}.ipynb: create it")
         text = self.notebook_path.read_text(encoding="utf-8")
         try:
             with warnings.catch_warnings():
-                # nbformat would assign new ids, but grades and findings refer to the old ones.
+                # Otherwise nbformat assigns new ids, but grades and findings refer to the old ones.
                 warnings.simplefilter("error", nbformat.warnings.DuplicateCellId)
                 warnings.simplefilter("error", nbformat.warnings.MissingIDFieldWarning)
                 notebook: NotebookNode = nbformat.reads(text, as_version=nbformat.NO_CONVERT)
         except (nbformat.warnings.DuplicateCellId, nbformat.warnings.MissingIDFieldWarning) as error:
-            raise CourseError(f"{self.notebook_path.name}: each cell needs an id of its own: {error}") from error
+            raise CourseError(f"{self.notebook_path.name}: each cell needs a unique id: {error}") from error
         except (nbformat.reader.NotJSONError, nbformat.ValidationError) as error:
             raise CourseError(f"{self.notebook_path.name} is not a notebook: {error}") from error
         if notebook.get("nbformat") != nbformat.current_nbformat:
@@ -64,19 +64,19 @@ class Chapter:
 
 
 def chapters(names: Sequence[str] = ()) -> list[Chapter]:
-    """Return the chapters of these names, or all in order; a UsageError lists the existing ones."""
+    """Return the chapters of these names, or all in order. A UsageError lists the existing ones."""
     return [Chapter(layout.chapter(name)) for name in names or layout.assignments()]
 
 
 def find_outdated(
     chapter: Chapter, notebook: NotebookNode | None = None, points: Mapping[str, float] | None = None
 ) -> list[Finding]:
-    """Return the cells and files that differ from the reference or the suite, and those with wrong metadata.
+    """Return the cells and files that differ from the reference or the suite, and those with invalid metadata.
 
     Args:
         chapter: the chapter.
-        notebook: its notebook, which is read if it is not given.
-        points: the points of each group of its hidden suite, or None if they are not known, and not compared.
+        notebook: its notebook; read from the chapter if None.
+        points: the points of each group of its hidden suite, or None to skip the comparison.
     """
     notebook = chapter.read() if notebook is None else notebook
     return [finding for finding, _ in _differences(chapter, notebook, points)]
@@ -85,8 +85,8 @@ def find_outdated(
 def sync_chapter(chapter: Chapter, *, write: bool = True) -> list[Finding]:
     """Copy the reference and the suite's points into a chapter, and return the cells and files that differed.
 
-    Nothing is written without `write`.
-    Raises CourseError for what only an author can correct. Nothing is written then.
+    Without `write`, nothing is written. Raises CourseError, and writes nothing, if there is a problem that only an
+    author can fix.
     """
     notebook = chapter.read()
     graded = any(map(is_graded, notebook.cells))
@@ -129,7 +129,7 @@ def _differences(chapter: Chapter, notebook: NotebookNode, points: Mapping[str, 
         current = path.read_text(encoding="utf-8") if path.is_file() else None
         if current != text:
             what = "is missing" if current is None else "differs"
-            message = f"the given file {target} {what}; solutions/{pairs[target]} holds it; "
+            message = f"the given file {target} {what}; its source is solutions/{pairs[target]}; "
             message += "run `autograder course sync`" + _diff(current or "", text)
             yield Finding(name, None, message), partial(write_atomically, path, text.encode())
 
@@ -137,6 +137,6 @@ def _differences(chapter: Chapter, notebook: NotebookNode, points: Mapping[str, 
 def _diff(current: str, expected: str) -> str:
     """Return the first differing lines, indented."""
     lines = difflib.unified_diff(current.splitlines(), expected.splitlines(), "notebook", "reference", n=1, lineterm="")
-    shown = list(lines)[2:]
-    more = [f"... and {len(shown) - SHOWN_LINES} more lines"] if len(shown) > SHOWN_LINES else []
-    return "".join(f"\n    {line}" for line in shown[:SHOWN_LINES] + more)
+    differing = list(lines)[2:]
+    more = [f"... and {len(differing) - SHOWN_LINES} more lines"] if len(differing) > SHOWN_LINES else []
+    return "".join(f"\n    {line}" for line in differing[:SHOWN_LINES] + more)

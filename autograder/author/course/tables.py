@@ -1,7 +1,7 @@
 """Writes the instructors' page: where the course covers the syllabus, and which checks test it.
 
 It also writes the titles of an assignment's hidden checks, which `check(...)` shows to students when all visible checks
-have passed. A title is a sentence of the contract; it tells no input.
+have passed. A title describes a requirement and reveals no input.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ notebooks' metadata, the hidden checks and `{syllabus}`; a test holds it.
 
 
 def course_page() -> tuple[str, tuple[Finding, ...]]:
-    """Return the instructors' page of the course, and the problems found in its notebooks and syllabus."""
+    """Return the instructors' page of the course, and the problems in its notebooks and syllabus."""
     syllabus, have_suites = Syllabus.read(), suites.graded_assignments()
     notebooks = {chapter.assignment: chapter.read() for chapter in chapters()}
     covered = find_coverage(
@@ -47,7 +47,7 @@ def course_page() -> tuple[str, tuple[Finding, ...]]:
 
 
 def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str], efforts: dict[str, Effort]) -> str:
-    """Return the instructors' page as Markdown; titles and efforts are those of each chapter by its name, in order."""
+    """Return the instructors' page as Markdown. Titles and efforts are given by chapter, in order."""
     points = {name: _points(covered, name) for name in titles}
     return "\n".join(
         [
@@ -69,11 +69,14 @@ def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str], 
             "## Objectives\n",
             *table(("objective", "chapter", "exercise", "hidden checks"), _objectives(syllabus, covered)),
             "## The chapter's contents\n",
-            *table(("what", "where"), [(syllabus.items[key], _where(found)) for key, found in covered.items.items()]),
+            *table(
+                ("what", "where"),
+                [(syllabus.items[key], _where(locations)) for key, locations in covered.items.items()],
+            ),
             "## What the chapter gets wrong\n",
             *table(
                 ("#", "the chapter", "here", "where"),
-                [(str(n), *syllabus.errata[n], _where(found)) for n, found in covered.errata.items()],
+                [(str(n), *syllabus.errata[n], _where(locations)) for n, locations in covered.errata.items()],
             ),
         ]
     )
@@ -85,7 +88,7 @@ def _effort(needed: Effort) -> tuple[str, ...]:
 
 
 def _points(covered: SyllabusCoverage, name: str) -> float:
-    """Return a chapter's points. A check that serves two objectives counts once."""
+    """Return a chapter's points. A check for two objectives counts once."""
     checks = {check.id: check.points for row in covered.rows if row.chapter == name for check in row.checks}
     return sum(checks.values())
 
@@ -103,7 +106,7 @@ def _where(locations: Sequence[Location]) -> str:
 
 
 def titles() -> dict[Path, str]:
-    """Return the text of each assignment's file of titles for students, by its path."""
+    """Return the text of each assignment's file with titles for students, by path."""
     return {
         layout.judged_later(name): _titles(name)
         for name in sorted({*suites.checkable_assignments()} & {*suites.graded_assignments()})
@@ -111,6 +114,6 @@ def titles() -> dict[Path, str]:
 
 
 def _titles(assignment: str) -> str:
-    shown = {check.title for check in suites.visible(assignment).checks}
-    hidden = [check.title for check in suites.hidden(assignment).checks if check.title not in shown]
+    visible_titles = {check.title for check in suites.visible(assignment).checks}
+    hidden = [check.title for check in suites.hidden(assignment).checks if check.title not in visible_titles]
     return json.dumps(hidden, indent=1, ensure_ascii=False) + "\n"

@@ -1,7 +1,7 @@
-"""Counts how long a beginner takes for a chapter. Its first cell says this time.
+"""Estimates how long a beginner takes for a chapter. The chapter's first cell states this time.
 
-Walks through chapters 0 to 4, done as a beginner would do them, were put at 27, 90, 130, 230 and 100 minutes. With the
-first two rates as they are, MINUTES_A_LINE is the least-squares fit to these five times: half an hour off at most.
+Chapters 0 to 4, worked through as by a beginner, were estimated at 27, 90, 130, 230 and 100 minutes. Given the first
+two rates, MINUTES_A_LINE is the least-squares fit to these five times. The largest error is half an hour.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from autograder.author.course.cells import is_solution
 from autograder.author.course.findings import Finding
 from autograder.author.course.solution_markers import BEGIN, END
 
-WORDS_A_MINUTE = 120.0  # of a technical text, for somebody who reads English as a second language
+WORDS_A_MINUTE = 120.0  # of a technical text, for a reader whose second language is English
 FLUENT_WORDS_A_MINUTE = 200.0  # for the limit of `longest_reading`
-MINUTES_A_CELL = 1.0  # read a code cell, run it, look at what it shows
+MINUTES_A_CELL = 1.0  # read a code cell, run it, and look at its output
 MINUTES_A_LINE = 1.2  # think, write and correct
 LONGEST_IN_MINUTES = 100.0
 _ANSWER = re.compile(f"{BEGIN}\n(.*?){END}", re.DOTALL)
@@ -25,9 +25,9 @@ _ANSWER = re.compile(f"{BEGIN}\n(.*?){END}", re.DOTALL)
 
 @dataclass(frozen=True)
 class Effort:
-    """What there is to do in a chapter: words to read, code cells to run, lines to write without the empty ones.
+    """The work in a chapter: words to read, code cells to run, and non-empty lines to write.
 
-    `longest_reading` is the longest time in minutes for which a fluent reader only reads and runs, and writes nothing.
+    `longest_reading` is the longest time in minutes for which a fluent reader only reads and runs cells.
     """
 
     words: int
@@ -37,7 +37,7 @@ class Effort:
 
     @property
     def reading(self) -> float:
-        """Minutes to read and run it."""
+        """Minutes to read the chapter and run its cells."""
         return self.words / WORDS_A_MINUTE + self.cells * MINUTES_A_CELL
 
     @property
@@ -47,7 +47,7 @@ class Effort:
 
 
 def effort(source: NotebookNode) -> Effort:
-    """Count what there is to do in a source notebook."""
+    """Count the work in a source notebook."""
     texts = [cell.source for cell in source.cells if cell.cell_type == "markdown"]
     code = [cell.source for cell in source.cells if cell.cell_type == "code"]
     lines = [line for cell in code for answer in _ANSWER.findall(cell) for line in answer.split("\n") if line.strip()]
@@ -62,12 +62,12 @@ def effort(source: NotebookNode) -> Effort:
 
 
 def time_sentence(needed: Effort) -> str:
-    """Return what the first cell of a chapter says about the time that it takes."""
+    """Return the sentence about the required time for the first cell of a chapter."""
     return f"{duration_text(needed.reading)} to read and run, {duration_text(needed.writing)} for the exercises"
 
 
 def duration_text(minutes: float) -> str:
-    """Return a time in words: up to 100 minutes in steps of five, a longer one in half hours."""
+    """Return a time in words: in steps of five minutes up to 100 minutes, then in half hours."""
     if minutes <= LONGEST_IN_MINUTES:
         return f"{max(5, 5 * round(minutes / 5))} minutes"
     halves = round(minutes / 30)
@@ -75,7 +75,7 @@ def duration_text(minutes: float) -> str:
 
 
 def outdated_time_sentence(name: str, source: NotebookNode) -> list[Finding]:
-    """Return a finding if the first cell of a source notebook says another time than the counted one."""
+    """Return a finding if the time in the first cell of a source notebook differs from the estimate."""
     words = time_sentence(effort(source))
     if words in " ".join(source.cells[0].source.split()):
         return []

@@ -1,4 +1,4 @@
-"""Reads a YAML file of a course for its author: what it holds, the line of each part, and what is wrong with it."""
+"""Reads a YAML file of a course: its data, the line of each part, and its problems."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ import yaml
 from autograder.author.course.findings import Finding
 from autograder.author.course.schema_sentences import Place, broken_schema, file_schema
 
-LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the same, ten times as fast where it was compiled
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # equivalent; the C version is ten times as fast
 
 
 @dataclass(frozen=True)
 class YamlFile:
-    """What a YAML file holds.
+    """The content of a YAML file.
 
     Attributes:
-        shown: the path by which findings name it.
-        data: its data, or None if there is nothing, or nothing that can be used.
-        lines: the line of each key and of each entry of a list, by its place.
-        findings: what is wrong with it. The data break no rule of its schema if there are none.
+        shown: its path in findings.
+        data: its data, or None if it is empty or unusable.
+        lines: the line of each key and list entry, by its place.
+        findings: its problems. If there are none, the data match the schema.
     """
 
     shown: str
@@ -32,18 +32,18 @@ class YamlFile:
     findings: tuple[Finding, ...] = ()
 
     def finding(self, place: Place, message: str) -> Finding:
-        """Return a finding at a place, or at the nearest one around it that stands in the file."""
+        """Return a finding at a place, or at the nearest enclosing place in the file."""
         around = (place[:length] for length in range(len(place), 0, -1))
         return Finding(self.shown, None, message, next((self.lines[p] for p in around if p in self.lines), 1))
 
 
 def read_yaml(path: Path, shown: str, schema: str = "") -> YamlFile:
-    """Read a YAML file that is there.
+    """Read an existing YAML file.
 
     Args:
         path: the file.
-        shown: the path by which findings name it.
-        schema: name of its schema in `files.schema.json`; its own name by default.
+        shown: its path in findings.
+        schema: name of its schema in `files.schema.json`, by default the file's name.
     """
     try:
         loader = LOADER(path.read_text(encoding="utf-8"))
@@ -56,7 +56,7 @@ def read_yaml(path: Path, shown: str, schema: str = "") -> YamlFile:
         context = f", {error.context}" if error.context else ""
         message = f"cannot be read as YAML: {error.problem}{context}"
         return YamlFile(shown, None, {}, (Finding(shown, None, message, mark.line + 1 if mark else 1),))
-    except (yaml.YAMLError, ValueError) as error:  # a character that YAML forbids, or a date that there is not
+    except (yaml.YAMLError, ValueError) as error:  # a character that YAML forbids, or an invalid date
         return YamlFile(shown, None, {}, (Finding(shown, None, f"cannot be read as YAML: {error}", 1),))
     lines: dict[Place, int] = {}
     repeated = [] if top is None else list(_walk(top, (), lines))
@@ -67,7 +67,7 @@ def read_yaml(path: Path, shown: str, schema: str = "") -> YamlFile:
 
 
 def _walk(node: yaml.Node, place: Place, lines: dict[Place, int]) -> Iterator[Place]:
-    """Write the lines of all parts of a node, and yield the keys that stand twice."""
+    """Add the lines of all parts of a node to `lines`, and yield the duplicate keys."""
     if isinstance(node, yaml.SequenceNode):
         for index, entry in enumerate(node.value):
             part = (*place, str(index))

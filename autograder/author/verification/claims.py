@@ -178,5 +178,5 @@ def hidden_lines(assignment: str) -> frozenset[str]:
         if line.startswith(("def ", "    expect", "        expect")) and len(line.strip()) > 30
     }
     public = [path for name in ("support", "visible") for path in layout.CHECKS.glob(f"ch*/{name}/*.py")]
-    known = "\n".join(path.read_text(encoding="utf-8") for path in (*public, *layout.SOLUTIONS.rglob("*.py")))
-    return frozenset(line for line in lines if line not in known)
+    public_text = "\n".join(path.read_text(encoding="utf-8") for path in (*public, *layout.SOLUTIONS.rglob("*.py")))
+    return frozenset(line for line in lines if line not in public_text)

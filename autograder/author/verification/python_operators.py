@@ -116,8 +116,8 @@ def _is_silent(node: ast.AST, context: NodeInContext) -> bool:
 
 def classic(source: Source, context: NodeInContext) -> Iterator[NodeMutation]:
     """Yield the classic mutations of a node."""
-    for made in _OPERATORS:
-        yield from made(source, context.node)
+    for operator in _OPERATORS:
+        yield from operator(source, context.node)
 
 
 def _operators(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
@@ -139,9 +139,9 @@ def _operators(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
         word = " or " if isinstance(node.op, ast.And) else " and "
         yield "boolean", node, f"({word.join(f'({source.text(value)})' for value in node.values)})"
         for left_out in range(len(node.values)):
-            kept = [f"({source.text(value)})" for number, value in enumerate(node.values) if number != left_out]
+            operands = [f"({source.text(value)})" for number, value in enumerate(node.values) if number != left_out]
             word = " and " if isinstance(node.op, ast.And) else " or "
-            yield "boolean", node, f"({word.join(kept)})"
+            yield "boolean", node, f"({word.join(operands)})"
 
 
 def _conditions(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
@@ -174,12 +174,12 @@ def _constants(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
 def numbers(value: float) -> Iterator[tuple[str, str]]:
     """Yield (operator, new text) for a number: one more, one less, 10 % more, 25 % less, and the opposite sign."""
     whole = isinstance(value, int)
-    made = {repr(value): ""}
+    new_texts = {repr(value): ""}
     steps = [("off by one", value + 1), ("off by one", value - 1)] if whole or value == 0 else []
     for name, new in (*steps, ("10 %", value * 1.1), ("25 %", value * 0.75), ("sign", -value)):
         text = repr(round(new) if whole else float(f"{new:.6g}"))
-        if text not in made and text != "-0.0":
-            made[text] = name
+        if text not in new_texts and text != "-0.0":
+            new_texts[text] = name
             yield name, f"({text})" if text.startswith("-") else text
 
 

@@ -5,8 +5,8 @@ by their names:
 
     SubmissionExporter   reads a submitted file, even if it is not a notebook
     RestoreCells         restores the released cells (the first preprocessor of the sanitizing chain)
-    SandboxedGrade       grades the submitted folder in a sandbox and writes the scores into the locked grade cells. It
-                         takes the place of nbgrader's Execute; nbgrader's SaveAutoGrades records the scores
+    SandboxedGrade       replaces nbgrader's Execute: grades the submitted folder in a sandbox, and writes the scores
+                         into the locked grade cells; nbgrader's SaveAutoGrades records them
     sanitized_markdown   renders a student's text without scripts, for feedback and formgrader
 """
 

@@ -20,7 +20,7 @@ def configure(c: Any, root: Path) -> None:
 
     `NBGRADER_EXCHANGE` names the exchange folder of a class. Without it the folder is `.build/exchange`.
     """
-    # nbgrader starts `alembic` from PATH, which lacks this environment if it was not activated.
+    # nbgrader runs `alembic` from PATH, which does not contain this environment unless it is activated.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
     c.CourseDirectory.root = str(root)
     c.CourseDirectory.course_id = layout.course().name
@@ -49,5 +49,5 @@ def configure(c: Any, root: Path) -> None:
         for step in Autograde.autograde_preprocessors.default()
     ]
 
-    # Feedback and formgrader show students' text, which must not run scripts in the page.
+    # Feedback and formgrader show students' text, which must not run scripts on the page.
     c.HTMLExporter.filters = {"markdown2html": "autograder.lms.nbgrader.sanitized_markdown"}

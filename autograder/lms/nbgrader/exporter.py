@@ -15,7 +15,7 @@ from autograder.submission import intake
 
 
 class SubmissionExporter(NotebookExporter):
-    """Reads a file that is not a notebook as one without cells. The grader reports what is wrong with it."""
+    """Reads a file that is not a notebook as an empty notebook. The grader reports the problem."""
 
     def from_file(self, file_stream: Any, *args: Any, **kwargs: Any) -> Any:
         data = file_stream.buffer.read(intake.MAX_WRAPPED_BYTES + 1)

@@ -1,8 +1,8 @@
-"""Makes the outputs of an autograded notebook: the student's own, and the scores with their feedback.
+"""Creates the outputs of an autograded notebook: the student's own outputs, and the scores with their feedback.
 
-nbgrader reads the points of a cell from its outputs (`determine_grade`). An error or text on stderr is 0, a number as
-`execute_result` is that many points, and no output is full marks. So a grade cell gets exactly one `execute_result`, a
-float. The feedback is `display_data`, which nbgrader does not read.
+nbgrader reads the points of a cell from its outputs (`determine_grade`). An error or text on stderr means 0, a number
+as `execute_result` means that many points, and no output means full marks. A grade cell therefore gets exactly one
+`execute_result`, a float. The feedback is `display_data`, which nbgrader ignores.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from autograder.report.feedback.text import number
 from autograder.result.causes import FAILED_AS_WELL
 
 PICTURES = ("image/png", "image/jpeg")
-# Changes of colour in a text. nbconvert takes time with the square of their number, and of the numbers in each.
+# Limits for colour codes in a text. nbconvert's run time is quadratic in their number, and in the numbers of each.
 MAX_COLOURS = 1000
 _COMMAND = re.compile(r"\[(?:(?P<colour>[0-9;]{0,30}m)|[0-?]{0,30}[ -/]{0,3}[@-~])")
 
@@ -34,8 +34,8 @@ def grade_outputs(points: float, page: PageView, group: GroupView, *, first: boo
     Args:
         points: the points that nbgrader records.
         page: content of the feedback page.
-        group: the checks that count for the cell.
-        first: whether this is the first grade cell of the notebook, which also gets the diagnosis.
+        group: the checks that count towards the cell.
+        first: whether this is the notebook's first grade cell, which also gets the diagnosis.
     """
     html = environment().get_template("group.html.j2").render(page=page, group=group, first=first)
     lines = [line for check in group.checks for line in _lines(check)]
@@ -52,7 +52,7 @@ def grade_outputs(points: float, page: PageView, group: GroupView, *, first: boo
 
 
 def _lines(check: CheckView) -> list[str]:
-    """Return a check, and what did not pass with it, as lines of text."""
+    """Return a check, and the checks that failed with it, as lines of text."""
     lines = [f"[{check.result.outcome.text}] {check.result.title} {check.message}".strip()]
     if check.also:
         lines += [FAILED_AS_WELL, *(line for other in check.also for line in _lines(other))]
@@ -60,37 +60,37 @@ def _lines(check: CheckView) -> list[str]:
 
 
 def sanitized_outputs(outputs: Iterable[Any]) -> list[NotebookNode]:
-    """Return the text and the pictures of a student's outputs.
+    """Return the text and pictures of a student's outputs.
 
-    HTML, SVG, scripts, widgets and metadata are removed, because feedback and formgrader would show them unescaped.
+    HTML, SVG, scripts, widgets and metadata are removed, because feedback and formgrader would not escape them.
     """
-    kept = []
+    safe = []
     for output in outputs:
         kind = output.get("output_type")
         if kind == "stream":
             name = "stderr" if output.get("name") == "stderr" else "stdout"
-            kept.append(new_output("stream", name=name, text=_text(output.get("text"))))
+            safe.append(new_output("stream", name=name, text=_text(output.get("text"))))
         elif kind == "error":
             traceback = output.get("traceback")
             lines = traceback if isinstance(traceback, list) else []
             names = {name: _text(output.get(name)) for name in ("ename", "evalue")}
-            kept.append(new_output("error", **names, traceback=[_text(line) for line in lines]))
+            safe.append(new_output("error", **names, traceback=[_text(line) for line in lines]))
         elif kind in ("display_data", "execute_result") and isinstance(output.get("data"), dict):
             data = _data(output["data"])
             if data:
-                kept.append(new_output("display_data", data))
-    return kept
+                safe.append(new_output("display_data", data))
+    return safe
 
 
 def _data(bundle: dict[str, Any]) -> dict[str, str]:
-    kept = {media: data for media in PICTURES if (data := _picture(bundle.get(media))) is not None}
+    safe = {media: data for media in PICTURES if (data := _picture(bundle.get(media))) is not None}
     if "text/plain" in bundle:
-        kept["text/plain"] = _text(bundle["text/plain"])
-    return kept
+        safe["text/plain"] = _text(bundle["text/plain"])
+    return safe
 
 
 def _picture(value: object) -> str | None:
-    """Return Base64 data in canonical form, or None if `value` is not such data."""
+    """Return Base64 data in canonical form, or None if `value` is not valid."""
     if isinstance(value, list):
         value = "".join(part for part in value if isinstance(part, str))
     if not isinstance(value, str):
@@ -102,7 +102,7 @@ def _picture(value: object) -> str | None:
 
 
 def _text(value: object) -> str:
-    """Return cleaned text with its terminal colours, which pages render, or an empty string for another type."""
+    """Return cleaned text with terminal colours, which pages render, or an empty string for other types."""
     if isinstance(value, list):
         value = "".join(part for part in value if isinstance(part, str))
     if not isinstance(value, str):
@@ -113,7 +113,7 @@ def _text(value: object) -> str:
 
 
 def _after_escape(part: str, keeps_colours: bool) -> str:
-    """Return what follows an escape, cleaned; of the terminal's commands only a colour stays, if it is to."""
+    """Return the cleaned text after an escape character. Only colour codes are kept, if `keeps_colours` is set."""
     command = _COMMAND.match(part)
     if command is None:
         return clean(part)

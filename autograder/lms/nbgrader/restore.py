@@ -17,8 +17,8 @@ from autograder.plain_text import clean
 class RestoreCells(NbGraderPreprocessor):
     """Restores nbgrader's cells from the released form of the source notebook.
 
-    nbgrader itself restores only the cells that exist. It does not notice that grade cells were deleted, retyped or
-    copied. After this step a submission has each nbgrader cell of the source notebook once, and no others.
+    nbgrader itself restores only existing cells. It does not notice deleted, retyped or copied grade cells. After this
+    step, a submission has each nbgrader cell of the source notebook exactly once, and no others.
     """
 
     def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
@@ -32,7 +32,7 @@ class RestoreCells(NbGraderPreprocessor):
 def restored(submitted: NotebookNode, released: NotebookNode) -> NotebookNode:
     """Return the submitted notebook with the nbgrader cells of the released one.
 
-    The student's cells lose their metadata and attachments, because pages made from the notebook would use them.
+    The student's cells lose their metadata and attachments, because pages generated from the notebook would use them.
     """
     notebook = submitted_notebook.restore(submitted, released)
     ids: set[str] = set()
@@ -40,7 +40,7 @@ def restored(submitted: NotebookNode, released: NotebookNode) -> NotebookNode:
     for cell in notebook.cells:
         cell.source = clean(cell.source)
         cell.pop("attachments", None)
-        # A browser cannot tell two cells with one id apart, and nbformat only warns.
+        # A browser cannot distinguish two cells with the same id, and nbformat only warns.
         while cell.get("id") is None or cell.id in ids:
             cell.id = nbformat.v4.new_raw_cell().id
         ids.add(cell.id)
@@ -48,6 +48,6 @@ def restored(submitted: NotebookNode, released: NotebookNode) -> NotebookNode:
 
 
 def _as_text(cell: NotebookNode) -> NotebookNode:
-    """Return a raw cell as Markdown that shows its text; a template would take the text for HTML."""
-    shown = "\n".join(f"    {line}" for line in clean(cell.source).split("\n"))
-    return nbformat.v4.new_markdown_cell(shown, metadata=cell.metadata)
+    """Return a raw cell as Markdown that shows its text, which a template would otherwise treat as HTML."""
+    text = "\n".join(f"    {line}" for line in clean(cell.source).split("\n"))
+    return nbformat.v4.new_markdown_cell(text, metadata=cell.metadata)

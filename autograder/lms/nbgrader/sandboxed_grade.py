@@ -1,6 +1,6 @@
-"""Grades the submitted folder in place of nbgrader's execution of the notebook.
+"""Grades the submitted folder instead of executing the notebook with nbgrader.
 
-The folder is graded in a sandbox. The scores are written into the locked grade cells, from which nbgrader records them.
+The folder is graded in a sandbox. The scores are written into the locked grade cells, where nbgrader reads them.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ from autograder.run.sandbox import Tier
 
 
 class SandboxedGrade(NbGraderPreprocessor):
-    """Grades a submission and writes the outputs of the notebook. No code of a student runs in this process."""
+    """Grades a submission and writes the notebook's outputs. This process runs no student code."""
 
     seed = Integer(DEFAULT_SEED, help="The seed of every hidden input.").tag(config=True)
-    isolation = Unicode(Tier.BUBBLEWRAP.value, help="The isolation: bubblewrap or process.").tag(config=True)
+    isolation = Unicode(Tier.BUBBLEWRAP.value, help="The isolation level: bubblewrap or process.").tag(config=True)
     results = Unicode(
         ".build/nbgrader",
-        help="The folder of results, from the course directory: ASSIGNMENT/STUDENT/result.json. A stored result "
-        "is recorded without another grading if submission, suite, seed and isolation are the same.",
+        help="The folder of results, relative to the course directory: ASSIGNMENT/STUDENT/result.json. A stored "
+        "result is recorded without grading again if submission, suite, seed and isolation level are unchanged.",
     ).tag(config=True)
 
     def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
@@ -49,8 +49,8 @@ class SandboxedGrade(NbGraderPreprocessor):
             resources: nbgrader's resources; `resources["nbgrader"]` names assignment, student and database.
 
         Raises:
-            GraderError: the submission could not be graded, or the grade cells do not match the suite. Nothing is
-                recorded then.
+            GraderError: the submission could not be graded, or the grade cells do not match the suite. In that case
+                nothing is recorded.
         """
         coursedir = self.parent.parent.coursedir
         marks = resources["nbgrader"]
@@ -68,10 +68,10 @@ class SandboxedGrade(NbGraderPreprocessor):
                 resume=True,
             )
             if result.status is not Status.GRADED:
-                raise GraderError(f"{student}: not graded, no score is recorded. {result.diagnosis.sentence}")
+                raise GraderError(f"{student}: not graded, no score was recorded. {result.diagnosis.sentence}")
             if result.unjudged:
                 checks, log = ", ".join(result.unjudged), results / student / LOG
-                self.log.warning("%s: %s failed, because the check raised an error: read %s", student, checks, log)
+                self.log.warning("%s: %s failed because the check raised an error: see %s", student, checks, log)
             self._copy_outputs(nb, results / student / NOTEBOOK)
             self._write_scores(nb, result, results / student)
             feedback.write(result, results / student)
@@ -81,11 +81,11 @@ class SandboxedGrade(NbGraderPreprocessor):
         return nb, resources
 
     def _copy_outputs(self, nb: NotebookNode, executed: Path) -> None:
-        """Copy the outputs of the sandboxed run into the cells that have the same source there."""
+        """Copy the outputs of the sandboxed run into the cells whose source is unchanged."""
         try:
             cells = decode(executed.read_bytes()) if executed.is_file() else []
         except (ValueError, RecursionError) as error:
-            raise GraderError(f"{executed} cannot be read: {error}. Remove its folder, and grade again") from None
+            raise GraderError(f"{executed} cannot be read: {error}. Delete its folder, and grade again") from None
         count = Counter(_name(cell) for cell in cells)
         ran = {_name(cell): cell for cell in cells if count[_name(cell)] == 1}
         for cell in nb.cells:
@@ -96,7 +96,7 @@ class SandboxedGrade(NbGraderPreprocessor):
                 cell.execution_count = None
 
     def _write_scores(self, nb: NotebookNode, result: Result, out: Path) -> None:
-        """Write the score and the feedback of each group into the outputs of its locked grade cell."""
+        """Write each group's score and feedback to the outputs of its locked grade cell."""
         page = page_view(result, out)
         groups = {view.name: view for view in page.groups}
         graded = [cell for cell in nb.cells if is_grade(cell) and not is_solution(cell)]
@@ -110,14 +110,14 @@ class SandboxedGrade(NbGraderPreprocessor):
             view, worth = groups[name], float(cell.metadata.nbgrader["points"])
             if abs(view.max_points - worth) > 1e-6:
                 raise GraderError(
-                    f"{result.assignment}: the cell of group {name!r} is worth {worth:g} points, its checks "
+                    f"{result.assignment}: the cell of group {name!r} is worth {worth:g} points, but its checks "
                     f"{view.max_points:g}: run `nbgrader generate_assignment` again"
                 )
             points = min(max(round(view.points, 4), 0.0), worth)
             cell.outputs = grade_outputs(points, page, view, first=cell is graded[0])
 
     def _request_manual_grading(self, marks: dict[str, str]) -> None:
-        """Mark the submission for manual grading. A score that was recorded earlier stays the same."""
+        """Mark the submission for manual grading. A previously recorded score is kept."""
         with Gradebook(marks["db_url"]) as gradebook:
             submission = gradebook.find_submission_notebook(marks["notebook"], marks["assignment"], marks["student"])
             for grade in submission.grades:
@@ -126,5 +126,5 @@ class SandboxedGrade(NbGraderPreprocessor):
 
 
 def _name(cell: NotebookNode) -> str:
-    """Return the key by which cells are matched: the grade id, or the cell id if there is none."""
+    """Return the key for matching cells: the grade id, or the cell id if there is none."""
     return f"grade {grade_id(cell)}" if grade_id(cell) else f"cell {cell.get('id')}"

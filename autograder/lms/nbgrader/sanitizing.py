@@ -1,7 +1,7 @@
 """Renders students' Markdown safely. nbgrader's templates would keep any HTML in it.
 
-A page with it runs no script of a student's, and asks no host for anything: images come from beside the notebook, and
-what MathJax could load, or put into the page, stays text. A link is followed only by a person who clicks it.
+The rendered page does not run scripts and sends no requests to other hosts. Images are loaded only from the notebook's
+folder. TeX commands that make MathJax load or insert anything remain plain text. Links open only when they are clicked.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ TAGS = """
     h5 h6 hr i img kbd li ol p pre q s samp small span strong sub summary sup table tbody td tfoot th thead tr u ul var
 """
 EVERYWHERE = ("class", "id", "title")
-# A path below the notebook's folder. It has no scheme, host, query or `..`, and nothing that a browser would remove.
+# A path below the notebook's folder, without a scheme, host, query, `..` or characters that a browser removes.
 _BESIDE = re.compile(r"(?!\.)[\w-][\w.-]*(?:/(?!\.)[\w-][\w.-]*)*", re.ASCII)
-# TeX by which MathJax loads extensions, styles and links, and `\csname`, which can spell any of it.
+# TeX commands that load extensions, styles or links in MathJax, and `\csname`, which can spell any of them.
 _TEX = re.compile(r"\\(?=\s*(?:style|href|require|class|cssId|csname|unicode|includegraphics|url|data|html|mml))")
 
 
@@ -36,12 +36,12 @@ ATTRIBUTES = {
     "td": ["align", "colspan", "rowspan"],
     "th": ["align", "colspan", "rowspan", "scope"],
 }
-# Links are http, https or mailto, or relative.
+# Links may be http, https, mailto or relative.
 _SANITIZER: Any = SanitizeHTML(tags=TAGS.split(), attributes=ATTRIBUTES)  # type: ignore[no-untyped-call]
 
 
 @pass_context
 def sanitized_markdown(context: Context, source: str) -> str:
-    """Return Markdown as HTML. Tags for scripts, frames and styles are escaped, and images of other hosts left out."""
-    html = _TEX.sub("\\\\\u200b", markdown2html(source))  # an unseen character, with which it is no command
+    """Render Markdown as HTML. Tags for scripts, frames and styles are escaped, images from other hosts removed."""
+    html = _TEX.sub("\\\\\u200b", markdown2html(source))  # an invisible character that disables the command
     return str(_SANITIZER.sanitize_html_tags(html))

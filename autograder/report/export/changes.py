@@ -1,4 +1,4 @@
-"""Compares two gradings of a class: lists the students whose marks differ, and the checks."""
+"""Compares two gradings of a class, and lists the students and checks whose points differ."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from autograder.result.model import Result, Status
 
 @dataclass(frozen=True)
 class CheckChange:
-    """A check with other points than before. A check that a suite has no more, or not yet, has None."""
+    """A check whose points differ. None means that the check is missing from that suite."""
 
     id: str
     before: float | None
@@ -23,10 +23,10 @@ class Change:
     """A student whose result differs between two gradings.
 
     Attributes:
-        before: points of the old grading; None if there is no mark.
-        after: points of the new grading, likewise.
-        same_submission: whether both gradings saw the same files.
-        checks: the checks with other points, in the order of the suite.
+        before: points in the old grading; None if there is no mark.
+        after: points in the new grading; None if there is no mark.
+        same_submission: whether both gradings used the same files.
+        checks: the checks whose points differ, in the order of the suite.
     """
 
     assignment: str
@@ -38,30 +38,30 @@ class Change:
 
 
 def changes(old: Sequence[Result], new: Sequence[Result]) -> tuple[Change, ...]:
-    """Return the students whose marks, or points of a check, differ, in the order of the old grading and then the new.
+    """Return the students whose marks or points of a check differ. Students of the old grading come first.
 
     Raises:
-        UsageError: one of the gradings has two results of a student in an assignment.
+        UsageError: one of the gradings has two results for a student in an assignment.
     """
     before, after = _by_student(old, "old"), _by_student(new, "new")
-    found = []
+    changed = []
     for key in dict.fromkeys((*before, *after)):
         first, second = before.get(key), after.get(key)
         checks = tuple(_checks(first, second))
         if checks or _mark(first) != _mark(second):
             same = first is not None and second is not None and first.submission_sha256 == second.submission_sha256
-            found.append(Change(*key, _mark(first), _mark(second), same, checks))
-    return tuple(found)
+            changed.append(Change(*key, _mark(first), _mark(second), same, checks))
+    return tuple(changed)
 
 
 def _by_student(results: Sequence[Result], which: str) -> dict[tuple[str, str], Result]:
-    found: dict[tuple[str, str], Result] = {}
+    by_student: dict[tuple[str, str], Result] = {}
     for result in results:
         key = (result.assignment, result.student)
-        if key in found:
-            raise UsageError(f"the {which} results hold {key[1]!r} twice for {key[0]}; give the folder of one grading")
-        found[key] = result
-    return found
+        if key in by_student:
+            raise UsageError(f"the {which} results hold {key[1]!r} twice for {key[0]}; use the folder of one grading")
+        by_student[key] = result
+    return by_student
 
 
 def _mark(result: Result | None) -> float | None:

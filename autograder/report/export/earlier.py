@@ -1,7 +1,7 @@
-"""The marks that a class had before it was graded again, until somebody has read which of them changed.
+"""Keeps the earlier marks of a class while it is graded again, until the changes have been listed.
 
-A file beside the results keeps them. It is written before the first submission is graded and removed after the changes
-were listed, so an interruption in between forgets none of them.
+They are stored in a file beside the results. It is written before the first submission is graded and deleted after the
+changes were listed, so that an interruption does not lose any of them.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ class EarlierMarks:
 
     def __init__(self, out: Path, students: Iterable[str]) -> None:
         self._file = out / EARLIER_MARKS
-        # The marks before the interrupted grading count, not those that it came to.
+        # Compare with the marks before the interrupted grading, not with its own.
         noted = {} if not self._file.is_file() else {_key(result): result for result in load(self._file)}
         self._marks = _stored(out, students) | noted
         if self._marks.keys() > noted.keys():
             self._write()
 
     def changed(self, results: Sequence[Result]) -> tuple[Change, ...]:
-        """Return the results of the grading whose marks, or points of a check, differ from the earlier ones."""
+        """Return the changes in marks, or in the points of a check, compared with the earlier results."""
         again = [result for result in results if _key(result) in self._marks]
         return changes([self._marks[_key(result)] for result in again], again)
 
     def forget(self, results: Iterable[Result]) -> None:
-        """Drop the marks of what was graded again. Where the grader failed, the next grading compares with them."""
+        """Delete the earlier marks of graded submissions. If the grader failed, they are kept for the next grading."""
         for result in results:
             if result.status is Status.GRADED:
                 self._marks.pop(_key(result), None)
@@ -60,9 +60,9 @@ def _key(result: Result) -> tuple[str, str]:
 
 
 def _stored(out: Path, students: Iterable[str]) -> dict[tuple[str, str], Result]:
-    """Return the results in the folders of students that have a mark; what cannot be read is graded again."""
-    found: list[Result] = []
+    """Return the students' stored results that have a mark. Unreadable ones are ignored, as they are graded again."""
+    results: list[Result] = []
     for path in (out / student / ONE for student in students):
         with suppress(UsageError):
-            found += load(path) if path.is_file() else ()
-    return {_key(result): result for result in found if result.status is Status.GRADED}
+            results += load(path) if path.is_file() else ()
+    return {_key(result): result for result in results if result.status is Status.GRADED}

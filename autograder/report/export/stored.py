@@ -1,4 +1,4 @@
-"""Reads stored results: a JSON file of one result or of a list, or a folder with such files."""
+"""Reads stored results: a JSON file with a result or a list of results, or a folder with such files."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ def load(path: Path) -> tuple[Result, ...]:
     """Read the results at `path`.
 
     Args:
-        path: a file with a result or a list of results, or a folder with `result.json` files in it or below it. If
-            there is none, `results.json` in the folder is read. The artifacts of a result in a list are in the
-            folder that has the name of the student, beside the file.
+        path: a file with a result or a list of results, or a folder that contains `result.json` files at any depth. If
+            it contains none, its `results.json` is read. The artifacts of a result in a list are in a folder beside the
+            file, named after the student.
 
     Raises:
-        UsageError: there is nothing to read, or a file holds no result. The message names the file.
+        UsageError: there is nothing to read, or a file does not contain a result. The message names the file.
     """
     if not path.exists():
-        raise UsageError(f"{path}: no such file or folder; give the folder that `autograder grade --out` wrote")
+        raise UsageError(f"{path}: no such file or folder; use the folder that `autograder grade --out` wrote")
     if path.is_file():
         return _read(path)
     complete = (file for file in path.rglob(ONE) if file.parent.name != UNFINISHED)  # its grading was interrupted
     files = sorted(complete) or sorted(path.glob(MANY))
     if not files:
-        raise UsageError(f"{path}: holds no {ONE}; give the folder that `autograder grade --out` wrote")
+        raise UsageError(f"{path} contains no {ONE}; use the folder that `autograder grade --out` wrote")
     return tuple(result for file in files for result in _read(file))
 
 
@@ -38,7 +38,7 @@ def per_student(results: Sequence[Result], out: Path) -> list[tuple[Result, Path
     """Pair each result with `out/<student>`.
 
     Raises:
-        UsageError: a student has two results, or a student's name cannot be the name of a folder.
+        UsageError: a student has two results, or a student's name cannot be used as a folder name.
     """
     pairs: dict[str, tuple[Result, Path]] = {}
     for result in results:
@@ -58,8 +58,8 @@ def _read(file: Path) -> tuple[Result, ...]:
         raise UsageError(f"{file}: cannot be read as JSON: {error}") from None
     if not isinstance(data, list):
         return (from_json(data, source=str(file), folder=file.parent),)
-    found = (from_json(item, source=f"{file}, entry {index}") for index, item in enumerate(data))
-    return tuple(replace(result, folder=_folder(result, file.parent)) for result in found)
+    results = (from_json(item, source=f"{file}, entry {index}") for index, item in enumerate(data))
+    return tuple(replace(result, folder=_folder(result, file.parent)) for result in results)
 
 
 def _folder(result: Result, beside: Path) -> Path:

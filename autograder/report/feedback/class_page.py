@@ -1,4 +1,4 @@
-"""The page of a class: a table of its submissions, which sorts and filters, and its statistics below."""
+"""The page of a class: a table of submissions that can be sorted and filtered, and statistics."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ class Choice:
     """A choice of the filter.
 
     Attributes:
-        number: its place among the choices.
-        group: the heading under which it stands.
-        words: what it is called.
-        places: the places of the results that it shows.
+        number: its index among the choices.
+        group: its heading.
+        words: its label.
+        places: the indices of the results that it shows.
     """
 
     number: int
@@ -38,7 +38,7 @@ class Choice:
 
 
 def choices(results: Sequence[Result]) -> tuple[Choice, ...]:
-    """Return the choices that show some of the results, but not all. Of the checks, the most missed comes first."""
+    """Return the choices that show some of the results, but not all. Checks are ordered by their failures."""
     marks: dict[str, set[int]] = {"Not graded": set(), "Less than half": set(), "Full marks": set()}
     missed: dict[tuple[str, str], set[int]] = {}
     titles: dict[tuple[str, str], str] = {}
@@ -55,8 +55,8 @@ def choices(results: Sequence[Result]) -> tuple[Choice, ...]:
                 missed.setdefault(key, set()).add(place)
                 titles.setdefault(key, check.title)
     checks = [(titles[key], places) for key, places in sorted(missed.items(), key=lambda item: -len(item[1]))]
-    found = [("Marks", *item) for item in marks.items()] + [("Missed a check", *item) for item in checks]
-    useful = [choice for choice in found if 0 < len(choice[2]) < len(results)]
+    possible = [("Marks", *item) for item in marks.items()] + [("Missed a check", *item) for item in checks]
+    useful = [choice for choice in possible if 0 < len(choice[2]) < len(results)]
     return tuple(
         Choice(number, group, words, frozenset(places)) for number, (group, words, places) in enumerate(useful)
     )
@@ -86,12 +86,12 @@ def write_summary(results: Sequence[Result], folder: Path) -> Path:
 def _link(result: Result, folder: Path) -> str | None:
     if (folder / result.student).resolve().parent != folder.resolve():
         return None
-    # The name of a folder may be no UTF-8, as that of a zip's member.
+    # The name of a folder may not be valid UTF-8, for example if it comes from a zip.
     return f"{quote(os.fsencode(result.student))}/{PAGE}" if (folder / result.student / PAGE).is_file() else None
 
 
 def _reason(result: Result) -> str:
-    """Return a sentence that says why points are missing."""
+    """Return a sentence with the main reason for lost points."""
     page = page_view(result, None)
     if not page.graded:
         return no_mark(result)

@@ -1,4 +1,4 @@
-"""Arranges a result for a feedback page, without any markup."""
+"""Prepares the content of a feedback page, without markup."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from autograder.suite.contract import Sentence
 
 @dataclass(frozen=True)
 class CheckView:
-    """A check on a page, with those that did not pass because it did not.
+    """A check on a page, with the checks that did not pass because of it.
 
     Attributes:
         result: its result.
-        contract: the sentences that a program broke, by which it failed the check; of a check that failed with another
-            one, those that are not quoted above it.
+        contract: the requirements that the program broke. For a check that failed with another one, only those that
+            are not already quoted there.
         pictures: its pictures.
-        also: the checks that failed as well.
-        not_checked: the line about what could not be checked, or an empty string.
-        unnamed: the titles of what that line only counts.
+        also: the checks that also failed.
+        not_checked: a line about checks that could not be run, or an empty string.
+        unnamed: the titles of the checks that this line only counts.
     """
 
     result: CheckResult
@@ -44,30 +44,30 @@ class CheckView:
 
 @dataclass(frozen=True)
 class Elsewhere:
-    """The checks of a group that did not pass because of a check of another group."""
+    """Checks of a group that did not pass because of a check in another group."""
 
     cause: CheckResult
     results: tuple[CheckResult, ...]
 
     @property
     def count(self) -> str:
-        """How many they are, in words."""
+        """The number of checks, in words."""
         return f"{len(self.results)} check{'s' if len(self.results) > 1 else ''}"
 
     @property
     def lost(self) -> float:
-        """The points that they lost."""
+        """The points that they cost."""
         return sum(result.max_points - result.points for result in self.results)
 
 
 @dataclass(frozen=True)
 class GroupView:
-    """The checks that count for one locked grade cell.
+    """The checks that count towards one locked grade cell.
 
     Attributes:
-        name: the group's.
-        results: all of its checks.
-        checks: the checks to show, with those of any group that came with them.
+        name: the group's name.
+        results: the results of all its checks.
+        checks: the checks to show, including related ones from other groups.
         elsewhere: its checks that are shown in other groups.
     """
 
@@ -88,7 +88,7 @@ class GroupView:
 
     @property
     def pictures(self) -> tuple[Picture, ...]:
-        """The pictures of all checks that are shown."""
+        """The pictures of all shown checks."""
         return tuple(picture for check in self.checks for one in (check, *check.also) for picture in one.pictures)
 
 
@@ -97,11 +97,11 @@ class PageView:
     """The content of a feedback page.
 
     Attributes:
-        result: the result that it shows.
+        result: the result to show.
         groups: the groups of checks, in the order of the suite.
-        pictures: pictures that belong to no check.
-        first: the check with which to start, or None: of those that failed, the one that costs most points, together
-            with those that failed or were not checked because of it.
+        pictures: pictures that do not belong to a check.
+        first: the failed check that costs the most points, including checks that failed or were not run because of it;
+            None if no check failed.
     """
 
     result: Result
@@ -111,19 +111,19 @@ class PageView:
 
     @property
     def graded(self) -> bool:
-        """Whether there is a score. There is none if the grader failed."""
+        """Whether the result has a score. It has none if the grader failed."""
         return self.result.status is Status.GRADED
 
     @property
     def started(self) -> bool:
-        """Whether the submission was built and started, so that there is no diagnosis to show."""
+        """Whether the submission was built and started. If not, the page shows its diagnosis."""
         return self.result.diagnosis.kind is Kind.OK
 
     @property
     def plays(self) -> bool:
-        """Whether the page has a run to play."""
-        shown = [*self.pictures, *(picture for group in self.groups for picture in group.pictures)]
-        return self.graded and any(picture.run is not None for picture in shown)
+        """Whether the page contains a run to play."""
+        pictures = [*self.pictures, *(picture for group in self.groups for picture in group.pictures)]
+        return self.graded and any(picture.run is not None for picture in pictures)
 
     @property
     def percent(self) -> int:
@@ -137,33 +137,33 @@ def page_view(result: Result, folder: Path | None, contract: Mapping[str, Senten
     Args:
         result: the result to show.
         folder: the folder with its artifacts, or None for a page without pictures.
-        contract: the sentences of the assignment's contract, by their ids.
+        contract: the assignment's requirements, by their ids.
     """
-    known = {check.id for check in result.checks}
+    check_ids = {check.id for check in result.checks}
     pictures: dict[str, list[Picture]] = {}
     for artifact in result.artifacts:
         picture = None if folder is None else read_picture(artifact, folder)
         if picture is not None:
-            pictures.setdefault(artifact.check if artifact.check in known else "", []).append(picture)
-    found = causes(result.checks, result.diagnosis.sentence)
+            pictures.setdefault(artifact.check if artifact.check in check_ids else "", []).append(picture)
+    all_causes = causes(result.checks, result.diagnosis.sentence)
 
     def view(check: CheckResult, cause: Cause | None = None, quoted: tuple[str, ...] = ()) -> CheckView:
         judged = check.outcome is Outcome.FAILED and check.message != result.diagnosis.sentence
-        held = check.holds if judged else ()  # a program that does not run has broken none of them in particular
+        held = check.holds if judged else ()  # a program that does not run breaks no particular requirement
         sentences = dict.fromkeys(contract[name].text for name in held if name in contract)
-        told = tuple(sentence for sentence in sentences if sentence not in quoted)
-        shown = CheckView(check, told, tuple(pictures.get(check.id, ())))
+        new = tuple(sentence for sentence in sentences if sentence not in quoted)
+        plain = CheckView(check, new, tuple(pictures.get(check.id, ())))
         if cause is None:
-            return shown
+            return plain
         also: list[CheckView] = []
         for one in cause.failed:
-            also.append(view(one, quoted=(*told, *(sentence for seen in also for sentence in seen.contract))))
-        return replace(shown, also=tuple(also), not_checked=cause.not_checked, unnamed=cause.unnamed)
+            also.append(view(one, quoted=(*new, *(sentence for each in also for sentence in each.contract))))
+        return replace(plain, also=tuple(also), not_checked=cause.not_checked, unnamed=cause.unnamed)
 
     groups = []
     for name in dict.fromkeys(check.group for check in result.checks):
-        shown = tuple(view(cause.check, cause) for cause in found if cause.check.group == name)
-        others = ((cause, tuple(one for one in cause.checks if one.group == name)) for cause in found)
+        views = tuple(view(cause.check, cause) for cause in all_causes if cause.check.group == name)
+        others = ((cause, tuple(one for one in cause.checks if one.group == name)) for cause in all_causes)
         elsewhere = tuple(Elsewhere(cause.check, came) for cause, came in others if came and cause.check.group != name)
-        groups.append(GroupView(name, result.group(name), shown, elsewhere))
-    return PageView(result, tuple(groups), tuple(pictures.get("", ())), dearest(found))
+        groups.append(GroupView(name, result.group(name), views, elsewhere))
+    return PageView(result, tuple(groups), tuple(pictures.get("", ())), dearest(all_causes))

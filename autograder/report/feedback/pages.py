@@ -1,6 +1,6 @@
-"""Renders the pages from the templates. All text is escaped. A page loads no other file.
+"""Renders the pages from the templates. All text is escaped. A page does not load other files.
 
-A page lets no script run but its own, which it names by its digest: the player of a run, or what sorts a class's table.
+A page only allows its own scripts, which its policy lists by digest: the player of a run, or the sorting of a table.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ PAGE = "feedback.html"
 
 @cache
 def environment() -> jinja2.Environment:
-    """Return the template environment. It escapes all text and raises for an unknown name."""
+    """Return the template environment. It escapes all text and raises an exception for an unknown name."""
 
     def presentable(value: object) -> object:
         return clean(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
-    found = jinja2.Environment(
+    templates = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
@@ -43,17 +43,17 @@ def environment() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    found.filters["number"] = number
-    found.filters["player"] = _player
-    found.filters["web_address"] = _web_address
-    found.globals["no_mark"] = no_mark
-    found.globals["failed_as_well"] = FAILED_AS_WELL
-    found.globals["style"] = Markup((TEMPLATES / "report.css").read_text(encoding="utf-8"))
-    return found
+    templates.filters["number"] = number
+    templates.filters["player"] = _player
+    templates.filters["web_address"] = _web_address
+    templates.globals["no_mark"] = no_mark
+    templates.globals["failed_as_well"] = FAILED_AS_WELL
+    templates.globals["style"] = Markup((TEMPLATES / "report.css").read_text(encoding="utf-8"))
+    return templates
 
 
 def digest(script: str) -> str:
-    """Return what names a script in a page's policy, which lets no other one run."""
+    """Return the digest of a script for a page's policy, which allows no other scripts."""
     return base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii")
 
 
@@ -68,14 +68,14 @@ def write(result: Result, folder: Path, *, artifacts: Path | None = None) -> Pat
 
     Args:
         result: the result to show.
-        folder: folder that gets `feedback.html`.
-        artifacts: folder of the result's pictures; `folder` if it is None.
+        folder: the folder for `feedback.html`.
+        artifacts: the folder of the result's pictures; None means `folder`.
 
     Raises:
-        UsageError: the path of an artifact leads out of its folder.
+        UsageError: the path of an artifact is outside of its folder.
     """
-    known = contract(result.assignment) if result.assignment in layout.assignments() else {}
-    page = page_view(result, artifacts or folder, known)
+    requirements = contract(result.assignment) if result.assignment in layout.assignments() else {}
+    page = page_view(result, artifacts or folder, requirements)
     script, style = _player_assets() if page.plays else ("", "")
     return write_page(
         folder / PAGE,
@@ -94,13 +94,13 @@ def _web_address(address: str | None) -> str | None:
 
 def _player_assets() -> tuple[str, str]:
     """Return the player's script and style sheet."""
-    from sim.view import player  # matplotlib, which it imports, is slow, and most pages have no run
+    from sim.view import player  # it imports matplotlib, which is slow, and most pages have no run
 
     return player.SCRIPT, player.style()
 
 
 def _player(picture: Picture, first: bool = False) -> Markup:
-    """Return the player of a picture's run. A link to an instant that names no run means the first one."""
+    """Return the player of a picture's run. A link to an instant without a run refers to the first player."""
     from sim.view import player
 
     alt = escape(clean(picture.caption), quote=True)

@@ -1,4 +1,4 @@
-"""Reads the pictures and the runs beside a result, for use in a page."""
+"""Reads the pictures and runs beside a result for a page."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from autograder.result.model import Artifact
 class Picture:
     """A picture on a page: its data URI, or None if the file is missing, and its alternative text.
 
-    `run` is the run that it shows as JSON for the player, or None; `name` is unique on the page.
+    `run` is the run in the picture, as JSON for the player, or None. `name` is unique on the page.
     """
 
     uri: str | None
@@ -28,7 +28,7 @@ def read_picture(artifact: Artifact, folder: Path) -> Picture | None:
     """Return the picture of an artifact, or None if the artifact is not a picture.
 
     Raises:
-        UsageError: the path of the artifact leads out of `folder`.
+        UsageError: the path of the artifact is outside of `folder`.
     """
     if not artifact.name.endswith(".png"):
         return None
@@ -39,19 +39,19 @@ def read_picture(artifact: Artifact, folder: Path) -> Picture | None:
 
 
 def _run(artifact: Artifact, folder: Path) -> str | None:
-    """Return an artifact's run as JSON that no script element ends in, or None if the file was not kept."""
+    """Return an artifact's run as JSON that is safe in a script element, or None if the file is missing."""
     path = _inside(artifact.run, folder)
     if not artifact.run or not path.is_file():
         return None
     try:
         run = json.loads(path.read_text(encoding="utf-8"))
     except ValueError as error:
-        raise UsageError(f"{path}: not a run: {error}; grade the submission again") from None
+        raise UsageError(f"{path} is not a valid run: {error}; grade the submission again") from None
     return json.dumps(run, separators=(",", ":")).replace("<", "\\u003c")
 
 
 def _inside(name: str, folder: Path) -> Path:
     path = (folder / name).resolve()
     if not path.is_relative_to(folder.resolve()):
-        raise UsageError(f"{folder}: the artifact {name!r} lies outside the result's folder; correct result.json")
+        raise UsageError(f"{folder}: the artifact {name!r} is outside the result's folder; correct result.json")
     return path

@@ -1,4 +1,4 @@
-"""Statistics of a class's results: the distribution of marks, and how difficult each check was."""
+"""Statistics of a class: the distribution of marks and the difficulty of each check."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ SHOWN_REASONS = 8
 
 @dataclass(frozen=True)
 class CheckStatistics:
-    """How a class did at a check.
+    """Statistics of a check in a class.
 
     Attributes:
-        passed: how many passed it, of `total`.
+        passed: the number of submissions that passed it, of `total`.
         difficulty: mean share of its points that was reached, 0 to 1. Test theory calls it the difficulty of an item.
         discrimination: correlation of its points with the points of all other checks, -1 to 1. Near 0 or below, the
-            check tells good answers from weak ones no better than chance. None if everybody has the same points.
+            check separates strong answers from weak ones no better than chance. None if all points are equal.
     """
 
     id: str
@@ -36,12 +36,12 @@ class CheckStatistics:
 
 @dataclass(frozen=True)
 class ClassStatistics:
-    """Figures of a class in an assignment.
+    """Statistics of a class in an assignment.
 
     Attributes:
-        bands: number of results in each band of `BAND_PERCENT` per cent, from 0; full marks are in the last.
-        checks: the checks that not everybody passed, the most missed first.
-        reasons: the most frequent messages of failed checks, each with the number of students who got it.
+        bands: number of results in each band of `BAND_PERCENT` per cent, from 0. Full marks are in the last band.
+        checks: the checks that some submissions did not pass, most failures first.
+        reasons: the most frequent messages of failed checks, each with its number of students.
         seconds: median wall time of a grading.
     """
 
@@ -52,7 +52,7 @@ class ClassStatistics:
 
 
 def class_statistics(results: Sequence[Result]) -> ClassStatistics:
-    """Return the figures of graded results; there must be one at least."""
+    """Return the statistics of graded results, of which there must be at least one."""
     bands = Counter(min(int(result.percent // BAND_PERCENT), 100 // BAND_PERCENT - 1) for result in results)
     by_check: dict[tuple[str, str], list[tuple[Result, CheckResult]]] = {}
     for result in results:
@@ -78,7 +78,7 @@ def _check(taken: Sequence[tuple[Result, CheckResult]]) -> CheckStatistics:
     others = [math.fsum((result.score, -check.points)) for result, check in taken]
     try:
         discrimination = correlation(points, others)
-    except StatisticsError:  # fewer than two results, or all the same
+    except StatisticsError:  # fewer than two results, or equal values
         discrimination = None
     first = taken[0][1]
     return CheckStatistics(

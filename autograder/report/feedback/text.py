@@ -1,4 +1,4 @@
-"""Words and numbers of the pages."""
+"""Texts and number formats for the pages."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ NOT_GRADED = "The grader itself failed. This is not a zero."
 
 
 def no_mark(result: Result) -> str:
-    """Return why a result has no mark: the grader failed, or what was handed in is unclear."""
+    """Return why a result has no mark: the grader failed, or the submission is unclear."""
     return clean(result.diagnosis.sentence) if result.status is Status.UNCLEAR else NOT_GRADED
 
 

@@ -39,9 +39,9 @@ def test_each_case_has_a_record() -> None:
     assert set(DIFFERENCES) <= set(EXPECTED)
 
 
-@pytest.mark.promise("Tests hold them to records of the real packages")
+@pytest.mark.promise("Tests compare them with recordings of the real packages")
 @pytest.mark.parametrize("name", EXPECTED)
-def test_a_case_does_what_it_does_with_the_real_packages(name: str, records: dict[str, dict[str, Any]]) -> None:
+def test_a_case_behaves_as_with_the_real_packages(name: str, records: dict[str, dict[str, Any]]) -> None:
     expected = dict(EXPECTED[name])
     if STAND_IN and name in DIFFERENCES:
         assert DIFFERENCES[name]["log"] != expected["log"]

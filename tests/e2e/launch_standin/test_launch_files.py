@@ -116,7 +116,7 @@ def test_ctrl_c_does_not_wait_for_the_pause_before_a_respawn(start: Start) -> No
     assert len(re.findall("process started with pid", launch.text)) == 1
 
 
-def test_a_crash_is_reported_with_command_and_exit_code_and_other_processes_go_on(start: Start, fleet: Path) -> None:
+def test_a_crash_is_reported_with_command_and_exit_code_and_other_processes_continue(start: Start, fleet: Path) -> None:
     launch = start("crash")
     launch.wait_for(
         rf"\[ERROR\] \[crash-1\]: process has died \[pid \d+, exit code 3, cmd '{fleet}/lib/fleet/crash --ros-args "
@@ -152,7 +152,7 @@ def test_a_missing_or_wrong_part_of_a_launch_file_ends_the_launch_with_an_error(
     assert message.format(fleet=fleet) in launch.text
 
 
-def test_a_missing_command_is_named_and_the_other_processes_go_on(start: Start) -> None:
+def test_a_missing_command_is_named_and_the_other_processes_continue(start: Start) -> None:
     launch = start("missing_command")
     assert launch.finish() == 0
     assert (
@@ -263,7 +263,7 @@ def test_options_and_variables_override_where_output_goes(
     assert not [line for line in by_variable.text.splitlines() if line.startswith("[to-screen-1]")]
 
 
-def test_a_function_makes_as_many_processes_as_an_argument_says(start: Start) -> None:
+def test_a_function_creates_as_many_processes_as_its_argument_says(start: Start) -> None:
     launch = start("opaque", "robots:=3")
     for index in range(3):
         launch.wait_for(rf"light: --ros-args -r __node:=robot{index} -r __ns:=/r{index}\n")

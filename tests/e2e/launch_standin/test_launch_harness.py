@@ -229,7 +229,7 @@ def test_a_program_whose_node_comes_late_is_not_overlooked(starts: Callable[[str
         launch_probe.expect_nodes(harness, ["/beacon"])
 
 
-def test_ctrl_c_waits_for_a_node_that_is_seen_and_not_yet_made(starts: Callable[[str], Workspace]) -> None:
+def test_ctrl_c_waits_for_a_node_that_is_visible_but_not_yet_constructed(starts: Callable[[str], Workspace]) -> None:
     with LaunchHarness(starts(SLOW), "fleet", "given.launch.py", {"how": "once"}) as harness:
         launch_probe.expect_nodes(harness, ["/slow"])
         launch_probe.expect_clean_stop(harness)

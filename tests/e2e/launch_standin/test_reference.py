@@ -50,7 +50,7 @@ def test_the_reference_launch_file_runs_all_nodes_with_their_parameters_until_ct
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
-def test_the_chapters_launch_file_ends_with_an_error_where_an_executable_is_missing(
+def test_the_chapters_launch_file_ends_with_an_error_if_an_executable_is_missing(
     start: Start, install: Path, tmp_path: Path
 ) -> None:
     lacking = tmp_path / "install"

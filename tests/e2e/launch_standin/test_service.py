@@ -117,7 +117,7 @@ def test_a_service_runs_once_at_a_time() -> None:
     assert service.run() == 0
 
 
-def test_a_cancelled_launch_ends_its_processes_before_the_cancellation_goes_on() -> None:
+def test_a_cancelled_launch_ends_its_processes_before_the_cancellation_continues() -> None:
     action = sleeper()
 
     async def main() -> None:
@@ -248,7 +248,7 @@ def test_a_handler_can_be_removed_and_can_be_meant_for_once(capsys: pytest.Captu
     assert (out.count("[launch.user]: once"), out.count("[launch.user]: removed")) == (1, 0)
 
 
-def test_each_child_leads_a_process_group_of_its_own() -> None:
+def test_each_child_leads_its_own_process_group() -> None:
     groups: list[int] = []
     action = sleeper()
 

@@ -31,7 +31,7 @@ def test_each_call_has_a_record() -> None:
     assert [record["call"] for record in EXPECTED] == list(CALLS)
 
 
-@pytest.mark.promise("Tests hold them to records of the real packages")
+@pytest.mark.promise("Tests compare them with recordings of the real packages")
 @pytest.mark.parametrize("number", range(len(CALLS)), ids=CALLS)
-def test_a_launch_test_does_what_it_does_with_the_real_package(number: int, found: list[dict[str, Any]]) -> None:
+def test_a_launch_test_behaves_as_with_the_real_package(number: int, found: list[dict[str, Any]]) -> None:
     assert found[number] == EXPECTED[number]

@@ -36,7 +36,7 @@ def found() -> dict[str, list[dict[str, Any]]]:
     return records
 
 
-@pytest.mark.promise("Where a stand-in does something else,")
+@pytest.mark.promise("Differences are listed, with reasons,")
 def test_a_difference_is_one_and_has_its_reason() -> None:
     calls = {call["command"]: {**NOTHING, **call} for calls in EXPECTED.values() for call in calls}
     for command, difference in DIFFERENCES.items():
@@ -44,11 +44,11 @@ def test_a_difference_is_one_and_has_its_reason() -> None:
         assert any(difference[name] != calls[command][name] for name in difference if name != "reason")
 
 
-@pytest.mark.promise("Tests hold them to records of the real packages")
+@pytest.mark.promise("Tests compare them with recordings of the real packages")
 @pytest.mark.parametrize(
     ("group", "number"), CALLS, ids=[f"{group}: {EXPECTED[group][number]['command']}" for group, number in CALLS]
 )
-def test_a_command_does_what_the_real_one_does(group: str, number: int, found: dict[str, list[dict[str, Any]]]) -> None:
+def test_a_command_behaves_like_the_real_one(group: str, number: int, found: dict[str, list[dict[str, Any]]]) -> None:
     expected = {**NOTHING, **EXPECTED[group][number]}
     record = {**NOTHING, **found[group][number]}
     if is_stand_in():

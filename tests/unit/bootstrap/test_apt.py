@@ -28,7 +28,7 @@ def installed(monkeypatch: pytest.MonkeyPatch) -> Which:
     return only
 
 
-def test_apt_installs_what_is_missing_as_root(installed: Which, commands: Any, tmp_path: Path) -> None:
+def test_apt_installs_missing_packages_as_root(installed: Which, commands: Any, tmp_path: Path) -> None:
     installed("apt-get")
     bootstrap.install_tools(["bubblewrap"], tmp_path / "tried", 0, commands)
     assert [line.rpartition("DPkg::Lock::Timeout=60 ")[2] for line in commands.ran[1:]] == [
@@ -68,7 +68,10 @@ def test_a_failed_installation_is_not_tried_again(
     installed("apt-get")
     commands.failing = "install -y"
     bootstrap.install_tools(["chromium"], tmp_path / "tried", 0, commands)
-    assert "apt-get failed, the rest goes on; by hand: sudo apt-get install chromium" in capsys.readouterr().out
+    assert (
+        "apt-get failed; set-up continues; to install them yourself: sudo apt-get install chromium"
+        in capsys.readouterr().out
+    )
     commands.ran.clear()
     bootstrap.install_tools(["chromium"], tmp_path / "tried", 0, commands)
     assert not any("apt-get" in line for line in commands.ran)
@@ -96,7 +99,7 @@ def test_without_compiler_or_headers_the_set_up_stops_with_the_command(
         bootstrap.require_compiler(bootstrap.missing_packages(PY312, tmp_path, browser=False))
 
 
-def test_without_bubblewrap_the_set_up_goes_on(installed: Which, tmp_path: Path) -> None:
+def test_without_bubblewrap_the_set_up_continues(installed: Which, tmp_path: Path) -> None:
     installed("g++")
     (tmp_path / "Python.h").touch()
     missing = bootstrap.missing_packages(PY312, tmp_path, browser=True)

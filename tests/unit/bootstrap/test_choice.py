@@ -88,13 +88,13 @@ def test_a_sourced_jazzy_is_used(ros: Path) -> None:
 )
 def test_another_distribution_is_refused_by_name(variables: dict[str, str]) -> None:
     with pytest.raises(
-        SetUpError, match=f"sourced is {variables['ROS_DISTRO']} and the course needs Jazzy: open a shell"
+        SetUpError, match=f"distribution is {variables['ROS_DISTRO']}, but the course needs Jazzy: use a shell"
     ):
         bootstrap.sourced_ros(variables, VENV, PY312)
 
 
-def test_a_ros_of_no_known_distribution_is_refused(ros: Path) -> None:
-    with pytest.raises(SetUpError, match="is of no known distribution and the course needs Jazzy"):
+def test_a_ros_of_an_unknown_distribution_is_rejected(ros: Path) -> None:
+    with pytest.raises(SetUpError, match="is unknown, but the course needs Jazzy"):
         bootstrap.sourced_ros({"PYTHONPATH": str(ros)}, VENV, PY312)
 
 
@@ -104,7 +104,7 @@ def test_a_jazzy_for_another_python_is_refused_with_the_python_that_fits(ros: Pa
         bootstrap.sourced_ros({"ROS_DISTRO": "jazzy", "PYTHONPATH": str(ros)}, VENV, py311)
 
 
-def test_only_ros_itself_is_left_out_of_the_lock() -> None:
+def test_only_ros_itself_is_removed_from_the_lock() -> None:
     kept = bootstrap.without_ros(LOCK)
     assert [line.split("==")[0] for line in kept.splitlines() if "==" in line] == ["numpy", "rosbags"]
     assert "--hash=sha256:00" in kept
@@ -129,7 +129,7 @@ def test_children_see_the_proxy_but_neither_foreign_modules_nor_the_wheels_libra
     assert bootstrap.child_environment({"LD_LIBRARY_PATH": "/opt/python/lib"})["LD_LIBRARY_PATH"] == "/opt/python/lib"
 
 
-def test_a_python_or_a_course_that_other_users_cannot_reach_is_named_with_what_to_do() -> None:
+def test_a_python_or_course_that_other_users_cannot_read_is_named_with_the_remedy() -> None:
     with tempfile.TemporaryDirectory(dir="/tmp") as scratch:
         place = Path(scratch).resolve()
         (closed := place / "closed").mkdir()

@@ -53,7 +53,7 @@ def script_clone(clone: Path) -> Path:
 def test_the_script_gives_the_reason_for_a_failure_in_a_sentence(script_clone: Path) -> None:
     done = script(script_clone, ROS_DISTRO="iron", AMENT_PREFIX_PATH="/opt/ros/iron")
     assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr.startswith("set-up: the ROS that is sourced is iron and the course needs Jazzy")
+    assert done.stderr.startswith("set-up: the sourced ROS distribution is iron, but the course needs Jazzy")
     assert done.stderr.count("\n") == 1
 
 
@@ -78,7 +78,7 @@ def test_without_pythons_headers_the_script_ends_before_it_makes_anything(script
     assert done.returncode == 1
     assert "set-up: Python.h not found" in done.stderr
     assert "-dev`, then the same command again.\n" in done.stderr
-    assert "making .venv" not in done.stdout
+    assert "creating .venv" not in done.stdout
     assert not (script_clone / ".venv").exists()
 
 

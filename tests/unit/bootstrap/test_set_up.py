@@ -21,11 +21,11 @@ def set_up(clone: Path, commands: Any) -> SetUp:
 
 
 @pytest.mark.promise("make setup")
-def test_a_set_up_is_made_once(set_up: SetUp, commands: Any, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_set_up_is_created_once(set_up: SetUp, commands: Any, capsys: pytest.CaptureFixture[str]) -> None:
     set_up.make(dev=False)
     assert commands.take() == ["venv", "base", "patch", "launch", "project", "tutorials"]
     shown = capsys.readouterr().out
-    assert shown.startswith("set-up: making .venv with Python 3.12.1 and ROS 2 Jazzy from wheels\n")
+    assert shown.startswith("set-up: creating .venv with Python 3.12.1 and ROS 2 Jazzy from wheels\n")
     set_up.make(dev=False)
     assert commands.take() == []
     assert capsys.readouterr().out == ""
@@ -83,7 +83,7 @@ def test_a_moved_clone_repeats_the_whole_set_up(set_up: SetUp, commands: Any, tm
     assert moved.missing_parts(dev=False) == ["base"]
 
 
-def test_an_environment_whose_interpreter_is_gone_is_made_again(set_up: SetUp) -> None:
+def test_an_environment_without_its_interpreter_is_created_again(set_up: SetUp) -> None:
     set_up.make(dev=False)
     (set_up.venv / "bin/python").unlink()
     assert set_up.missing_parts(dev=False) == ["base", "project", "launch"]
@@ -100,7 +100,7 @@ def test_an_unreadable_stamp_counts_as_a_missing_stamp(set_up: SetUp, stamp: str
 @pytest.mark.parametrize(
     "step", ["-m venv", "requirements.lock", "-e ", "ros.patch_wheels", "ros.real_launch", "interfaces.tutorials"]
 )
-def test_an_interrupted_set_up_is_made_again_from_the_start(set_up: SetUp, commands: Any, step: str) -> None:
+def test_an_interrupted_set_up_starts_from_the_beginning(set_up: SetUp, commands: Any, step: str) -> None:
     commands.interrupting = step
     with pytest.raises(KeyboardInterrupt):
         set_up.make(dev=False)
@@ -124,8 +124,8 @@ def test_an_interrupted_addition_of_test_packages_is_repeated_from_the_start(set
 @pytest.mark.parametrize(
     ("step", "told"),
     [
-        ("-m venv", "the virtual environment could not be made"),
-        ("requirements.lock", "pip could not install requirements.lock: its lines above say why; pip.conf"),
+        ("-m venv", "the virtual environment could not be created"),
+        ("requirements.lock", "pip could not install requirements.lock, for the reason above; set proxies"),
         ("-e ", "the project could not be installed"),
         ("ros.patch_wheels", "the ROS wheels could not be patched"),
     ],
@@ -167,13 +167,14 @@ def test_the_choice_of_the_stand_ins_repeats_the_steps_that_depend_on_it(
 
 
 @pytest.mark.promise(
-    "`make real-launch` tries again.", "So does `make real-launch`, which fails if it cannot install them."
+    "`make real-launch` tries again.",
+    "`make real-launch` also tries again, and fails if it cannot install the packages.",
 )
-def test_a_real_launch_that_is_asked_for_is_installed_again_and_a_failure_is_told(set_up: SetUp, commands: Any) -> None:
+def test_a_requested_real_launch_is_installed_again_and_a_failure_is_reported(set_up: SetUp, commands: Any) -> None:
     set_up.make(dev=False)
     commands.take()
     commands.failing = "ros.real_launch"
-    with pytest.raises(SetUpError, match="the real launch could not be installed: the lines above say why"):
+    with pytest.raises(SetUpError, match="the real launch could not be installed, for the reason above"):
         set_up.make(dev=False, real_launch=True)
     assert f"{set_up.python} -m autograder.ros.real_launch" in commands.ran  # without --set-up, which hides failures
     assert set_up.missing_parts(dev=False) == []

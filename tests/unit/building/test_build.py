@@ -44,7 +44,7 @@ def test_a_whole_package_is_found_by_the_name_in_its_manifest(tmp_path: Path) ->
 
 
 @pytest.mark.promise("The message lists the files that were found.")
-def test_a_missing_package_is_named_with_what_is_there(tmp_path: Path) -> None:
+def test_a_missing_package_is_named_with_the_existing_ones(tmp_path: Path) -> None:
     _package(tmp_path, **{"package.xml": "<package><name>my_robot</name></package>"})
     (tmp_path / NAME).rename(tmp_path / "other")
     kind, sentence = _fault(tmp_path)
@@ -52,7 +52,7 @@ def test_a_missing_package_is_named_with_what_is_there(tmp_path: Path) -> None:
     assert sentence == "The package my_robot_package is missing: src holds my_robot."
 
 
-def test_a_folder_without_a_manifest_is_no_package(tmp_path: Path) -> None:
+def test_a_folder_without_a_manifest_is_not_a_package(tmp_path: Path) -> None:
     kind, sentence = _fault(_package(tmp_path, without="package.xml"))
     assert kind is Kind.MISSING_PACKAGE
     assert "src/my_robot_package has no package.xml with <name>my_robot_package</name>" in sentence
@@ -175,7 +175,7 @@ def test_a_package_that_colcon_would_give_another_name_is_not_built(tmp_path: Pa
     assert "src/my_robot_package/package.xml has a colcon.pkg beside it" in _fault(tmp_path)[1]
 
 
-def test_a_pipe_or_a_link_is_no_manifest(tmp_path: Path) -> None:
+def test_a_pipe_or_a_link_is_not_a_manifest(tmp_path: Path) -> None:
     _package(tmp_path)
     for name in ("pipe", "link"):
         (tmp_path / name).mkdir()

@@ -139,7 +139,7 @@ def test_the_start_and_the_end_of_a_long_log_are_read(part: str) -> None:
         ),
     ],
 )
-def test_what_cmake_says_is_told_with_the_line_of_the_student(log: str, error: str) -> None:
+def test_cmake_errors_are_reported_with_the_student_s_line(log: str, error: str) -> None:
     assert first_error(log) == error
 
 

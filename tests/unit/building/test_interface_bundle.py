@@ -28,7 +28,7 @@ def bundled(source: Path, *wanted: str) -> set[str]:
     return set(interface_bundle(read_packages(source)[0], wanted))
 
 
-def test_the_bundle_contains_the_interfaces_that_the_wanted_packages_need(tmp_path: Path) -> None:
+def test_the_bundle_contains_the_interfaces_that_the_requested_packages_need(tmp_path: Path) -> None:
     package(tmp_path, "robot", "robot_msgs", "rclpy")
     package(tmp_path, "robot_msgs", "base_msgs", interface=True)
     package(tmp_path, "base_msgs", interface=True)

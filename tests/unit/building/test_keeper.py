@@ -19,7 +19,7 @@ from autograder.run.sandbox import Tier
 
 
 @pytest.mark.parametrize("error", [StudentError, StoppedBuildError])
-def test_a_build_that_a_limit_ended_is_not_tried_again_by_who_asked_for_it(
+def test_a_build_that_a_limit_ended_is_not_tried_again_for_the_same_request(
     error: type[StudentError], tmp_path: Path
 ) -> None:
     ours, theirs = Pipe()
@@ -30,9 +30,7 @@ def test_a_build_that_a_limit_ended_is_not_tried_again_by_who_asked_for_it(
     assert type(raised.value) is error
 
 
-def test_who_waits_for_a_build_that_a_limit_ends_does_not_wait_for_another(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_waiting_for_a_build_that_a_limit_ends_is_not_repeated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Three bring the same sources at once, and a fourth later. To build them takes until all three have asked."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     asked, built = threading.Semaphore(0), list[str]()

@@ -122,10 +122,10 @@ def test_a_chapter_that_is_missing_in_the_later_release_stays(bundle: Path, newe
     assert other in read_manifest(bundle).files  # a release after that can still update it
 
 
-def test_an_older_release_and_a_folder_that_is_no_release_are_refused(
+def test_an_older_release_and_a_folder_that_is_not_a_release_are_rejected(
     bundle: Path, newer: Path, tmp_path: Path
 ) -> None:
-    with pytest.raises(UsageError, match="is of 1, and what is here is newer, of 2"):
+    with pytest.raises(UsageError, match="has version 1, but the release here is newer, 2"):
         update_bundle(newer, bundle)
-    with pytest.raises(UsageError, match="no release of the course"):
+    with pytest.raises(UsageError, match="is not a release of the course"):
         update_bundle(bundle, tmp_path)

@@ -33,7 +33,7 @@ def told(*checks: CheckResult, diagnosis: str = "") -> list[tuple[str, str, str]
     return [(c.check.id, " ".join(o.id for o in c.failed), " ".join(o.id for o in c.unchecked)) for c in found]
 
 
-def test_what_failed_after_a_failure_is_folded_under_it_directly_or_not(result: Make) -> None:
+def test_failures_after_a_failure_are_folded_under_it_directly_or_not(result: Make) -> None:
     assert told(
         result("a", PASSED),
         result("b", FAILED, "a"),
@@ -50,11 +50,11 @@ def test_a_check_is_folded_under_a_cause_that_is_shown_after_it(result: Make) ->
     assert told(*checks) == [("a", "b", "")]
 
 
-def test_a_check_that_names_what_is_not_in_the_result_or_itself_stands_alone(result: Make) -> None:
+def test_a_check_that_names_itself_or_an_unknown_check_has_no_cause(result: Make) -> None:
     assert told(result("a", FAILED, "gone"), result("b", FAILED, "b")) == [("a", "", ""), ("b", "", "")]
 
 
-def test_what_was_not_checked_for_the_same_reason_is_one_line(result: Make) -> None:
+def test_checks_not_run_for_the_same_reason_are_one_line(result: Make) -> None:
     build = [result(name, NOT_CHECKED, message="it does not build") for name in "abc"]
     assert told(*build, result("d", NOT_CHECKED, "c", message="first c")) == [("a", "", "b c d")]
     assert causes(build)[0].not_checked == "Not checked: It is b. It is c."
@@ -69,7 +69,7 @@ def test_checks_that_failed_by_the_diagnosis_have_one_cause(result: Make) -> Non
     assert told(*checks, diagnosis="It hangs.") == [("a", "", ""), ("b", "", "")]
 
 
-def test_the_dearest_cause_counts_all_that_came_with_it_and_the_first_of_equals_wins(result: Make) -> None:
+def test_the_most_expensive_cause_includes_its_consequences_and_the_first_of_equals_wins(result: Make) -> None:
     small, large = result("small", FAILED, points=2.0), result("large", FAILED, points=3.0)
     equal, passed = result("equal", FAILED, points=3.0), result("passed", PASSED, points=9.0)
     assert dearest(causes([passed, small, large, equal])) == large

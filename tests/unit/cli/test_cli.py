@@ -186,7 +186,7 @@ def _main(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     [
         (("grade", "/no/where", "--assignment", "02_nodes"), "/no/where: there is no such file or folder"),
         (("grade", "/tmp", "--assignment", "77_none"), "there are no hidden checks for '77_none'; there are for: "),
-        (("check", "77_none", "/tmp"), "there are no visible checks for '77_none'"),
+        (("check", "77_none", "/tmp"), "'77_none' has no visible checks"),
         (("check", "02_nodes", "/no/where"), "there is no folder /no/where/src"),
     ],
 )
@@ -270,7 +270,7 @@ def test_a_table_has_as_many_columns_as_its_headings() -> None:
     assert text.splitlines()[2:] == ["alice    3/4  61 s  it turns", "bob      4/4   9 s"]
 
 
-def test_the_installed_command_works_and_says_what_is_wrong() -> None:
+def test_the_installed_command_works_and_reports_errors() -> None:
     command = [str(Path(sys.executable).with_name("autograder")), "grade", "/no/where", "--assignment", "02_nodes"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert (done.returncode, done.stderr) == (2, "autograder: /no/where: there is no such file or folder\n")

@@ -77,12 +77,12 @@ def test_course_check_finds_nothing_after_sync(course: Path) -> None:
     assert dry.exit_code == 0
     assert "cell 'node': differs from solutions/node.py" in dry.output
     assert "cell 'g': has 1 points, but the checks of 'graph' have 2" in dry.output
-    assert dry.output.endswith("01_small: 2 to bring up to date\n")
+    assert dry.output.endswith("01_small: 2 to update\n")
     assert {path: path.read_bytes() for path in course.rglob("*") if path.is_file()} == before
-    assert run("sync").output == "01_small: 2 brought up to date\n"
+    assert run("sync").output == "01_small: 2 updated\n"
     checked = run("check")
     assert (checked.exit_code, checked.output) == (0, "")
-    assert run("sync").output == "01_small: as it was\n"
+    assert run("sync").output == "01_small: unchanged\n"
 
 
 def test_an_error_that_sync_cannot_correct_is_raised(course: Path) -> None:
@@ -118,5 +118,5 @@ def test_a_student_whose_visible_checks_all_pass_gets_the_list_of_hidden_checks(
     report = checking.check(assignment)
     assert isinstance(report, CheckReport)
     lines = repr(report).splitlines()
-    assert lines[-len(judged) - 1] == f"After you hand in, {len(judged)} more checks judge, with inputs of their own:"
+    assert lines[-len(judged) - 1] == f"After you submit, {len(judged)} more checks run with their own inputs:"
     assert lines[-len(judged) :] == [f"- {title}" for title in judged]

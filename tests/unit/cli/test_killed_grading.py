@@ -24,7 +24,7 @@ BEFORE: Lost = {"alice": ("nan",), "bob": (), "carol": ("starts",), "dave": ("ro
 AFTER: Lost = {"alice": (), "bob": (), "carol": ("node_name",), "dave": ("room",)}
 INSTANTS = 20
 LIST = """
-What a change of the suite or of the submission changed:
+Marks that changed because of the suite or the submission:
 alice (02_nodes): 51 -> 53
     nan: 0 -> 2
 carol (02_nodes): 52 -> 52

@@ -28,7 +28,7 @@ def stored(make_result: Callable[..., Result], tmp_path: Path) -> Path:
 
 
 @pytest.mark.promise("autograder replay results/alice --check room")
-def test_the_kept_run_of_one_check_is_shown_alone(stored: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_stored_run_of_a_check_is_shown_on_its_own(stored: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(variable, raising=False)
     for path in (stored, stored / "result.json"):  # the page of the first time is no second result

@@ -140,7 +140,7 @@ def test_a_name_with_lines_makes_one_row() -> None:
     assert [line.split("  ")[0] for line in said.splitlines()] == ["submission", said.splitlines()[1], r"a\nb"]
 
 
-def test_names_of_people_are_left_as_they_are() -> None:
+def test_names_of_people_are_unchanged() -> None:
     for name in ("José Núñez", "山田\u3000太郎", "Ægir 🙂", "محمد"):
         assert visible(name, line=True) == name
 

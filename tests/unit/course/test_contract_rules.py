@@ -1,4 +1,4 @@
-"""Each sentence of the contract is where it is said to be, and has a check; each check has a sentence."""
+"""Each requirement is in the cell that names it and has a check, and each check has a requirement."""
 
 from __future__ import annotations
 
@@ -50,33 +50,33 @@ def test_a_complete_contract_has_no_findings() -> None:
 
 
 def test_a_sentence_without_a_check_is_found() -> None:
-    assert messages(made(), check("stops", "waits")) == ["no check holds the sentence 'ends' of the contract"]
+    assert messages(made(), check("stops", "waits")) == ["no check covers the requirement 'ends'"]
 
 
 def test_a_check_without_a_sentence_is_found() -> None:
     found = messages(made(), check("stops", "waits", "ends"), check("bare"), check("other", "flies"))
     assert found == [
-        "the hidden check 'bare' holds no sentence of the contract",
-        "the hidden check 'other' holds 'flies', which no cell names",
+        "the hidden check 'bare' covers no requirement",
+        "the hidden check 'other' covers 'flies', which no cell names",
     ]
 
 
 def test_a_sentence_that_changed_in_its_cell_is_found() -> None:
     book = made(contract={"waits": ROW.replace("0", "1"), "ends": ENDS})
     found = messages(book, check("stops", "waits", "ends"))
-    assert "'waits': its released text does not hold the sentence '| no scan yet | 1 | 1 |'" in found
+    assert "'waits': its released text does not contain the sentence '| no scan yet | 1 | 1 |'" in found
 
 
-def test_a_text_that_a_student_does_not_read_so_is_found() -> None:
+def test_a_text_that_differs_from_the_released_one_is_found() -> None:
     found = messages(
         made(contract={"waits": ROW, "ends": ENDS, "name": "called `guard"}), check("s", "waits", "ends", "name")
     )
-    assert found == ["'name': 'called `guard' is not a row, a sentence or a part of one in what a student reads"]
+    assert found == ["'name': 'called `guard' is not a row, a sentence or part of one in the released text"]
 
 
 def test_a_row_or_a_bullet_without_an_id_is_found_unless_it_only_explains() -> None:
     without = {"contract": {"waits": ROW}}
-    wanted = f"neither its contract nor `explains` names a sentence of {ENDS!r}"
+    wanted = f"neither `contract` nor `explains` names a sentence of {ENDS!r}"
     assert messages(made(**without), check("stops", "waits")) == [wanted]
     assert messages(made(**without, explains=["exit status 0."]), check("stops", "waits")) == []
 
@@ -86,21 +86,21 @@ def test_a_sentence_that_the_release_does_not_show_is_found() -> None:
     course = {"hide": ["main"], "contract": {"runs": "Run.", "ends": "It ends."}}
     book = notebook(code(source, "main", course=course, nbgrader=solution("main")))
     found = messages(book, check("stops", "runs", "ends"))
-    assert found == ["'ends': its released text does not hold the sentence 'It ends.'"]
+    assert found == ["'ends': its released text does not contain the sentence 'It ends.'"]
 
 
 def test_the_docstring_of_a_function_that_a_student_writes_needs_an_id() -> None:
     source = f"{FUNCTION}    # BEGIN SOLUTION\n    pass\n    # END SOLUTION"
     book = notebook(code(source, "main", course={"hide": ["main"]}, nbgrader=solution("main")))
-    assert messages(book) == ["neither its contract nor `explains` names a sentence of 'Run.'"]
+    assert messages(book) == ["neither `contract` nor `explains` names a sentence of 'Run.'"]
 
 
 def test_an_unchecked_sentence_has_no_check() -> None:
     book = made(unchecked={"ends": "nobody sees it"})
     assert messages(book, check("stops", "waits")) == []
     found = messages(book, check("stops", "waits", "ends"))
-    assert found == ["the sentence 'ends' is said to be unchecked, and a check holds it"]
-    assert "'flies' is said to be unchecked, and the cell's contract does not have it" in messages(
+    assert found == ["the requirement 'ends' is marked as unchecked, but a check covers it"]
+    assert "'flies' is marked as unchecked, but is not a requirement of the cell" in messages(
         made(unchecked={"flies": "so"}), check("stops", "waits", "ends")
     )
 

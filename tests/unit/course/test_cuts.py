@@ -50,8 +50,8 @@ def test_empty_lines_name_the_start_and_the_end_of_the_file() -> None:
         ("a\na\nb\n", [("a", "")], "the line 'a' occurs 2 times"),
         ("a\nb\n", [("a", "b")], "nothing to hide"),
         ("a\nb\nc\n", [("c", "a")], "nothing to hide"),
-        ("a\nb\nc\nd\n", [("a", "d"), ("b", "")], "inside each other"),
-        ("# BEGIN SOLUTION\na\n", [("", "")], "holds solution markers"),
+        ("a\nb\nc\nd\n", [("a", "d"), ("b", "")], "nested parts"),
+        ("# BEGIN SOLUTION\na\n", [("", "")], "contains solution markers"),
     ],
 )
 def test_a_cut_whose_lines_are_not_found_is_an_error(text: str, cuts: list[tuple[str, str]], words: str) -> None:

@@ -37,7 +37,7 @@ def test_a_mark_scheme_is_in_the_source_only() -> None:
         assert in_form(source, form).cells[0].source == "Why?\nHow?"
 
 
-def test_making_a_form_leaves_the_source_alone() -> None:
+def test_creating_a_form_does_not_change_the_source() -> None:
     source = notebook(code(SOLVED, "s", nbgrader=solution("s")))
     in_form(source, Form.RELEASED)
     assert source.cells[0].source == SOLVED

@@ -30,7 +30,7 @@ ANSWER = "# BEGIN SOLUTION\nSo.\n# END SOLUTION"
 SCHEME = "### BEGIN MARK SCHEME\n1 point.\n### END MARK SCHEME"
 
 
-def test_cells_that_a_person_grades_need_no_group_and_their_markers_are_no_headings() -> None:
+def test_cells_that_a_person_grades_need_no_group_and_their_markers_are_not_headings() -> None:
     made = notebook(
         prose("# Title", "title"),
         prose(f"Why?\n\n{SCHEME}", "why", nbgrader={**solution("why"), "solution": False, "locked": True}),
@@ -92,11 +92,11 @@ def old_format() -> NotebookNode:
         ),
         (
             notebook(prose("# T", "t"), code("", "g", nbgrader=grade("g", 1), course={"group": 3})),
-            "cell 'g': the metadata are wrong: `group` must be a text, not a number",
+            "cell 'g': the metadata are invalid: `group` must be a text, not a number",
         ),
         (
             notebook(prose("# T", "t"), code("# BEGIN SOLUTION", "s")),
-            "cell 's': holds a solution but is not marked",
+            "cell 's': contains a solution but is not marked",
         ),
         (
             notebook(*(code("", i, nbgrader=grade("same", 1)) for i in "ab")),
@@ -105,7 +105,7 @@ def old_format() -> NotebookNode:
         (half_a_cell(), "is not valid nbformat"),
         (
             notebook(prose("# T", "t"), prose(ANSWER, "m", nbgrader={**manual("m", 1), "locked": True})),
-            "cell 'm': is locked, but students answer in it: unlock it",
+            "cell 'm': is locked, but students must write in it: unlock it",
         ),
         (
             notebook(prose("# T", "t"), prose(ANSWER, "m", nbgrader=manual("m", 0))),
@@ -113,15 +113,15 @@ def old_format() -> NotebookNode:
         ),
         (
             notebook(prose("# T", "t"), prose(ANSWER, "m", nbgrader=manual("m", 1), course={"group": "graph"})),
-            "a person gives its points: it cannot stand for the group 'graph' of checks, too",
+            "is graded by a person and cannot also belong to the group 'graph' of checks",
         ),
         (
             notebook(prose("# T", "t"), prose("So.", "m", nbgrader=manual("m", 1))),
-            "cell 'm': a manually graded cell holds a model answer, between the solution marks",
+            "cell 'm': a manually graded cell needs a model answer between the solution markers",
         ),
         (
             notebook(prose("# T", "t"), prose(SCHEME, "s")),
-            "cell 's': holds a mark scheme but is not locked",
+            "cell 's': contains a mark scheme but is not locked",
         ),
     ],
 )

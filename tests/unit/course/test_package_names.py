@@ -21,13 +21,13 @@ from autograder.exceptions import UsageError
         ("slam_toolbox", "a package of ROS"),  # which has no wheel: a student meets it later
         ("pyyaml", "a package that pip installed"),
         ("import_linter", "a package that pip installed"),
-        ("yaml", "a module that Python can import already"),
-        ("autograder", "a module that Python can import already"),
+        ("yaml", "a module that Python can already import"),
+        ("autograder", "a module that Python can already import"),
         ("torchvision", "a package of PyPI that robots often use"),
         ("install", "a name that colcon, setuptools or pytest uses"),
     ],
 )
-def test_a_name_that_something_else_has_is_taken(name: str, whose: str) -> None:
+def test_a_name_that_exists_elsewhere_is_taken(name: str, whose: str) -> None:
     assert taken_by(name) == whose
 
 
@@ -36,7 +36,7 @@ def test_other_names_are_free(name: str) -> None:
     assert taken_by(name) == ""
 
 
-def test_a_mere_folder_on_the_path_takes_no_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_plain_folder_on_the_path_does_not_occupy_a_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "mapping").mkdir()
     monkeypatch.syspath_prepend(tmp_path)
     assert taken_by("mapping") == ""
@@ -52,14 +52,14 @@ def test_a_name_has_the_form_that_ros_and_python_want(name: str) -> None:
     [
         (
             {"package": "02_json"},
-            "'02_json' is no name for a package: take small letters, digits and single underscores",
+            "'02_json' is not a package name: use lower-case letters, digits and single underscores",
         ),
         ({"package": "json"}, "Choose another name: autograder new chapter 40_reading --package my_reading"),
         ({"node": "rclpy"}, "a node cannot be called 'rclpy', which is a package of ROS"),
-        ({"node": "laser_scan"}, "a node 'laser_scan' would have the class LaserScan, which its module imports, too."),
+        ({"node": "laser_scan"}, "a node 'laser_scan' would have the class LaserScan, which its module also imports."),
     ],
 )
-def test_a_package_or_a_node_with_a_name_that_is_taken_is_refused(options: dict[str, str], said: str) -> None:
+def test_a_package_or_node_whose_name_is_taken_is_rejected(options: dict[str, str], said: str) -> None:
     with pytest.raises(UsageError) as raised:
         write_chapter("40_reading", **options)
     assert said in str(raised.value)

@@ -52,10 +52,10 @@ def test_wrong_points_are_named() -> None:
 @pytest.mark.parametrize(
     ("made", "message"),
     [
-        (graded(graph=1, reaction=3.5), "its grade cells do not stand in the order of the suite: reaction, graph"),
-        (graded(reaction=3.5), "no grade cell stands for group 'graph'"),
-        (graded(reaction=3.5, graph=1, magic=1), "stands for no group of the suite ('magic'); its groups: reaction"),
-        (notebook(code("", "bare", nbgrader=grade("bare", 1))), "stands for no group of the suite (None)"),
+        (graded(graph=1, reaction=3.5), "its grade cells are not in the order of the suite: reaction, graph"),
+        (graded(reaction=3.5), "group 'graph' has no grade cell"),
+        (graded(reaction=3.5, graph=1, magic=1), "names the unknown group 'magic'; the suite's groups are reaction"),
+        (notebook(code("", "bare", nbgrader=grade("bare", 1))), "names the unknown group None"),
         (
             notebook(
                 *(code("", f"c{i}", nbgrader=grade(f"c{i}", 3.5), course={"group": "reaction"}) for i in range(2)),

@@ -57,7 +57,7 @@ def test_only_the_bodies_of_the_named_functions_are_marked() -> None:
     assert marked.count("# BEGIN SOLUTION") == marked.count("# END SOLUTION") == 2
 
 
-def test_taking_the_marks_away_gives_the_source_back() -> None:
+def test_removing_the_markers_restores_the_source() -> None:
     assert strip_markers(mark_functions(MODULE, ["half", "Robot.__init__", "Robot.move"])) == MODULE
 
 
@@ -76,14 +76,14 @@ def test_the_stub_raises_an_error_that_tells_the_student_to_write_it() -> None:
         (MODULE, ["Robot.mvoe"], r"function 'Robot.mvoe' occurs 0 times in the source; its functions: Robot.__init__"),
         ("def f():\n    '''F.'''\n    return 1\n" * 2, ["f"], "occurs 2 times"),
         ("def f():\n    return 1\n", ["f"], "has no docstring"),
-        ("def f():\n    '''F.'''\n", ["f"], "nothing to hide"),
-        ("def f(): '''F.'''; return 1\n", ["f"], "nothing to hide"),
+        ("def f():\n    '''F.'''\n", ["f"], "no separate lines to hide"),
+        ("def f(): '''F.'''; return 1\n", ["f"], "no separate lines to hide"),
         ("def f(:\n", ["f"], "does not parse"),
-        ("# BEGIN SOLUTION\n", [], "holds solution markers"),
+        ("# BEGIN SOLUTION\n", [], "contains solution markers"),
         (
             "def f():\n    '''F.'''\n    def g():\n        '''G.'''\n        return 1\n    return g\n",
             ["f", "f.g"],
-            "inside each other",
+            "nested parts",
         ),
     ],
 )

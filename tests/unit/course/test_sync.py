@@ -85,12 +85,12 @@ def test_a_given_file_is_copied_and_compared(tmp_path: Path, solutions: Path) ->
     ("course", "message"),
     [
         ({"source": "pkg/gone.py"}, "the reference has no file pkg/gone.py"),
-        ({"source": "../secret"}, "the metadata are wrong: `source`: must be a relative path"),
+        ({"source": "../secret"}, "the metadata are invalid: `source`: must be a relative path"),
         ({"source": "pkg/../../secret"}, "`source`: must be a relative path that stays inside its folder"),
         ({"target": "/etc/passwd"}, "`target`: must be a relative path that stays inside its folder"),
-        ({"target": None}, "the metadata are wrong: `target` must be a text, not empty"),
-        ({"hide": "main"}, "the metadata are wrong: `hide` must be a list, not a text"),
-        ({"hied": ["main"]}, "the metadata are wrong: `course` has an unknown key `hied`: did you mean `hide`?"),
+        ({"target": None}, "the metadata are invalid: `target` must be a text, not empty"),
+        ({"hide": "main"}, "the metadata are invalid: `hide` must be a list, not a text"),
+        ({"hied": ["main"]}, "the metadata are invalid: `course` has an unknown key `hied`: did you mean `hide`?"),
         ({"hide": ["mian"]}, "pkg/node.py: function 'mian' occurs 0 times"),
     ],
 )
@@ -109,13 +109,13 @@ def test_metadata_that_sync_cannot_correct_are_an_error_and_nothing_is_written(
 def test_given_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
     made = chapter(tmp_path, notebook(given=["pkg/setup.cfg"]))
     (found,) = find_outdated(made)
-    assert "the metadata are wrong: `given` must be a mapping, not a list" in found.message
+    assert "the metadata are invalid: `given` must be a mapping, not a list" in found.message
 
 
 def test_course_metadata_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
     made = chapter(tmp_path, notebook(code("", "odd", course="pkg/node.py")))
     (found,) = find_outdated(made)
-    assert "the metadata are wrong: `course` must be a mapping, not a text" in found.message
+    assert "the metadata are invalid: `course` must be a mapping, not a text" in found.message
 
 
 def test_a_folder_without_its_notebook_is_named(tmp_path: Path) -> None:
@@ -124,7 +124,7 @@ def test_a_folder_without_its_notebook_is_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["no json", "{}", '{"cells": 3}'])
-def test_a_file_that_is_no_notebook_is_named(tmp_path: Path, text: str) -> None:
+def test_a_file_that_is_not_a_notebook_is_named(tmp_path: Path, text: str) -> None:
     made = chapter(tmp_path, notebook())
     made.notebook_path.write_text(text)
     with pytest.raises(CourseError, match=r"01_small\.ipynb is not a notebook"):
@@ -134,11 +134,11 @@ def test_a_file_that_is_no_notebook_is_named(tmp_path: Path, text: str) -> None:
 def test_two_cells_with_one_id_are_named_before_nbformat_repairs_them(tmp_path: Path) -> None:
     made = chapter(tmp_path, notebook(prose("# T", "same"), prose("text", "other")))
     made.notebook_path.write_text(made.notebook_path.read_text().replace('"other"', '"same"'))
-    with pytest.raises(CourseError, match=r"each cell needs an id of its own: .*'same'"):
+    with pytest.raises(CourseError, match=r"each cell needs a unique id: .*'same'"):
         made.read()
 
 
-def test_chapters_are_sorted_and_other_notebooks_are_left_out(tmp_path: Path) -> None:
+def test_chapters_are_sorted_and_other_notebooks_are_ignored(tmp_path: Path) -> None:
     for name in ("02_b", "01_a"):
         chapter(tmp_path, notebook(), name)
     (tmp_path / "chapters/01_a/Untitled.ipynb").write_text("{}")

@@ -25,7 +25,7 @@ def test_each_test_that_the_table_names_exists() -> None:
             assert set(names) <= defined, file
 
 
-def test_the_table_names_the_submissions_of_the_proof_and_no_others() -> None:
+def test_the_table_names_exactly_the_attacks_of_the_verification() -> None:
     named = {name for row in ROWS for name in row["submissions"]}
     there = [attack.id for assignment in suites.graded_assignments() for attack in attacks(assignment)]
     assert named == set(there)

@@ -88,6 +88,6 @@ def test_the_robot_on_the_start_page_drives_into_nothing() -> None:
     assert np.ptp(recording.poses[..., :2], axis=0).max() > 2.0
 
 
-def test_the_table_of_the_proof_has_each_graded_chapter() -> None:
+def test_the_table_of_the_verification_has_each_graded_chapter() -> None:
     lines = MADE["proof_table"]().splitlines()
     assert sum(line.startswith("| 0") for line in lines) == 9

@@ -11,7 +11,7 @@ from autograder.layout import ROOT
 MADE = runpy.run_path(str(ROOT / "docs" / "limits_page.py"))
 
 
-@pytest.mark.promise("What a submission may use, what keeps the limit, and where that is tested.")
+@pytest.mark.promise("The resources that a submission may use, how each limit is enforced, and the file that tests it.")
 def test_each_limit_names_a_file_of_tests() -> None:
     there = {path.stem for path in (ROOT / "tests").rglob("test_*.py")}
     assert {test for *_, test in MADE["rows"]()} <= there

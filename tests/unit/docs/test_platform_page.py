@@ -37,7 +37,7 @@ def test_the_platform_page_lists_what_the_lock_installs_and_which_tutorials_run(
 
 @pytest.mark.promise(
     "pytest, setuptools, CMake and similar tools have the versions of Ubuntu 24.04",
-    "What students' programs, builds and tests meet has the versions of that platform",
+    "Students' programs, builds and tests use the versions of that platform",
 )
 @pytest.mark.parametrize("python", MADE["PYTHONS"])
 def test_the_lock_installs_the_platforms_versions_or_the_page_gives_the_reason(python: str) -> None:
@@ -50,7 +50,7 @@ def test_the_lock_installs_the_platforms_versions_or_the_page_gives_the_reason(p
     assert unexplained == {}
 
 
-@pytest.mark.promise("What is not covered raises an error that says so.")
+@pytest.mark.promise("Features that are not covered raise an error that says so.")
 @pytest.mark.parametrize("name", MADE["LAUNCH"])
 def test_each_name_listed_as_not_covered_raises_an_error_that_says_so(name: str) -> None:
     module, _, last = name.rpartition(".")

@@ -21,12 +21,12 @@ def test_each_promise_of_a_page_has_a_test(page: str) -> None:
     assert open_ones == [], "mark the test that shows it by @pytest.mark.promise, or say what is true"
 
 
-def test_the_words_of_each_promise_stand_in_a_page() -> None:
+def test_the_words_of_each_promise_occur_in_a_page() -> None:
     sentences = [sentence for text in TEXTS.values() for sentence in MADE["sentences"](text)]
     assert [one for one in PROMISES if not any(one.words in sentence for sentence in sentences)] == []
 
 
-def test_what_is_promised_is_found() -> None:
+def test_promises_are_found() -> None:
     text = """# Title
 
 Advice: run it. The exit status is 1. A node starts.
@@ -50,7 +50,7 @@ $ autograder grade class    # the class
     ]
 
 
-def test_the_page_names_tests_of_the_night_as_such() -> None:
+def test_the_page_marks_nightly_tests() -> None:
     page = MADE["current"]()
     assert "`tests/e2e/test_tutorials.py::test_a_tutorial_runs_as_printed` (nightly)" in page
-    assert "`tests/e2e/test_interrupt.py::test_ctrl_c_ends_a_class_and_resume_goes_on`" in page
+    assert "`tests/e2e/test_interrupt.py::test_ctrl_c_ends_a_class_and_resume_continues_it`" in page

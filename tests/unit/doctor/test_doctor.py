@@ -99,21 +99,21 @@ def test_a_complete_machine_is_healthy_and_has_nothing_to_fix() -> None:
 
 @pytest.mark.promise("`autograder doctor` and the field `launch` of each result say what is installed.")
 @pytest.mark.parametrize(
-    ("installed", "told"),
+    ("installed", "description"),
     [
         ("launch 3.4.3, launch_ros 0.26.6, ros2cli 0.32.2", "launch 3.4.3, launch_ros 0.26.6, ros2cli 0.32.2"),
-        ("stand-ins", "the course's stand-ins; `make real-launch` installs the real ones where GitHub can be reached"),
+        ("stand-ins", "the course's stand-ins; `make real-launch` installs the real ones if GitHub is reachable"),
     ],
 )
-def test_the_doctor_says_which_launch_is_installed_and_both_are_fine(installed: str, told: str) -> None:
+def test_the_doctor_says_which_launch_is_installed_and_both_are_fine(installed: str, description: str) -> None:
     found = finding("launch, ros2", describe_launch=lambda: installed)
-    assert (found.status, found.found) == (Status.OK, told)
+    assert (found.status, found.found) == (Status.OK, description)
 
 
 def test_the_nearest_version_for_this_python_needs_no_fix() -> None:
     found = finding("versions", package={**VERSIONS, "numpy": "2.1.3"}.get)
     assert found.status is Status.OK
-    assert found.found == "those of Ubuntu 24.04, but numpy 2.1.3 for 1.26.4: the nearest for this Python"
+    assert found.found == "as on Ubuntu 24.04, except numpy 2.1.3 for 1.26.4: the nearest for this Python"
 
 
 def sysctl(name: str, value: str) -> Callable[[Path], str | None]:
@@ -157,7 +157,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "ROS 2",
         {"find_ros": lambda: SOURCED},
         Status.WEAK,
-        "rclpy 7.1.4; the wheels are installed as well",
+        "rclpy 7.1.4; the wheels are also installed",
         "make setup",
     ),
     "the wheels of a later ROS": (
@@ -179,14 +179,14 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "ROS logs",
         {"environ": {"ROS_LOG_DIR": "/closed"}, "writable": unwritable("/closed")},
         Status.MISSING,
-        "/closed, cannot be written to",
+        "/closed, is not writable",
         "unset ROS_LOG_DIR",
     ),
     "a usual log folder that is closed": (
         "ROS logs",
         {"writable": lambda path: False},
         Status.MISSING,
-        "cannot be written to",
+        "is not writable",
         "export ROS_LOG_DIR=~/.ros/log",
     ),
     "an rclpy that does not start": (
@@ -211,28 +211,28 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "ROS variables",
         {"environ": {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_LOCALHOST_ONLY": "0"}},
         Status.WEAK,
-        "ROS_AUTOMATIC_DISCOVERY_RANGE keeps nodes from meeting",
+        "ROS_AUTOMATIC_DISCOVERY_RANGE prevents discovery",
         "unset ROS_AUTOMATIC_DISCOVERY_RANGE",
     ),
     "another middleware": (
         "ROS variables",
         {"environ": {"RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp", "ROS_DISCOVERY_SERVER": "10.0.0.1"}},
         Status.MISSING,
-        "asks for rmw_cyclonedds_cpp",
+        "selects rmw_cyclonedds_cpp",
         "unset ROS_DISCOVERY_SERVER RMW_IMPLEMENTATION",
     ),
     "a domain out of range": (
         "ROS variables",
         {"environ": {"ROS_DOMAIN_ID": "300"}},
         Status.MISSING,
-        "is 300, a domain is 0 to 232",
+        "is 300, but must be 0 to 232",
         "unset ROS_DOMAIN_ID",
     ),
     "a domain that is no number": (
         "ROS variables",
         {"environ": {"ROS_DOMAIN_ID": "lab"}},
         Status.MISSING,
-        "is lab, a domain",
+        "is lab, but must be",
         "unset ROS_DOMAIN_ID",
     ),
     "no C++ compiler": (
@@ -261,7 +261,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "versions",
         {"package": {**VERSIONS, "pytest": "9.0.0"}.get},
         Status.WEAK,
-        "Ubuntu 24.04, the platform of Jazzy, has others: pytest 9.0.0 for 7.4.4",
+        "different from Ubuntu 24.04, the platform of Jazzy: pytest 9.0.0 for 7.4.4",
         "make setup",
     ),
     "no flake8": (
@@ -290,21 +290,21 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "isolation",
         {"namespaces_failure": lambda: DENIED, "read": sysctl("kernel.apparmor_restrict_unprivileged_userns", "1")},
         Status.WEAK,
-        f"cannot make namespaces, one inside the other ({DENIED}): AppArmor restricts user namespaces",
+        f"cannot create nested namespaces ({DENIED}): AppArmor restricts user namespaces",
         "sudo sysctl -w kernel.apparmor_restrict_unprivileged_userns=0",
     ),
     "a kernel closed to users": (
         "isolation",
         {"namespaces_failure": lambda: DENIED, "read": sysctl("kernel.unprivileged_userns_clone", "0")},
         Status.WEAK,
-        "the kernel forbids user namespaces",
+        "the kernel forbids unprivileged user namespaces",
         "sudo sysctl -w kernel.unprivileged_userns_clone=1",
     ),
     "a kernel with no namespaces left": (
         "isolation",
         {"namespaces_failure": lambda: DENIED, "read": sysctl("user.max_user_namespaces", "0")},
         Status.WEAK,
-        "no user namespaces at all",
+        "does not allow any user namespaces",
         "sudo sysctl -w user.max_user_namespaces=15000",
     ),
     "a container that hides /proc": (
@@ -314,7 +314,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
             "read": {**FILES, Path("/.dockerenv"): ""}.get,
         },
         Status.WEAK,
-        "cannot make namespaces, one inside the other (bwrap: Can't mount proc): this container's",
+        "cannot create nested namespaces (bwrap: Can't mount proc): this container's",
         "--security-opt systempaths=unconfined",
     ),
     "namespaces forbidden by something unknown": (
@@ -328,7 +328,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "disk",
         {"tmp": Path("/full"), "writable": unwritable("/full")},
         Status.MISSING,
-        "/full cannot be written to",
+        "/full is not writable",
         'export TMPDIR="$HOME/tmp"',
     ),
     "a full disk": (
@@ -342,7 +342,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "browser",
         {"which": without("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")},
         Status.WEAK,
-        "no Chromium that starts",
+        "no working Chromium",
         "sudo apt-get install chromium",
     ),
     "a bundle that is older than the newest release": (
@@ -355,14 +355,14 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
             }.get
         },
         Status.WEAK,
-        "this is of 2026-05-04, and the course has a newer one, of 2026-05-05",
+        "version 2026-05-04; a newer one is available, 2026-05-05",
         "autograder update",
     ),
     "a browser that does not start": (
         "browser",
         {"run": answers({"--version": CommandResult(1, "snap needed")})},
         Status.WEAK,
-        "no Chromium that starts",
+        "no working Chromium",
         "sudo apt-get install chromium",
     ),
 }
@@ -374,7 +374,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     "autograder doctor` detects many of these problems and names the command that fixes them",
     "autograder doctor` examines your machine and names the command that fixes each problem",
     "`autograder doctor` tells them when their release is out of date",
-    "`autograder doctor` says where a machine has others",
+    "`autograder doctor` reports different versions on a machine",
     "| `g++: command not found` |",
 )
 @pytest.mark.parametrize(("name", "lack", "status", "found", "fix"), LACKS.values(), ids=LACKS.keys())
@@ -393,10 +393,10 @@ def test_a_weak_finding_leaves_a_machine_healthy_and_a_missing_thing_does_not() 
     assert not healthy(examine(good(which=without("bwrap"))))
 
 
-def test_a_newest_bundle_and_a_bundle_without_a_newest_folder_are_fine() -> None:
-    for told in ('"course": ""', '"course": "/srv/none"'):
-        read = {**FILES, ROOT / "release.json": f'{{"version": "2026-05-04", {told}}}'}.get
-        assert finding("release", read=read) == Finding("release", Status.OK, "of 2026-05-04")
+def test_a_newest_release_and_a_release_without_a_newest_folder_are_fine() -> None:
+    for course in ('"course": ""', '"course": "/srv/none"'):
+        read = {**FILES, ROOT / "release.json": f'{{"version": "2026-05-04", {course}}}'}.get
+        assert finding("release", read=read) == Finding("release", Status.OK, "version 2026-05-04")
 
 
 def test_a_sourced_jazzy_is_fine_and_has_no_wheels_to_fix() -> None:
@@ -430,8 +430,8 @@ def test_the_report_aligns_findings_and_never_breaks_a_command() -> None:
     assert lines[1].startswith("missing  isolation  a long story")
     assert " " * 20 + f"fix: {command}" in lines
     assert max(len(line) for line in lines if "fix:" not in line) <= 60
-    assert lines[-1] == "Something needed is missing. 1 ok, 1 weak, 1 missing."
-    assert render(findings[:1]).endswith("Everything needed is here. 1 ok, 0 weak, 0 missing.")
+    assert lines[-1] == "Something is missing. 1 ok, 1 weak, 1 missing."
+    assert render(findings[:1]).endswith("Nothing is missing. 1 ok, 0 weak, 0 missing.")
 
 
 @pytest.mark.promise(".venv/bin/autograder doctor")
@@ -441,11 +441,15 @@ def test_this_machine_can_run_the_course() -> None:
         assert findings[name].status is Status.OK, findings[name]
 
 
-def test_the_real_probes_report_lacks_instead_of_raising(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_real_probes_report_missing_things_instead_of_raising(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     system = System()
     assert system.run(["no-such-command-anywhere"], {}).status == 127
-    told = system.run([sys.executable, "-c", "import os; print(os.environ['X']); raise SystemExit('why')"], {"X": "y"})
-    assert (told.status, told.output, told.last_line) == (1, "y\nwhy\n", "why")
+    result = system.run(
+        [sys.executable, "-c", "import os; print(os.environ['X']); raise SystemExit('why')"], {"X": "y"}
+    )
+    assert (result.status, result.output, result.last_line) == (1, "y\nwhy\n", "why")
     assert system.read(tmp_path / "nothing") is None
     assert system.package("no-such-distribution-anywhere") is None
     assert system.which("no-such-command-anywhere") is None
@@ -472,7 +476,7 @@ def forgets_tries() -> Iterator[None]:
 @pytest.mark.promise(
     "The command that `autograder doctor` prints", "`autograder doctor` in a container says whether that is sufficient"
 )
-def test_a_bubblewrap_that_is_denied_namespaces_is_detected_on_this_machine(
+def test_a_bubblewrap_without_namespaces_is_detected_on_this_machine(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgets_tries: None
 ) -> None:
     denied = tmp_path / "bwrap"
@@ -495,19 +499,19 @@ def test_a_broken_python_environment_is_detected_on_this_machine(tmp_path: Path)
     }
     done = subprocess.run([sys.executable, "-c", code], env=environ, capture_output=True, text=True, timeout=120)
     assert done.returncode == 1, done.stderr
-    told = " ".join(done.stdout.split())
-    assert "a node does not start: ImportError: half an installation" in told
-    assert "the wheels are installed as well" in told
+    output = " ".join(done.stdout.split())
+    assert "a node does not start: ImportError: half an installation" in output
+    assert "the wheels are also installed" in output
 
 
 @pytest.mark.parametrize(
-    ("bounds", "told", "fix"),
+    ("bounds", "message", "fix"),
     [
-        (set(), "a fork bomb stops it all", "adduser grader && su grader"),
-        ({"pids"}, "buffers of sockets and inodes are not", "systemd-run --user --scope autograder doctor"),
+        (set(), "a fork bomb would succeed", "adduser grader && su grader"),
+        ({"pids"}, "but not socket buffers and inodes", "systemd-run --user --scope autograder doctor"),
     ],
 )
-def test_a_limit_without_a_control_group_is_reported(bounds: set[str], told: str, fix: str) -> None:
+def test_a_limit_without_a_control_group_is_reported(bounds: set[str], message: str, fix: str) -> None:
     found = finding("isolation", bounds=lambda: frozenset(bounds))
     assert (found.status, found.fix) == (Status.WEAK, fix)
-    assert told in found.found
+    assert message in found.found

@@ -37,7 +37,7 @@ def test_a_written_file_has_no_stub(tmp_path: Path) -> None:
 
 @pytest.mark.promise("| `still to be written` |")
 @pytest.mark.parametrize("name", ["package.xml", "setup.py", "setup.cfg", "CMakeLists.txt", "msg/A.msg", "srv/B.srv"])
-def test_a_stub_in_what_colcon_reads_explains_a_failed_build(tmp_path: Path, name: str) -> None:
+def test_a_stub_in_a_file_that_colcon_reads_explains_a_failed_build(tmp_path: Path, name: str) -> None:
     path = tmp_path / "robot" / name
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(f"{CODE_STUB}\n")

@@ -54,7 +54,7 @@ def test_new_and_removed_checks_and_new_students_are_listed(make_result: MakeRes
 def test_a_student_with_two_results_is_refused(make_result: MakeResult) -> None:
     from autograder.exceptions import UsageError
 
-    with pytest.raises(UsageError, match="the new results hold 'alice' twice for 02_nodes; give the folder of one"):
+    with pytest.raises(UsageError, match="the new results hold 'alice' twice for 02_nodes; use the folder of one"):
         changes([], [make_result("alice"), make_result("alice")])
 
 
@@ -69,9 +69,9 @@ def test_the_command_names_students_checks_and_another_submission(make_result: M
     ran = CliRunner().invoke(group, arguments)
     assert ran.exit_code == 0
     assert ran.output.splitlines() == [
-        "alice (02_nodes): 4 -> 7, of another submission",
+        "alice (02_nodes): 4 -> 7, for a different submission",
         "    turns: 1 -> 4",
-        "1 student with another result",
+        "1 student with a different result",
     ]
     (found,) = json.loads((tmp_path / "found.json").read_text())
     assert found["checks"] == [{"id": "turns", "before": 1.0, "after": 4.0}]

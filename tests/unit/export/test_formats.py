@@ -53,7 +53,7 @@ def test_csv_has_a_row_for_each_submission_and_a_column_for_each_check(a_class: 
     assert (carol["status"], carol["score"], carol["percent"]) == ("not_graded", "", "")
 
 
-def test_csv_holds_no_formula(hostile: Class, tmp_path: Path) -> None:
+def test_csv_contains_no_formula(hostile: Class, tmp_path: Path) -> None:
     (row,) = rows(write(hostile, "csv", tmp_path / "marks.csv"))
     assert row["student"] == "'=cmd"
     assert row["reason"] == "'=1+1|<script>`x`[a](b)\ufffd\ufffd # head"
@@ -61,7 +61,7 @@ def test_csv_holds_no_formula(hostile: Class, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("delimiter", [",", ";", "\t", "|"])
 @pytest.mark.parametrize("between", ["{}=1", '{}"=1', '"{}"=1"{}', "{} '=1{}", '{}""" @x', "a{}b{}-1{}"])
-def test_csv_holds_no_formula_whatever_a_spreadsheet_takes_for_its_separator(
+def test_csv_contains_no_formula_whichever_separator_a_spreadsheet_assumes(
     make_result: Callable[..., Result], tmp_path: Path, between: str, delimiter: str
 ) -> None:
     text = between.replace("{}", delimiter)
@@ -119,9 +119,9 @@ def test_gradescope_gets_the_score_and_a_test_for_each_check(a_class: Class, tmp
     assert bob["output"] == "The package does not build: setup.py line 3."
 
 
-def test_gradescope_names_the_failure_with_which_another_came(a_class: Class, tmp_path: Path) -> None:
+def test_gradescope_names_the_cause_of_a_consequence(a_class: Class, tmp_path: Path) -> None:
     tests = json.loads((write(a_class, "gradescope", tmp_path / "g") / "alice" / "results.json").read_text())["tests"]
-    came = f'This came with "{tests[2]["name"]}": mend that first and run again.'
+    came = f'This came with "{tests[2]["name"]}": fix that first and run again.'
     assert tests[3]["output"] == f"Not checked. {came}"
     assert came not in tests[2]["output"] + tests[4]["output"]
 

@@ -35,17 +35,17 @@ def test_each_result_of_a_list_has_its_folder(make_result: MakeResult, tmp_path:
     assert load(tmp_path / "results.json") == load(tmp_path)
 
 
-def test_a_path_that_is_not_there_is_named(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"nowhere: no such file or folder; give the folder that `autograder grade"):
+def test_a_missing_path_is_named(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"nowhere: no such file or folder; use the folder that `autograder grade"):
         load(tmp_path / "nowhere")
 
 
 def test_an_empty_folder_is_named(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"holds no result\.json; give the folder"):
+    with pytest.raises(UsageError, match=r"contains no result\.json; use the folder"):
         load(tmp_path)
 
 
-def test_a_file_that_is_no_json_is_named(tmp_path: Path) -> None:
+def test_a_file_that_is_not_json_is_named(tmp_path: Path) -> None:
     (tmp_path / "result.json").write_text("{")
     with pytest.raises(UsageError, match=r"result\.json: cannot be read as JSON: Expecting property name"):
         load(tmp_path)

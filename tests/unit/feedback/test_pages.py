@@ -67,7 +67,7 @@ def test_only_a_result_with_a_program_in_real_time_has_the_note_on_real_time(
     assert "real time" not in Page(feedback.write(make_result(), tmp_path)).text
 
 
-def test_the_page_tells_to_start_with_the_failed_check_that_costs_most(
+def test_the_page_suggests_starting_with_the_failed_check_that_costs_most(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
     cheap, dear = (make_check(id, f"It is {id}.", points, "graph") for id, points in (("cheap", 1.0), ("dear", 4.0)))
@@ -83,7 +83,7 @@ def test_the_page_links_the_check_to_start_with(make_result: MakeResult, tmp_pat
     assert "check-turns" in page.all("id")
 
 
-def test_what_came_with_a_failure_is_folded_under_it_and_named_once_in_its_own_group(
+def test_consequences_are_folded_under_their_cause_and_named_once_in_their_own_group(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
     first = make_check("first", "It drives.", 1.0, "graph")
@@ -153,7 +153,7 @@ def test_a_sentence_of_the_contract_is_quoted_once_for_failures_with_one_cause(
     assert [text.count(f"The contract: {contract('02_nodes')[name].text}") for name in ("stale", "near")] == [1, 1]
 
 
-def test_a_link_that_is_no_web_address_is_not_followed(
+def test_a_link_that_is_not_a_web_address_is_not_followed(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
     check = make_check("bad", "A check.", 1, "graph", doc="javascript:alert(1)")
@@ -171,7 +171,7 @@ def test_the_picture_is_part_of_the_page(
     assert page.all("alt") == ["The robot's track: it touches the north wall at t = 12.4 s."]
 
 
-def test_a_picture_that_belongs_to_no_check_is_shown_too(
+def test_a_picture_without_a_check_is_also_shown(
     make_result: MakeResult, track: Callable[..., Artifact], tmp_path: Path
 ) -> None:
     page = Page(feedback.write(make_result(artifacts=(track(tmp_path, check=""),)), tmp_path))
@@ -185,7 +185,7 @@ def test_a_missing_picture_is_reported_as_missing(make_result: MakeResult, tmp_p
     assert "The robot's track. (The picture was not kept.)" in page.text
 
 
-def test_an_artifact_that_is_no_picture_is_left_out(make_result: MakeResult, tmp_path: Path) -> None:
+def test_an_artifact_that_is_not_a_picture_is_ignored(make_result: MakeResult, tmp_path: Path) -> None:
     (tmp_path / "turns.json").write_text("{}")
     record = Artifact("turns.json", "recording", "0" * 64, "turns", "the recording")
     assert "the recording" not in Page(feedback.write(make_result(artifacts=(record,)), tmp_path)).text
@@ -193,7 +193,7 @@ def test_an_artifact_that_is_no_picture_is_left_out(make_result: MakeResult, tmp
 
 def test_an_artifact_outside_the_folder_is_refused(make_result: MakeResult, tmp_path: Path) -> None:
     secret = Artifact("../secret.png", "track", "0" * 64, "turns", "")
-    with pytest.raises(UsageError, match=r"'\.\./secret\.png' lies outside the result's folder"):
+    with pytest.raises(UsageError, match=r"'\.\./secret\.png' is outside the result's folder"):
         feedback.write(make_result(artifacts=(secret,)), tmp_path)
 
 
@@ -218,7 +218,9 @@ def test_a_failed_build_shows_its_log_and_the_diagnosis_on_top(broken_result: Re
     assert "Start here" not in page.text
 
 
-def test_an_ungraded_result_shows_no_score_and_says_that_it_is_no_zero(ungraded_result: Result, tmp_path: Path) -> None:
+def test_an_ungraded_result_shows_no_score_and_says_that_it_is_not_a_zero(
+    ungraded_result: Result, tmp_path: Path
+) -> None:
     page = Page(feedback.write(ungraded_result, tmp_path))
     assert "Not graded" in page.text
     assert NOT_GRADED in page.text
@@ -295,7 +297,7 @@ def test_the_table_links_each_page_and_sums_up(
     assert page.text.index("The robot stops when") < page.text.index("0 of 1")
 
 
-def test_the_table_of_no_submissions_is_a_page_too(tmp_path: Path) -> None:
+def test_the_table_of_no_submissions_is_still_a_page(tmp_path: Path) -> None:
     assert "0 submissions" in Page(feedback.write_summary([], tmp_path)).text
 
 

@@ -25,7 +25,7 @@ def with_passes(result: Result, *passed: bool) -> Result:
 
 
 @pytest.mark.promise("The page shows the distribution of marks")
-def test_marks_are_counted_in_bands_and_full_marks_lie_in_the_last(make_result: MakeResult) -> None:
+def test_marks_are_counted_in_bands_and_full_marks_are_in_the_last(make_result: MakeResult) -> None:
     results = [with_passes(make_result(), *([True] * n + [False] * (4 - n))) for n in (0, 1, 2, 4)]
     assert class_statistics(results).bands == (1, 0, 1, 0, 0, 1, 0, 0, 0, 1)
 
@@ -40,7 +40,7 @@ def test_a_check_that_only_good_submissions_pass_has_a_high_discrimination(make_
     assert first is None or first > by_id["turns"].discrimination  # type: ignore[operator]
 
 
-def test_a_check_with_equal_results_has_no_discrimination_and_one_that_all_passed_is_left_out(
+def test_a_check_with_equal_results_has_no_discrimination_and_one_that_all_passed_is_omitted(
     make_result: MakeResult,
 ) -> None:
     (missed,) = class_statistics([with_passes(make_result(), True, False) for _ in range(3)]).checks

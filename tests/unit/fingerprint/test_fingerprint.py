@@ -128,7 +128,7 @@ def test_a_file_that_no_grading_reads_does_not_change_the_version(name: str, cou
     assert (version(CHAPTER, READS), digest(CHAPTER, READS)) == before
 
 
-def test_a_suite_has_the_version_and_the_digest_of_what_it_declares_to_read() -> None:
+def test_a_suite_has_the_version_and_digest_of_its_declared_files() -> None:
     suite, reads = suites.hidden("06_testing"), ["solutions/speed_guard"]
     assert suite.version == version("06_testing", reads) != version("06_testing")
     assert suite.files_digest == digest("06_testing", reads) != digest("06_testing")

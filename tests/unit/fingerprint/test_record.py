@@ -13,14 +13,14 @@ if no mark can change, record them anew: python -m tests.unit.fingerprint.record
 """
 
 
-def test_what_all_gradings_share_is_as_it_was_recorded_for_this_version() -> None:
+def test_the_shared_files_are_unchanged_since_this_version_was_recorded() -> None:
     recorded, now = RECORD.read_text(encoding="utf-8").splitlines(), current().splitlines()
     changed = sorted({line.split()[-1] for line in {*recorded} ^ {*now}})
     if changed:
         pytest.fail(HELP.format(version=recorded[0]) + "\n".join(changed), pytrace=False)
 
 
-def test_comments_and_docstrings_are_no_change() -> None:
+def test_comments_and_docstrings_do_not_count_as_a_change() -> None:
     source = (
         '"""What it is."""\n\n# Why.\ndef f():\n    """Return.\n\n    Two.\n    """\n    return """\n# text"""  # 2\n'
     )

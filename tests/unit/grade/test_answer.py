@@ -63,7 +63,7 @@ def test_json_of_too_many_values_is_refused_before_it_takes_memory(flood: bytes)
     assert most < 6 * len(flood)  # to parse the first takes 20 times as much
 
 
-def test_what_stands_in_strings_counts_as_one_value() -> None:
+def test_a_string_counts_as_one_value() -> None:
     texts = ["[,{" * 5000, '"[,' * 5000, "\\" * 5001 + '"', "\\", ""]
     assert read_json(json.dumps(texts).encode(), 10) == texts
 
@@ -134,6 +134,6 @@ def test_jupyter_reads_a_notebook_as_it_is_written_and_the_grader_one_of_jupyter
         b"\xff",
     ],
 )
-def test_what_is_no_notebook_is_refused(result: Result, data: bytes) -> None:
+def test_a_file_that_is_not_a_notebook_is_rejected(result: Result, data: bytes) -> None:
     with pytest.raises(AnswerError, match="the notebook in a worker's answer cannot be read"):
         checked(files(result, **{"notebook.ipynb": data}), JOB)

@@ -84,7 +84,7 @@ def test_an_empty_folder_is_a_usage_error(tmp_path: Path) -> None:
         discover((tmp_path,), CHAPTER)
 
 
-def test_a_path_that_does_not_exist_is_a_wrong_call(tmp_path: Path) -> None:
+def test_a_missing_path_is_a_usage_error(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="nobody: there is no such file or folder"):
         discover((tmp_path / "nobody",), CHAPTER)
 
@@ -98,7 +98,7 @@ def test_a_submission_with_the_name_of_a_file_beside_the_results_is_not_graded(t
     assert discovered.others == ((name, f"{name} is the name of a file beside the results: give it another name"),)
 
 
-def test_two_submissions_of_one_name_are_a_wrong_call(tmp_path: Path) -> None:
+def test_two_submissions_with_the_same_name_are_a_usage_error(tmp_path: Path) -> None:
     _submission(tmp_path / "a" / "alice")
     (tmp_path / "alice.zip").write_bytes(b"")
     with pytest.raises(UsageError, match="two submissions are called alice: rename one"):

@@ -32,7 +32,7 @@ def stream(text: str) -> dict[str, str]:
     ],
     ids=["values", "outputs", "cells", "lines"],
 )
-def test_an_answer_without_end_is_read_at_once_and_what_comes_before_it_counts(flood: bytes) -> None:
+def test_an_endless_answer_is_read_quickly_and_the_part_before_it_counts(flood: bytes) -> None:
     began = time.process_time()
     answer = read_answer(BEGIN + cell(0, [stream("mine")]) + flood)
     assert time.process_time() - began < 10  # an answer as large as it may be took up to nine minutes
@@ -40,7 +40,7 @@ def test_an_answer_without_end_is_read_at_once_and_what_comes_before_it_counts(f
     assert answer.cells[0].outputs[0].text == "mine"
 
 
-def test_metadata_of_a_students_own_cells_go_no_further() -> None:
+def test_metadata_of_a_students_own_cells_are_removed() -> None:
     source = new_notebook(cells=[new_code_cell("1", metadata={"nbgrader": {"grade_id": "wall", "locked": True}})])
     own = [new_code_cell("2", metadata={"more": [{"a": 1}]}), new_markdown_cell("3", metadata={"nbgrader": {"x": 1}})]
     restored = submitted_notebook.restore(new_notebook(cells=own), source)

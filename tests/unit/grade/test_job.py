@@ -8,7 +8,7 @@ from autograder.grade.job import Job, Scope
 from autograder.run.sandbox import Tier
 
 
-def test_a_job_is_the_same_after_a_way_through_json(tmp_path: Path) -> None:
+def test_a_job_survives_conversion_to_json(tmp_path: Path) -> None:
     scope = Scope(("starts", "ten_hertz"), first_loss=True, pictures=False)
     out, scratch = tmp_path / "out", tmp_path / "scratch"
     job = Job(tmp_path / "größe 漢", "02_nodes", "Zoë", 7, out, Tier.PROCESS, scope, 450.0, scratch)

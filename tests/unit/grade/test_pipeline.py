@@ -129,7 +129,7 @@ def test_a_second_try_has_only_what_the_first_has_left_of_one_budget(tmp_path: P
     assert second <= 0.2
 
 
-def test_a_submission_that_has_used_its_budget_up_is_not_tried_again_and_gets_no_zero(tmp_path: Path) -> None:
+def test_a_submission_that_used_up_its_budget_is_not_tried_again_and_gets_no_zero(tmp_path: Path) -> None:
     worker = SlowWorker(0.9, None)
     result = grade(tmp_path, worker, seconds=0.4)
     assert worker.left == []
@@ -160,7 +160,7 @@ FORGED: dict[str, Callable[[Result], Result]] = {
 
 
 @pytest.mark.parametrize("forgery", FORGED)
-def test_a_worker_that_answers_something_else_has_failed_and_nothing_of_its_answer_is_kept(
+def test_a_worker_with_an_invalid_reply_has_failed_and_its_reply_is_discarded(
     tmp_path: Path, lost: Result, forgery: str
 ) -> None:
     result = grade(tmp_path, Worker(*2 * [FORGED[forgery](whole(lost))]))
@@ -169,7 +169,7 @@ def test_a_worker_that_answers_something_else_has_failed_and_nothing_of_its_answ
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"result.json", "grader.log"}
 
 
-def test_a_worker_is_told_which_try_is_the_last(tmp_path: Path, lost: Result) -> None:
+def test_a_worker_knows_whether_this_is_the_last_attempt(tmp_path: Path, lost: Result) -> None:
     worker = Worker(None, whole(lost))
     grade(tmp_path, worker)
     assert worker.last == [False, True]

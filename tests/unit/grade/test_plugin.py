@@ -223,7 +223,7 @@ def test_any_other_exception_is_the_grader_s_own_failure(grade: Grade, error: st
 
 @pytest.mark.promise("`grader.log` beside the result says where.")
 @pytest.mark.parametrize("where", ["check", "fixture", "module"])
-def test_an_error_over_data_in_hand_fails_that_check_alone_and_is_kept_for_the_instructor(
+def test_an_error_over_a_student_s_data_fails_only_that_check_and_is_logged_for_the_instructor(
     grade: Grade, where: str
 ) -> None:
     plugin = grade(f"""
@@ -255,7 +255,7 @@ def test_an_error_over_data_in_hand_fails_that_check_alone_and_is_kept_for_the_i
     assert "OverflowError" in plugin.unjudged["reads"]
 
 
-def test_a_fraction_that_data_in_hand_make_impossible_fails_that_check_alone(grade: Grade) -> None:
+def test_a_fraction_that_a_student_s_data_make_impossible_fails_only_that_check(grade: Grade) -> None:
     plugin = grade("""
         from autograder.submission.reading import hold
 
@@ -269,7 +269,7 @@ def test_a_fraction_that_data_in_hand_make_impossible_fails_that_check_alone(gra
     assert (plugin.failures, list(plugin.unjudged)) == ([], ["reads"])
 
 
-def test_an_error_without_data_in_hand_is_the_grader_s_own_failure_after_a_check_that_had_some(grade: Grade) -> None:
+def test_an_error_without_a_student_s_data_is_the_grader_s_failure_even_after_a_check_with_some(grade: Grade) -> None:
     plugin = grade("""
         from autograder.submission.reading import hold
 
@@ -288,7 +288,7 @@ def test_an_error_without_data_in_hand_is_the_grader_s_own_failure_after_a_check
 
 
 @pytest.mark.parametrize("error", ["GraderError('lost')", "OSError(5, 'EIO')", "RuntimeError()", "SystemExit(0)"])
-def test_what_no_data_cause_is_the_grader_s_own_failure_whatever_is_in_hand(grade: Grade, error: str) -> None:
+def test_an_error_that_data_do_not_cause_is_the_grader_s_failure(grade: Grade, error: str) -> None:
     plugin = grade(f"""
         from autograder.submission.reading import hold
 
@@ -345,7 +345,7 @@ def test_a_test_that_declares_no_check_counts_for_nothing(grade: Grade) -> None:
     assert plugin.failures == []
 
 
-def test_a_check_gets_the_workspace_the_seed_and_a_gallery_of_its_own(grade: Grade) -> None:
+def test_a_check_gets_the_workspace_the_seed_and_a_separate_gallery(grade: Grade) -> None:
     plugin = grade("""
         @check(points=1, group="g")
         def test_it(workspace, seed, gallery):
@@ -356,7 +356,7 @@ def test_a_check_gets_the_workspace_the_seed_and_a_gallery_of_its_own(grade: Gra
 
 
 @pytest.mark.promise("`draw` is a random number generator that is seeded for each grading.")
-def test_what_a_check_draws_follows_from_the_seed(grade: Grade) -> None:
+def test_the_draws_of_a_check_follow_from_the_seed(grade: Grade) -> None:
     text = """
         @check(points=1, group="g")
         def test_it(draw):

@@ -164,7 +164,7 @@ def test_a_notebook_is_read_with_any_line_ends() -> None:
         b"[" * 100_000,
     ],
 )
-def test_a_file_that_is_no_notebook_is_named_with_the_remedy(data: bytes) -> None:
+def test_a_file_that_is_not_a_notebook_is_named_with_the_remedy(data: bytes) -> None:
     with pytest.raises(StudentError, match=r"02_nodes.ipynb cannot be read as a notebook") as caught:
         submitted_notebook.read(data, "02_nodes.ipynb")
     assert caught.value.diagnosis.kind is Kind.UNREADABLE

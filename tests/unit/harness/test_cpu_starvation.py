@@ -36,7 +36,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     [(0.1, 0.1, 0.0), (0.05, 0.1, 0.0), (0.7, 0.1, 0.6), (0.3, -0.5, 0.3)],
     ids=["in time", "early", "late", "nothing to wait for"],
 )
-def test_a_late_return_counts_as_held_up(
+def test_a_late_return_counts_as_a_stall(
     clock: list[float], waits: list[float], took: float, seconds: float, late: float
 ) -> None:
     clock += [5.0, 5.0 + took]
@@ -45,7 +45,7 @@ def test_a_late_return_counts_as_held_up(
     assert waits == [pytest.approx(late)]
 
 
-def test_an_ended_process_does_not_count_as_held_up(clock: list[float], waits: list[float]) -> None:
+def test_an_ended_process_does_not_count_as_stalled(clock: list[float], waits: list[float]) -> None:
     with subprocess.Popen([sys.executable, "-c", ""]) as ended:
         pass
     clock += [0.0, 0.0]
@@ -74,7 +74,7 @@ def crowded() -> Iterator[subprocess.Popen[bytes]]:
         yield processes[0]
 
 
-def test_a_process_without_a_free_processor_counts_as_held_up(
+def test_a_process_without_a_free_processor_counts_as_stalled(
     crowded: subprocess.Popen[bytes], waits: list[float]
 ) -> None:
     deadline = time.monotonic() + SECONDS

@@ -62,7 +62,7 @@ def test_each_line_has_the_instant_of_its_line_end() -> None:
     )
 
 
-def test_output_written_before_the_drive_is_left_out() -> None:
+def test_output_written_before_the_drive_is_ignored() -> None:
     assert heard(Talking(7.0, [b"mine\n"], b"of another check\n")) == ((0.1, "mine"),)
 
 

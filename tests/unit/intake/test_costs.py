@@ -71,14 +71,14 @@ def test_all_archives_of_a_submission_have_one_bound(tmp_path: Path, monkeypatch
 
 
 @pytest.mark.parametrize("name", ["a/" * 100 + "x", "x" * 5000])
-def test_a_name_that_no_file_can_have_is_refused_before_it_is_looked_at(name: str, tmp_path: Path) -> None:
+def test_an_impossible_file_name_is_rejected_before_it_is_looked_up(name: str, tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "ada.zip", "w") as archive:
         archive.writestr(name, b"")
     with pytest.raises(StudentError, match=r"has more than 1024 characters or 64 folders"):
         read_submission(tmp_path / "ada.zip", CHAPTER)
 
 
-def test_thousands_of_packages_in_each_other_are_found_at_once() -> None:
+def test_thousands_of_nested_packages_are_found_quickly() -> None:
     paths = [f"{'x/' * depth}q{depth}/package.xml" for depth in range(13)]
     paths += [f"{'x/' * 13}p{number}/package.xml" for number in range(1900)]
     files = [SubmittedFile(PurePosixPath(path), b"<name>a</name>") for path in paths]
@@ -117,7 +117,7 @@ def steps_of(work: Callable[[], object]) -> int:
     return count
 
 
-def test_marks_of_environments_in_each_other_take_steps_in_proportion_to_the_names() -> None:
+def test_nested_environments_are_found_in_time_proportional_to_the_names() -> None:
     def steps(names: int, depth: int) -> int:
         deep = "/".join(["conda-meta"] * depth)
         paths = [PurePosixPath(f"{deep}/{number}") for number in range(names)]
@@ -133,7 +133,7 @@ def test_marks_of_environments_in_each_other_take_steps_in_proportion_to_the_nam
     assert steps(200, 60) < 1.2 * steps(200, 20)
 
 
-def test_an_archive_of_environments_alone_is_refused() -> None:
+def test_an_archive_that_contains_only_environments_is_rejected() -> None:
     paths = [PurePosixPath(f"{number}/pyvenv.cfg") for number in range(MAX_ENVIRONMENTS + 1)]
     with pytest.raises(StudentError, match="more than 1000 environments of Python"):
         IgnoredPaths(paths)
@@ -159,6 +159,6 @@ def test_metadata_of_cells_do_not_stay_in_memory() -> None:
     ],
     ids=["values", "cells"],
 )
-def test_a_notebook_of_more_than_any_notebook_has_is_none(cells: bytes, told: str) -> None:
+def test_a_notebook_that_exceeds_every_realistic_size_is_not_read(cells: bytes, told: str) -> None:
     with pytest.raises(ValueError, match=told):
         read_cells(b'{"nbformat":4,"cells":[%b]}' % cells)

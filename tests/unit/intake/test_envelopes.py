@@ -392,7 +392,7 @@ UNCLEAR: dict[str, tuple[Callable[[Answer], Files], str]] = {
     "For 7z, RAR and Zstandard, a message asks you to unpack them.", "A submission is *unclear* if it cannot be opened"
 )
 @pytest.mark.parametrize("envelope", UNCLEAR)
-def test_what_may_hold_an_answer_and_is_unclear_says_what_to_do(envelope: str, answer: Answer, tmp_path: Path) -> None:
+def test_an_unclear_file_that_may_contain_an_answer_has_a_remedy(envelope: str, answer: Answer, tmp_path: Path) -> None:
     files, words = UNCLEAR[envelope]
     with pytest.raises(StudentError) as caught:
         read_submission(write(tmp_path / "ada", files(answer)), CHAPTER)

@@ -130,7 +130,7 @@ def test_an_empty_folder_and_a_folder_of_other_things_hold_nothing_to_grade(tmp_
         assert "neither 02_nodes.ipynb nor a ws/src folder" in sentence
 
 
-def test_a_path_that_does_not_exist_is_a_wrong_call(tmp_path: Path) -> None:
+def test_a_missing_path_is_a_usage_error(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="nobody: there is no such file or folder"):
         read_submission(tmp_path / "nobody", CHAPTER)
 
@@ -148,14 +148,14 @@ def test_the_digest_is_of_paths_and_contents_whatever_the_packing(tmp_path: Path
     assert read_submission(_write(tmp_path / "b", {**TREE, "notes.txt": b"yours"}), CHAPTER).sha256 != folder
 
 
-def test_windows_line_ends_spaces_and_unicode_are_kept_as_they_are(tmp_path: Path) -> None:
+def test_windows_line_ends_spaces_and_unicode_are_kept(tmp_path: Path) -> None:
     files = {"src/mein Paket/größe 漢字.py": b"a = 1\r\n"}
     taken = read_submission(_zip(tmp_path / "a.zip", files), CHAPTER)
     write_tree(taken.source, tmp_path / "out")
     assert (tmp_path / "out/mein Paket/größe 漢字.py").read_bytes() == b"a = 1\r\n"
 
 
-def test_a_name_that_is_no_utf_8_is_kept(tmp_path: Path) -> None:
+def test_a_name_that_is_not_utf_8_is_kept(tmp_path: Path) -> None:
     name = os.fsdecode(b"caf\xe9.txt")
     root = _write(tmp_path / "bob", {f"src/pkg/{name}": b"x"})
     write_tree(read_submission(root, CHAPTER).source, tmp_path / "out")
@@ -335,7 +335,7 @@ def test_a_tar_that_unpacks_to_too_much_is_not_read_to_its_end(
     assert "it is larger than 2 MiB when it is unpacked" in _refused(bomb)[1]
 
 
-def test_a_cut_tar_is_unreadable(tmp_path: Path) -> None:
+def test_a_truncated_tar_is_unreadable(tmp_path: Path) -> None:
     for mode in ("w:gz", "w:bz2", "w:xz"):
         whole = _tar(tmp_path / "a.tar", _member("src/p/x", size=9000), mode=mode).read_bytes()
         (tmp_path / "cut.tar.gz").write_bytes(whole[: len(whole) // 2])
@@ -347,7 +347,7 @@ def test_xz_that_asks_for_too_much_memory_is_unreadable(tmp_path: Path, monkeypa
     assert _refused(_tar(tmp_path / "a.tar.xz", _member("src/p/x"), mode="w:xz"))[0] is Kind.UNREADABLE
 
 
-def test_archives_nested_without_end_and_too_many_of_them_are_not_opened(tmp_path: Path) -> None:
+def test_endlessly_nested_archives_and_too_many_archives_are_not_opened(tmp_path: Path) -> None:
     data = _zip(tmp_path / "0.zip", TREE).read_bytes()
     for number in range(reading.MAX_NESTING + 2):
         data = _zip(tmp_path / "n.zip", {f"{number}.zip": data}).read_bytes()

@@ -109,7 +109,7 @@ def test_the_entry_unused_for_longest_goes_first(tmp_path: Path) -> None:
     assert [(tmp_path / key).is_dir() for key in (A, B, C)] == [True, False, True]
 
 
-def test_the_entries_have_the_limit_however_many_are_made_at_once(tmp_path: Path) -> None:
+def test_the_limit_on_entries_holds_even_if_many_are_created_at_once(tmp_path: Path) -> None:
     cache = Cache(tmp_path, limit=2500)
     for number in range(20):
         cache.get(f"{number:040x}", fill)
@@ -126,7 +126,7 @@ def test_an_entry_that_is_in_use_is_not_evicted_and_one_that_was_is(tmp_path: Pa
     assert not (tmp_path / A).exists()
 
 
-def test_the_default_cache_lies_below_the_users_cache_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_default_cache_is_in_the_users_cache_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     assert Cache.default("things").root == tmp_path / "autograder" / "things"
 

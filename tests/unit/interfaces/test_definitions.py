@@ -24,7 +24,7 @@ def test_a_definition_loses_its_comments_and_names_what_it_uses() -> None:
     assert definition.uses == (("std_msgs", "Header", "std_msgs/Header header"),)
 
 
-def test_the_text_is_written_anew_and_means_the_same() -> None:
+def test_the_text_is_rewritten_and_means_the_same() -> None:
     lines = {
         "int32   X  =  0x10": "int32 X=16",
         "bool ON=1": "bool ON=true",

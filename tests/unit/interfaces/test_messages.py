@@ -49,7 +49,7 @@ def test_the_types_of_fields_have_the_names_of_rosidl() -> None:
     }
 
 
-def test_the_same_texts_give_the_same_classes_and_others_do_not_get_in_their_way() -> None:
+def test_the_same_texts_give_the_same_classes_and_others_do_not_interfere() -> None:
     other = package({**TEXTS, "msg/Inner.msg": "int8 flag\n"})
     assert package().msg.Inner is package().msg.Inner
     assert other.msg.Inner is not package().msg.Inner
@@ -67,7 +67,7 @@ def test_the_same_texts_give_the_same_classes_and_others_do_not_get_in_their_way
         (lambda: package().msg.Statsu, "plain_msgs/msg has no Statsu"),
     ],
 )
-def test_what_a_definition_lacks_is_the_students_error(make: Any, sentence: str) -> None:
+def test_a_missing_part_of_a_definition_is_the_students_error(make: Any, sentence: str) -> None:
     with pytest.raises(StudentError) as caught:
         make()
     assert sentence in caught.value.diagnosis.sentence

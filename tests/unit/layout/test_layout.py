@@ -57,7 +57,7 @@ def test_a_wrong_line_of_a_course_file_is_named(tmp_path: Path, lines: str, said
     assert said in str(raised.value)
 
 
-def test_a_folder_without_the_file_is_no_course(tmp_path: Path) -> None:
+def test_a_folder_without_the_file_is_not_a_course(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"is no course: it has no course\.yaml"):
         Course.read(tmp_path)
 

@@ -69,8 +69,8 @@ def test_a_moodle_download_with_folders_is_assigned_to_students(tmp_path: Path) 
     assert collected.late == ("jane@example.edu",)
     assert collected.missing == ("bob@example.edu",)
     assert collected.unmatched == (
-        ("Eve Stranger_999_assignsubmission_file_", "no student of roster.csv fits"),
-        ("Zoë Müller-Żak_101_assignsubmission_onlinetext_", "it is no file that was handed in"),
+        ("Eve Stranger_999_assignsubmission_file_", "it matches no student in roster.csv"),
+        ("Zoë Müller-Żak_101_assignsubmission_onlinetext_", "it is not a submitted file"),
     )
 
 
@@ -183,11 +183,11 @@ def test_a_blackboard_download_holds_attempts_and_a_receipt_for_each(tmp_path: P
     assert collected.older == ("Chapter 13 Problems_jdoe3_attempt_2014-04-30-21-02-38_chapter (13).zip",)
     assert collected.missing == ("zpoe",)
     assert dict(collected.unmatched) == {
-        "E_nodes_eve_zpoe_attempt_2014-04-30-21-02-38.txt": "no student of roster.csv fits",
-        "E_nodes_eve_zpoe_attempt_2014-04-30-21-02-38_a.zip": "no student of roster.csv fits",
-        "No_zpoe_attempt_2014-04-30-21-02-38_a.zip": "unclear: Blackboard's receipt beside it is missing, or names "
-        "somebody else",
-        "Z_nodes_zpoe_attempt_2014-04-30-21-02-38.txt": "it is no file that was handed in",
+        "E_nodes_eve_zpoe_attempt_2014-04-30-21-02-38.txt": "it matches no student in roster.csv",
+        "E_nodes_eve_zpoe_attempt_2014-04-30-21-02-38_a.zip": "it matches no student in roster.csv",
+        "No_zpoe_attempt_2014-04-30-21-02-38_a.zip": "unclear: its Blackboard receipt is missing, "
+        "or names another student",
+        "Z_nodes_zpoe_attempt_2014-04-30-21-02-38.txt": "it is not a submitted file",
     }
 
 
@@ -261,12 +261,12 @@ def test_a_sakai_download_has_a_folder_for_each_student_or_group(tmp_path: Path)
     assert entries == {"llate2": answer, "sspeedy2": answer}
     assert collected.missing == ("nobody", "typist")
     assert collected.unmatched == (
-        ("Stranger, Eve(eve)", "no student of roster.csv fits"),
-        ("Text, Tom(typist)", "it is no file that was handed in"),
+        ("Stranger, Eve(eve)", "it matches no student in roster.csv"),
+        ("Text, Tom(typist)", "it is not a submitted file"),
     )
 
 
-def test_a_sakai_download_without_folders_has_the_names_of_folders_in_those_of_files(tmp_path: Path) -> None:
+def test_a_sakai_download_without_folders_has_folder_names_in_its_file_names(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "bulk_download",
         "grades.csv",
@@ -283,13 +283,13 @@ def test_a_sakai_download_without_folders_has_the_names_of_folders_in_those_of_f
     assert collected.unmatched == (
         (
             "Speedy, Sam(sspeedy2)_Submission attachment(s)_x(nobody)_Submission attachment(s)_a.zip",
-            "no student of roster.csv fits",
+            "it matches no student in roster.csv",
         ),
-        ("Text, Tom(typist)__submissionText.html", "it is no file that was handed in"),
+        ("Text, Tom(typist)__submissionText.html", "it is not a submitted file"),
     )
 
 
-def test_who_takes_a_name_that_reads_like_a_download_takes_no_other_students_place(tmp_path: Path) -> None:
+def test_a_name_that_resembles_a_download_does_not_replace_another_student(tmp_path: Path) -> None:
     moodle = 'Identifier,Full name\nParticipant 1,Ada Lovelace\nParticipant 2,"{}"\n'
     brightspace = 'OrgDefinedId,Name\n1,Ada Lovelace\n2,"{}"\n'
     sakai = 'Display ID,Last Name,First Name\nada,Lovelace,Ada\neve,"{}",\n'
@@ -365,7 +365,7 @@ def test_who_takes_a_name_that_reads_like_a_download_takes_no_other_students_pla
 @pytest.mark.parametrize(
     "name", ["index.html", "earlier-marks.json", "handed_in.json", "results.json", "..", "x" * 256]
 )
-def test_a_student_whose_folder_would_have_the_place_of_a_file_is_named(tmp_path: Path, name: str) -> None:
+def test_a_student_whose_folder_conflicts_with_a_file_is_named(tmp_path: Path, name: str) -> None:
     folder = download(tmp_path / "d", "Ada_1_assignsubmission_file_a.zip", "Eve_2_assignsubmission_file_a.zip")
     collected, entries = found(folder, f"Identifier,Username\nParticipant 1,ada\nParticipant 2,{name}\n")
     assert list(entries) == ["ada"]
@@ -387,8 +387,8 @@ def test_each_member_of_a_gradescope_group_has_the_submission(tmp_path: Path) ->
     assert collected.unmatched == (
         ("notes.pdf", "submission_metadata.yml does not list it"),
         ("submission_2", "submission_metadata.yml does not list it"),
-        ("submission_3", "submission_metadata.yml lists it, and it is not there"),
-        ("submission_1", "no student of roster.csv fits"),
+        ("submission_3", "submission_metadata.yml lists it, but it is missing"),
+        ("submission_1", "it matches no student in roster.csv"),
     )
 
 
@@ -439,21 +439,21 @@ GITHUB = "identifier,github_username,github_id,name\nbob,bob,1,\neve,eve,2,\nzo�
             "hw-submissions",
             ["hw-ada-bob"],
             {},
-            {"hw-ada-bob": "no student of roster.csv fits"},
+            {"hw-ada-bob": "it matches no student in roster.csv"},
             id="the folder says it",
         ),
         pytest.param(
             "clones",
             ["hw-ada-bob", "hw-eve"],
             {"eve": "hw-eve"},
-            {"hw-ada-bob": "no student of roster.csv fits"},
+            {"hw-ada-bob": "it matches no student in roster.csv"},
             id="most clones begin so",
         ),
         pytest.param(
             "clones",
             ["hw-1-bob", "hw-1-eve", "hw-1-ada-zoe", "my-notes"],
             {"bob": "hw-1-bob", "eve": "hw-1-eve", "zoë": "hw-1-ada-zoe"},
-            {"my-notes": "no student of roster.csv fits"},
+            {"my-notes": "it matches no student in roster.csv"},
             id="two accounts follow",
         ),
         pytest.param(
@@ -463,7 +463,7 @@ GITHUB = "identifier,github_username,github_id,name\nbob,bob,1,\neve,eve,2,\nzo�
             {},
             id="the course's own name of the assignment",
         ),
-        pytest.param("clones", ["hw-ada-bob"], {}, {"hw-ada-bob": "unclear: bob, or an account"}, id="one clone"),
+        pytest.param("clones", ["hw-ada-bob"], {}, {"hw-ada-bob": "unclear: bob, or another account"}, id="one clone"),
         pytest.param(
             "clones", ["hw-ada-zoe"], {}, {"hw-ada-zoe": "unclear: ada-zoe, or an"}, id="one of several names"
         ),
@@ -476,7 +476,7 @@ GITHUB = "identifier,github_username,github_id,name\nbob,bob,1,\neve,eve,2,\nzo�
         ),
     ],
 )
-def test_a_clone_is_nobodys_whose_account_only_ends_like_it(
+def test_a_clone_is_not_assigned_by_the_end_of_an_account_alone(
     tmp_path: Path, folder: str, names: list[str], entries: dict[str, str], strangers: dict[str, str]
 ) -> None:
     collected, given = found(download(tmp_path / folder, *(f"{name}/ws/src/p/x" for name in names)), GITHUB)
@@ -507,11 +507,11 @@ def test_a_zip_is_unpacked_and_a_zip_with_paths_outside_its_folder_is_refused(tm
     ("table", "why"),
     [
         ("", "the table is empty"),
-        ("Nachname,Note\nDoe,1\n", "no column names the students; the headings that are known are"),
+        ("Nachname,Note\nDoe,1\n", "no column identifies the students; the known headings are"),
         ("id,name\njane,a\njane,b\n", "two students are called jane"),
     ],
 )
-def test_a_table_that_names_no_students_is_a_wrong_call(tmp_path: Path, table: str, why: str) -> None:
+def test_a_table_without_students_is_a_usage_error(tmp_path: Path, table: str, why: str) -> None:
     (tmp_path / "roster.csv").write_text(table)
     with pytest.raises(UsageError, match=why):
         read_roster(tmp_path / "roster.csv")

@@ -92,7 +92,7 @@ def test_canvas_gets_a_new_column_if_no_column_is_that_of_the_assignment(
     ("system", "text", "why"),
     [
         ("moodle", "Identifier,Full name\nParticipant 1,Z\n", "the column 'grade' is missing"),
-        ("moodle", MOODLE.replace("100.00", "many"), "'many' is no number of points"),
+        ("moodle", MOODLE.replace("100.00", "many"), "'many' is not a number of points"),
         ("moodle", MOODLE.replace(",Yes,", ""), "row 2 has fewer columns than the headings"),
         ("canvas", CANVAS.replace("    Points Possible", "x"), "the row `Points Possible` is missing"),
     ],

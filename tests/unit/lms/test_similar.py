@@ -101,7 +101,7 @@ def test_a_group_is_joined_by_its_most_similar_pairs_and_others_stay_apart() -> 
 
 
 @pytest.mark.promise("The page `similar/index.html` shows groups of submissions")
-def test_the_page_of_a_pair_shows_both_texts_escaped_and_says_that_it_is_no_verdict(tmp_path: Path) -> None:
+def test_the_page_of_a_pair_shows_both_texts_escaped_and_says_that_it_is_not_a_verdict(tmp_path: Path) -> None:
     text = "# <script>\n" + OWN
     page = write_page(compare({"alice": text, "<bob>": text}, "", 0.5), tmp_path).read_text()
     assert page.count("<mark>") == page.count("</mark>") >= 2
@@ -199,7 +199,7 @@ def test_members_of_a_group_with_one_submission_are_not_alike(
         ({"ada": "", "bob": "x = 1"}, "of 2 submissions, 0 has own code"),
     ],
 )
-def test_where_no_two_submissions_can_be_compared_the_command_says_so_and_exits_1(
+def test_without_two_comparable_submissions_the_command_says_so_and_exits_1(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], texts: dict[str, str], why: str
 ) -> None:
     for name, text in texts.items():
@@ -232,7 +232,7 @@ HARD = (
 
 
 @pytest.mark.promise("the command lists students whose code is longer")
-def test_of_a_long_text_so_many_characters_are_compared_and_that_is_said() -> None:
+def test_only_the_start_of_a_long_text_is_compared_which_is_reported() -> None:
     told: dict[str, str] = {}
     long = "".join(f"{OWN}# {number}" for number in range(2_000))
     (found,) = compare({"alice": long, "bob": "a\n" * 700_000 + OTHER, "carol": OWN}, "", 0.5, told.__setitem__).groups
@@ -245,7 +245,7 @@ def test_of_a_long_text_so_many_characters_are_compared_and_that_is_said() -> No
 
 
 @pytest.mark.parametrize("part", HARD)
-def test_a_lexer_and_a_pair_take_steps_in_proportion_to_a_text(part: str) -> None:
+def test_lexing_and_comparing_take_time_proportional_to_the_text(part: str) -> None:
     """What is counted is what they ask for: the places of a text that the lexer tries, and those that are compared."""
 
     def steps(length: int) -> tuple[int, int]:
@@ -259,7 +259,7 @@ def test_a_lexer_and_a_pair_take_steps_in_proportion_to_a_text(part: str) -> Non
     assert max(long) <= 10_000
 
 
-def test_of_many_pairs_the_texts_of_the_most_alike_are_shown(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_only_the_texts_of_the_most_similar_pairs_are_shown(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(similar, "MAX_PAIRS", 3)
     codes = {name: f"{OWN}{OTHER}# {name}" for name in "abcdef"} | {"g": OWN}
     found = compare(codes, "", 0.0)

@@ -47,7 +47,7 @@ def test_a_callback_that_does_not_wait_is_done_at_once() -> None:
     assert not threads.resume()
 
 
-def test_waiting_callbacks_go_on_when_ready_in_the_order_in_which_they_began() -> None:
+def test_waiting_callbacks_continue_when_ready_in_the_order_of_their_start() -> None:
     threads, log, gates = CallbackThreads(None), [], {"a": False, "b": False}
 
     def work(name: str) -> None:

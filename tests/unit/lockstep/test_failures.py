@@ -49,7 +49,7 @@ def test_a_syntax_error_has_its_own_diagnosis(kind: str) -> None:
     assert "Python cannot read your file: expected ':' (robot.py, line 7). Fix that line" in diagnosis.sentence
 
 
-def test_an_exception_without_a_message_is_named_by_its_type_alone() -> None:
+def test_an_exception_without_a_message_is_shown_by_its_type() -> None:
     assert "running: AssertionError. The last" in diagnose_crash(Crash("spin", "AssertionError", "", "")).sentence
 
 

@@ -53,7 +53,7 @@ def test_an_event_is_a_line_of_json() -> None:
         (b'{"event": "passed", "score": 100}\n', "no event"),
     ],
 )
-def test_a_line_that_is_no_event_is_refused(line: bytes, reason: str) -> None:
+def test_a_line_that_is_not_an_event_is_rejected(line: bytes, reason: str) -> None:
     with pytest.raises(ProtocolError, match=reason):
         protocol.parse(line)
 
@@ -89,7 +89,7 @@ def test_an_event_with_a_field_of_another_type_is_refused(event: dict[str, Any],
         protocol.parse(_line(**{**event, **forged}))
 
 
-def test_changed_is_true_and_nothing_like_it() -> None:
+def test_changed_accepts_only_true() -> None:
     found = [protocol.parse(_line(**{**DONE, "changed": value}))[1].changed for value in (True, 1, "true", [0], None)]
     assert found == [True, *[False] * 4]
 

@@ -55,7 +55,7 @@ signal.pause()
     assert program.step([10**9], {"/scan": 1}).sent == {"/cmd_vel": 3}
 
 
-def test_a_program_that_holds_up_each_step_a_little_uses_up_the_patience(
+def test_a_program_that_delays_each_step_a_little_uses_up_the_time_budget(
     host: Open, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(patience._Account, "held", 0.0)

@@ -175,7 +175,7 @@ def test_a_tampered_notebook_neither_gains_points_nor_shrinks_the_maximum(
     [b"", b"{", b"\xff\xfe\x00", b"[]", b'{"cells": 7, "nbformat": 4, "nbformat_minor": 5, "metadata": {}}', b"null"],
     ids=["empty", "cut", "binary", "list", "cells", "null"],
 )
-def test_a_file_that_is_no_notebook_gets_the_graders_verdict(
+def test_a_file_that_is_not_a_notebook_gets_the_graders_verdict(
     data: bytes, course: Any, verdict: Callable[..., Any]
 ) -> None:
     course.grade = lambda job: verdict()
@@ -190,7 +190,7 @@ def test_an_ungraded_submission_fails_and_no_score_is_recorded(course: Any, verd
     course.submit("carol", course.released)
     done = course.autograde("carol")
     assert not done["success"]
-    assert "carol: not graded, no score is recorded." in done["log"]
+    assert "carol: not graded, no score was recorded." in done["log"]
     assert course.grades("carol") == {"grade-graph": (None, 3.0, True), "grade-reaction": (None, 4.0, True)}
     assert not (course.root / "autograded" / "carol" / "tiny").exists()
 
@@ -237,7 +237,7 @@ def test_points_that_do_not_fit_the_cell_are_refused(
     course.submit("frank", course.released)
     done = course.autograde("frank")
     assert not done["success"]
-    assert "the cell of group 'graph' is worth 3 points, its checks 5" in done["log"]
+    assert "the cell of group 'graph' is worth 3 points, but its checks 5" in done["log"]
 
 
 def test_code_in_a_students_notebook_does_not_run_in_feedback(course: Any, verdict: Callable[..., Any]) -> None:

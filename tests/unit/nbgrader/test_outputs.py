@@ -57,7 +57,7 @@ def test_any_outputs_of_a_kernel_become_valid_and_harmless(outputs: list[dict[st
         str(output).encode("utf-8")
 
 
-def test_of_a_terminals_commands_colours_are_kept_and_not_by_the_thousand() -> None:
+def test_only_colours_are_kept_of_terminal_codes_and_not_thousands_of_them() -> None:
     def text(printed: str) -> str:
         (output,) = sanitized_outputs([{"output_type": "stream", "name": "stdout", "text": printed}])
         return str(output.text)
@@ -100,7 +100,7 @@ def test_a_verdict_shows_its_pictures_with_alternative_texts(page: PageView) -> 
     assert base64.b64decode(picture.data["image/png"]).startswith(b"\x89PNG")
 
 
-def test_what_came_with_a_failure_is_folded_under_it_and_named_in_its_own_cell(
+def test_consequences_are_folded_under_their_cause_and_named_in_their_own_cell(
     make_result: Callable[..., Result], make_check: Callable[..., Check]
 ) -> None:
     first, same, other = (

@@ -47,7 +47,7 @@ def write(
         pytest.param(STUB, None, None, True, id="nothing written"),
     ],
 )
-def test_nothing_is_said_where_the_file_is_what_its_student_means(
+def test_nothing_is_reported_if_the_file_is_intended(
     tmp_path: Path, cell: str | None, file: str | None, last: str | None, saved_later: bool
 ) -> None:
     assert write(tmp_path, cell, file, last, saved_later=saved_later) == ()
@@ -76,7 +76,7 @@ def test_a_file_that_differs_from_its_cell_is_named(
 
 
 def test_a_cell_that_was_never_run_is_named(tmp_path: Path) -> None:
-    assert write(tmp_path, "a = 1", None) == ("ws/src/robot/robot/node.py is not there: run the cell that writes it.",)
+    assert write(tmp_path, "a = 1", None) == ("ws/src/robot/robot/node.py is missing: run the cell that writes it.",)
 
 
 def test_a_package_that_is_not_checked_and_a_broken_notebook_say_nothing(tmp_path: Path) -> None:

@@ -29,7 +29,7 @@ def test_messages_arrive_at_their_steps_as_they_were(tmp_path: Path) -> None:
         ("fast", r"at 0.1 s, each_step returned 'fast': return messages by topic, such as {'/mode': String\(\)}"),
         ({"/mode": "fast"}, r"each_step returned 'fast' for /mode: return a message, such as String\(data='fast'\)"),
         ({"/scan": String()}, "each_step cannot publish on /scan: the simulator and your program use it"),
-        ({"a b": String()}, "each_step names the topic '/a b', which is no name for a topic"),
+        ({"a b": String()}, "each_step names the topic '/a b', which is not a valid topic name"),
     ],
 )
 def test_what_cannot_be_published_is_named(tmp_path: Path, returned: Any, said: str) -> None:

@@ -48,7 +48,7 @@ def test_output_of_a_program_is_escaped_in_a_notebook() -> None:
     assert shown.count("look &lt;here&gt;") == 1
 
 
-def test_what_came_with_a_failure_stands_below_it_in_a_line() -> None:
+def test_consequences_are_lines_below_their_cause() -> None:
     def line(id: str, outcome: Outcome, *after: str) -> CheckResult:
         check = Check(id, f"It is <{id}>.", 1.0, "g", Visibility.VISIBLE, ("look",), None, (), (), after)
         return CheckResult.of(check, outcome, f"{id} is wrong")
@@ -91,18 +91,18 @@ def test_no_drive_and_no_check_runs_while_a_notebook_is_graded(monkeypatch: pyte
         assert isinstance(report, Notice)
 
 
-def test_the_locked_cell_gives_no_marks_in_the_kernel() -> None:
-    assert "after you have handed in" in grade("02_nodes", "graph").sentence
+def test_the_locked_cell_gives_no_points_in_the_kernel() -> None:
+    assert "after you have submitted" in grade("02_nodes", "graph").sentence
 
 
 def test_a_missing_folder_world_fault_or_assignment_is_named(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"there is no folder .*/src: run this from the assignment's folder"):
+    with pytest.raises(UsageError, match=r"there is no folder .*/src: run this in the assignment's folder"):
         drive("a", "b", workspace=tmp_path)
     with pytest.raises(UsageError, match=r"there is no world 'moon'; there are: .*empty_room"):
         drive("a", "b", world="moon", workspace=tmp_path)
-    with pytest.raises(UsageError, match=r"there is no fault 'fog'; there are: nan, dead, or a sim.Faults"):
+    with pytest.raises(UsageError, match=r"unknown fault 'fog': use nan, dead, or your own sim.Faults"):
         drive("a", "b", faults="fog", workspace=tmp_path)
-    with pytest.raises(UsageError, match="there are no visible checks for '77_none'; there are for: 00_welcome, "):
+    with pytest.raises(UsageError, match="'77_none' has no visible checks; choose one of: 00_welcome, "):
         check("77_none", tmp_path)
 
 
@@ -121,7 +121,7 @@ LATER = ("It turns <left>.", "It stops.")
 def test_a_report_lists_the_hidden_checks_if_all_visible_checks_passed() -> None:
     report = CheckReport("02_nodes", LINES[:1], later=LATER)
     assert repr(report).endswith(
-        "After you hand in, 2 more checks judge, with inputs of their own:\n- It turns <left>.\n- It stops."
+        "After you submit, 2 more checks run with their own inputs:\n- It turns <left>.\n- It stops."
     )
     assert "<li>It turns &lt;left&gt;.</li><li>It stops.</li>" in report._repr_html_()
 

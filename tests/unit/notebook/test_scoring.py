@@ -74,8 +74,10 @@ def test_arrival_counts_more_than_no_collision_and_no_collision_more_than_time()
 def test_scoring_without_a_drive_a_goal_or_a_valid_table_is_reported() -> None:
     notice = Notice("It did not start.")
     assert score(notice) is notice
-    with pytest.raises(UsageError, match="the world 'an empty hall' has no goal: drive in another one, such as 'maze'"):
+    with pytest.raises(UsageError, match="the world 'an empty hall' has no goal: use another one, such as 'maze'"):
         score(drive(0.1, World.from_segments(box(4.0, 4.0).tolist(), name="an empty hall")))
     FILE.write_text('[{"world": 3}]')
-    with pytest.raises(UsageError, match=r"scores\.json: holds no scores .*; remove the file to begin a new table"):
+    with pytest.raises(
+        UsageError, match=r"scores\.json does not contain scores .*: delete the file to start a new table"
+    ):
         score(drive(0.1))

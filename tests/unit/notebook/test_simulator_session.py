@@ -21,7 +21,7 @@ from sim import Recording
 from sim.grading import GRADING_VARIABLE
 
 
-def test_a_world_that_is_not_there_is_named() -> None:
+def test_a_missing_world_is_named() -> None:
     with pytest.raises(UsageError, match=r"there is no world 'moon'; there are: .*empty_room"), simulator("moon"):
         pass
 

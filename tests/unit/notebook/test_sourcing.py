@@ -37,13 +37,15 @@ rclpy.shutdown()
 """
 
 
-def test_a_workspace_that_is_not_there_or_not_built_is_named(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"there is no folder .*: run this from the assignment's folder, where ws is"):
+def test_a_missing_or_unbuilt_workspace_is_named(tmp_path: Path) -> None:
+    with pytest.raises(
+        UsageError, match=r"there is no folder .*: run this in the assignment's folder, which contains ws"
+    ):
         source(tmp_path / "ws")
-    with pytest.raises(UsageError, match="has nothing built in it: run colcon build"):
+    with pytest.raises(UsageError, match="has not been built: run colcon build"):
         source(tmp_path)
     (tmp_path / "install").mkdir()
-    with pytest.raises(UsageError, match="has nothing built in it: run colcon build"):
+    with pytest.raises(UsageError, match="has not been built: run colcon build"):
         source(tmp_path)
 
 
@@ -67,4 +69,4 @@ def test_interfaces_built_beside_a_kernel_can_be_imported_and_sent_and_old_ones_
     assert ran.returncode == 0, ran.stderr
     first, second, third = (line for line in ran.stdout.splitlines() if "kernel" in line)
     assert first == second == "This kernel can use course_words."
-    assert third.startswith("This kernel still holds the old course_words: choose Kernel, Restart")
+    assert third.startswith("This kernel still uses the old course_words: choose Kernel, Restart")

@@ -93,7 +93,7 @@ def test_the_block_begins_after_the_awaited_text_and_ctrl_c_ends_the_command(
     assert not alive(pid)
 
 
-def test_a_block_that_begins_without_the_awaited_text_reports_it(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_block_that_starts_without_the_awaited_text_reports_it(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with running("echo up; sleep 600", until=["up", "ready", "set"], seconds=0.5, workspace=ws):
         assert capsys.readouterr().out == "up\n[not printed within 0.5 s: 'ready', 'set']\n"
     with running("echo up; exit 3", until="ready", workspace=ws):
@@ -132,5 +132,5 @@ def test_no_command_runs_while_the_notebook_is_graded(
 
 
 def test_a_missing_workspace_is_named(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"there is no folder .*nowhere: run this from the assignment's folder"):
+    with pytest.raises(UsageError, match=r"there is no folder .*nowhere: run this in the assignment's folder"):
         shell("true", workspace=tmp_path / "nowhere")

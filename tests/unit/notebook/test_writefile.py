@@ -100,7 +100,7 @@ def test_a_changed_file_is_copied_before_a_cell_replaces_it(run: Run) -> None:
         Path(FILE).write_text(text)
         said = run(SOLVED)
         copy = Path("ws", REPLACED, "src/pkg", f"node.py.{number}")
-        assert f"Its old text is kept in {copy}." in said
+        assert f"Its old text was copied to {copy}." in said
         assert copy.read_text() == text
     assert Path(FILE).read_text() == SOLVED
     assert Path("ws", REPLACED, "COLCON_IGNORE").is_file()
@@ -110,10 +110,10 @@ def test_a_changed_file_is_copied_before_a_cell_replaces_it(run: Run) -> None:
 def test_without_a_readable_record_a_file_is_copied(run: Run, damage: str) -> None:
     run(OTHER)
     Path("ws", RECORD).write_text(damage)
-    assert "is kept in" in run(SOLVED)
+    assert "was copied to" in run(SOLVED)
 
 
-def test_bytes_that_are_no_text_are_copied_as_they_are(run: Run) -> None:
+def test_binary_files_are_copied_unchanged(run: Run) -> None:
     Path(FILE).write_bytes(b"\xff\x00\r\n")
     run(SOLVED)
     assert Path("ws", REPLACED, "src/pkg/node.py.1").read_bytes() == b"\xff\x00\r\n"

@@ -21,7 +21,7 @@ def account(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(patience._Account, name, getattr(patience._Account, name))
 
 
-def test_waits_are_cut_to_what_is_left_of_the_grading(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_waits_are_limited_to_the_rest_of_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
     patience.begin(100.0 / (1 - patience.RESERVE))
     assert patience.bounded(30.0) == 30.0
     assert 95.0 < patience.bounded(600.0) <= 100.0
@@ -36,7 +36,7 @@ def test_waits_are_cut_to_what_is_left_of_the_grading(monkeypatch: pytest.Monkey
     assert caught.value.diagnosis.kind is Kind.TIMED_OUT
 
 
-def test_programs_that_hold_the_grading_use_it_up() -> None:
+def test_programs_that_stall_the_grading_use_up_its_budget() -> None:
     patience.begin(900.0)
     patience.add_held(patience.HELD_SECONDS - 1.0)
     patience.require()

@@ -24,5 +24,5 @@ def test_a_file_may_be_as_a_notebook_gives_it_without_the_copyright_comment() ->
     assert changed_files({"lamp/lamp.py": b"# coding: utf-7\na = 1\n"}, given, FOLDERS) == ["lamp/lamp.py"]
 
 
-def test_a_comment_that_is_no_licence_stays() -> None:
+def test_a_comment_that_is_not_a_licence_is_kept() -> None:
     assert strip_licence("# Why this is here.\nx = 1\n") == "# Why this is here.\nx = 1\n"

@@ -62,7 +62,7 @@ def test_a_module_is_declared_by_its_rosdep_key_or_as_a_ros_package(module: str,
     assert not imports.undeclared([imports.Import(module, ())], {declared})
 
 
-def test_the_pip_name_of_a_module_is_no_rosdep_key(package: Path) -> None:
+def test_the_pip_name_of_a_module_is_not_a_rosdep_key(package: Path) -> None:
     found = imports.undeclared(imports.imported(package), {"numpy", "rclpy", "launch", "python3-yaml"})
     assert _names(found) == ["numpy", "pytest"]
 
@@ -83,11 +83,11 @@ def test_the_reference_packages_declare_what_they_import() -> None:
 
 
 @pytest.mark.parametrize("text", ["import (", "\0", "-" * 100_000 + "1", "(" * 1000, "a" + ".b" * 50_000])
-def test_a_text_that_is_no_python_imports_nothing(text: str) -> None:
+def test_a_text_that_is_not_python_has_no_imports(text: str) -> None:
     assert imports.modules(text) == frozenset()
 
 
-def test_files_too_large_or_linked_are_left_out(tmp_path: Path) -> None:
+def test_files_that_are_too_large_or_linked_are_ignored(tmp_path: Path) -> None:
     package = tmp_path / "lamp"
     package.mkdir()
     (package / "large.py").write_text("import numpy\n" + "#" * imports.MAX_BYTES)

@@ -70,7 +70,7 @@ def test_a_record_behind_a_link_is_not_read(install: Path, tmp_path: Path) -> No
     assert installed.look(install, "lamp").recorded == frozenset()
 
 
-def test_a_file_that_may_not_be_run_is_no_executable(install: Path) -> None:
+def test_a_file_without_execute_permission_is_not_an_executable(install: Path) -> None:
     (install / "lamp/lib/lamp/lamp").chmod(0o644)
     assert installed.look(install, "lamp").executables == ()
 

@@ -51,7 +51,7 @@ def test_an_action_has_three_parts() -> None:
     assert [part.fields[0].name for part in action.parts] == ["a", "b", "c"]
 
 
-def test_comments_more_constants_and_empty_defaults_are_no_difference() -> None:
+def test_comments_more_constants_and_empty_defaults_do_not_count_as_differences() -> None:
     assert said(f"# hello\nint8 OWN = 1\n{REQUEST}---\nbool possible false\nstring<=80 reason  # why\n") == []
 
 
@@ -124,7 +124,7 @@ def test_the_share_that_is_right_counts_fields_and_constants() -> None:
         ("#" * (MAX_BYTES + 1), "far larger than a definition"),
     ],
 )
-def test_a_definition_that_the_build_would_refuse_is_refused_with_the_reason(text: str, why: str) -> None:
+def test_a_definition_that_the_build_would_reject_is_rejected_with_the_reason(text: str, why: str) -> None:
     with pytest.raises(Unreadable) as caught:
         parse("pkg", PATH, text)
     assert PATH in str(caught.value)

@@ -94,7 +94,7 @@ def test_a_manifest_that_ros_refuses_is_refused_with_the_reason(before: str, aft
         (b"\xff\xfe<package/>", "not UTF-8"),
     ],
 )
-def test_a_file_that_is_no_manifest_is_named(tmp_path: Path, data: bytes | None, words: str) -> None:
+def test_a_file_that_is_not_a_manifest_is_named(tmp_path: Path, data: bytes | None, words: str) -> None:
     folder = tmp_path / "lamp"
     folder.mkdir()
     if data is not None:
@@ -119,7 +119,7 @@ REFUSED = """<package format="3">
 </package>"""
 
 
-def test_what_a_manifest_says_is_read_also_where_ros_refuses_it(tmp_path: Path) -> None:
+def test_a_manifest_is_read_even_if_ros_rejects_it(tmp_path: Path) -> None:
     (tmp_path / "package.xml").write_text(REFUSED)
     with pytest.raises(CheckFailed, match="ROS refuses"):
         manifest.read(tmp_path)
@@ -130,7 +130,7 @@ def test_what_a_manifest_says_is_read_also_where_ros_refuses_it(tmp_path: Path) 
     assert found.needs("test") == {"python3-pytest"}
 
 
-def test_a_manifest_that_ros_takes_is_read_leniently_as_it_is_read_strictly(tmp_path: Path) -> None:
+def test_a_manifest_that_ros_accepts_is_read_alike_leniently_and_strictly(tmp_path: Path) -> None:
     (tmp_path / "package.xml").write_text(REFUSED.replace("not an address", "ada@example.com"))
     assert manifest.read_leniently(tmp_path) == manifest.read(tmp_path)
 
@@ -139,7 +139,7 @@ def test_a_manifest_that_ros_takes_is_read_leniently_as_it_is_read_strictly(tmp_
     ("text", "words"),
     [("<package", "no well-formed XML"), (f"<!DOCTYPE p>{REFUSED}", "DOCTYPE"), (CODE_STUB, "still to be written")],
 )
-def test_what_is_no_manifest_is_refused_leniently_too(tmp_path: Path, text: str, words: str) -> None:
+def test_a_file_that_is_not_a_manifest_is_also_rejected_leniently(tmp_path: Path, text: str, words: str) -> None:
     (tmp_path / "package.xml").write_text(text)
     with pytest.raises(CheckFailed, match=words):
         manifest.read_leniently(tmp_path)

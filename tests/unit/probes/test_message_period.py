@@ -54,7 +54,7 @@ def test_a_second_is_judged_to_a_tenth_in_real_time_too(period: float) -> None:
     assert not is_paced(_after([period] * 6), 1.0, REAL)
 
 
-def test_a_machine_that_holds_some_messages_up_in_real_time_costs_nothing() -> None:
+def test_a_machine_that_delays_some_messages_in_real_time_costs_no_points() -> None:
     late = [0.1, 0.18, 0.02, 0.1, 0.1, 0.35, 0.0, 0.1, 0.105, 0.095] * 4
     assert is_paced(_after(late), PERIOD, REAL)
     assert not is_paced(_after(late), PERIOD, LOCKSTEP)
@@ -74,5 +74,5 @@ def test_fewer_than_two_messages_have_no_pace(count: int) -> None:
         ([], "not at all"),
     ],
 )
-def test_a_pace_is_told_in_words(messages: Sequence[ReceivedMessage], words: str) -> None:
+def test_a_pace_is_described_in_words(messages: Sequence[ReceivedMessage], words: str) -> None:
     assert describe_pace(messages) == words

@@ -39,7 +39,7 @@ OWN = "ValueError: no context for this speed\n"
     ],
     ids=["try_shutdown", "empty last line", "executor"],
 )
-def test_an_error_of_rclpy_in_its_own_moment_is_a_lost_race(output: str) -> None:
+def test_a_known_race_in_rclpy_is_recognized_as_such(output: str) -> None:
     assert lost_a_race(output)
 
 
@@ -60,10 +60,10 @@ def test_an_error_of_the_program_is_not(output: str) -> None:
 
 
 @pytest.mark.parametrize("status", [139, 134, -11, -6])
-def test_a_crash_of_native_code_is_told_by_its_exit_status(status: int) -> None:
+def test_a_crash_of_native_code_is_recognized_by_its_exit_status(status: int) -> None:
     assert crashed(status)
 
 
 @pytest.mark.parametrize("status", [None, 0, 1, 2, 130, 143, -2, -9, -15, 137])
-def test_no_other_end_is_a_crash(status: int | None) -> None:
+def test_no_other_exit_counts_as_a_crash(status: int | None) -> None:
     assert not crashed(status)

@@ -31,7 +31,7 @@ def test_the_sniffer_returns_an_announcement_once(sniffer: RtpsSniffer) -> None:
     assert not sniffer.take_announcements()
 
 
-def test_the_sniffer_ignores_a_packet_that_is_no_announcement(sniffer: RtpsSniffer) -> None:
+def test_the_sniffer_ignores_a_packet_that_is_not_an_announcement(sniffer: RtpsSniffer) -> None:
     say(b"hello", "127.0.0.1", 7400 + 250 * sniffer.domain + 10)
     assert not sniffer.take_announcements()
 

@@ -61,7 +61,7 @@ def test_a_message_is_cut_to_its_bound() -> None:
     ],
     ids=["empty", "text", "bytes", "large", "entities", "entities in UTF-16", "encoding"],
 )
-def test_bytes_that_are_no_valid_small_report_give_no_claims(data: bytes) -> None:
+def test_bytes_that_are_not_a_valid_small_report_give_no_claims(data: bytes) -> None:
     assert parse_claims(data) is None
 
 

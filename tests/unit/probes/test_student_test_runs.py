@@ -97,7 +97,7 @@ TestNamed.__name__ = TestNamed.__qualname__ = SECRET
 """
 
 
-def test_a_run_on_a_hidden_version_comes_back_without_any_word_of_its_own(workspace: Workspace) -> None:
+def test_a_run_on_a_hidden_version_returns_no_words_of_its_own(workspace: Workspace) -> None:
     write(workspace, TELLTALE)
     source, order = take(workspace, "half"), TestRun(("test_half.py",), WRONG)
     hidden, again = run(workspace, source, [order, order])
@@ -176,7 +176,7 @@ def test_an_invalid_reply_of_a_run_reports_no_test(workspace: Workspace, said: s
     assert report.executed == ()
 
 
-def test_a_report_that_is_no_file_reports_no_test(workspace: Workspace) -> None:
+def test_a_report_that_is_not_a_file_contains_no_tests(workspace: Workspace) -> None:
     trick = """
 import pytest
 

@@ -99,7 +99,7 @@ def test_a_version_is_installed_as_a_build_would_install_it(tmp_path: Path) -> N
     assert {path.stat().st_mtime for path in (tmp_path / "ws").rglob("*")} == {WHEN}
 
 
-def test_a_packages_tests_and_caches_are_no_part_of_its_version(tmp_path: Path) -> None:
+def test_a_packages_tests_and_caches_are_not_part_of_its_version(tmp_path: Path) -> None:
     for name in ("p/a.py", "p/__pycache__/a.pyc", "test/test_a.py", "package.xml"):
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -41,7 +41,7 @@ OWN = {
 }
 
 
-def test_each_module_of_the_worker_that_parses_has_a_door_that_is_tried() -> None:
+def test_each_parsing_module_of_the_worker_is_tested_with_bad_data() -> None:
     from tests.unit.reading.doors import DOORS
 
     package = ROOT / "autograder"

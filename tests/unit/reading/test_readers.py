@@ -27,7 +27,7 @@ THEIRS = (StudentError, CheckFailed)
 @pytest.mark.parametrize("door", DOORS.values(), ids=DOORS.keys())
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(data=st.data())
-def test_made_up_data_are_read_or_are_the_student_s_fault(door: Door, data: st.DataObject, tmp_path: Path) -> None:
+def test_generated_data_are_read_or_are_the_student_s_fault(door: Door, data: st.DataObject, tmp_path: Path) -> None:
     _read(door, data.draw(door.made_up), tmp_path)
 
 

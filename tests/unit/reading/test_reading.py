@@ -27,7 +27,7 @@ from autograder.suite import CheckFailed
     ],
     ids=lambda error: type(error).__name__,
 )
-def test_what_fails_while_data_are_read_is_the_student_s_and_names_them(error: Exception) -> None:
+def test_an_error_while_data_are_read_is_the_student_s_and_names_them(error: Exception) -> None:
     with pytest.raises(StudentError) as caught, reading("src/robot/package.xml", advice="Write it anew."):
         raise error
     diagnosis = caught.value.diagnosis
@@ -50,7 +50,7 @@ def test_what_fails_while_data_are_read_is_the_student_s_and_names_them(error: E
     ],
     ids=lambda error: type(error).__name__,
 )
-def test_errors_that_say_whose_they_are_and_those_of_the_machine_pass_through(error: BaseException) -> None:
+def test_attributed_errors_and_errors_of_the_machine_pass_through(error: BaseException) -> None:
     with pytest.raises(type(error)) as caught, reading("package.xml"):
         raise error
     assert caught.value is error
@@ -64,7 +64,7 @@ def test_the_reason_is_one_short_line_of_harmless_text() -> None:
     assert sentence.startswith("config.yaml cannot be read: a b\ufffdxxx")
 
 
-def test_what_was_read_is_in_hand_until_it_is_put_down_the_latest_last() -> None:
+def test_data_are_attributed_until_they_are_released_the_latest_last() -> None:
     put_down()
     with reading("a.yaml"):
         pass

@@ -75,7 +75,7 @@ def test_a_point_lost_in_real_time_on_a_busy_machine_is_in_doubt(
     assert result.in_doubt is in_doubt
 
 
-def test_a_result_is_the_same_after_a_way_through_json(make_result: MakeResult, broken_result: Result) -> None:
+def test_a_result_survives_conversion_to_json(make_result: MakeResult, broken_result: Result) -> None:
     artifact = Artifact("tracks/a.png", "track", "ab", "turns", "It hits a wall.")
     for result in (
         make_result(
@@ -142,7 +142,7 @@ def test_an_invalid_result_is_refused_with_file_and_field(
     assert words in str(caught.value)
 
 
-def test_json_that_is_no_object_is_refused() -> None:
+def test_json_that_is_not_an_object_is_rejected() -> None:
     with pytest.raises(UsageError, match="result: not a grading result: the top level: 7 is not of type 'object'"):
         from_json(7)
 
@@ -163,7 +163,7 @@ def test_json_is_written_whole_and_leaves_nothing_beside_it(tmp_path: Path) -> N
     assert json.loads(target.read_text(encoding="utf-8"))["name"] == "é"
 
 
-def test_a_file_name_that_is_no_utf8_can_be_written_and_read_back(make_result: MakeResult, tmp_path: Path) -> None:
+def test_a_file_name_that_is_not_utf8_can_be_written_and_read_back(make_result: MakeResult, tmp_path: Path) -> None:
     result = make_result(diagnosis=Diagnosis(Kind.UNREADABLE, "cannot read b\udcffd"))
     write_json(tmp_path / "result.json", result.to_json())
     assert from_json(json.loads((tmp_path / "result.json").read_bytes())) == result
@@ -176,7 +176,7 @@ def test_a_student_error_carries_its_diagnosis() -> None:
     assert str(error) == "setup.py, line 3: a bracket is not closed"
 
 
-def test_a_grader_error_is_no_student_error() -> None:
+def test_a_grader_error_is_not_a_student_error() -> None:
     assert issubclass(IsolationError, GraderError)
     assert not issubclass(GraderError, StudentError)
     assert not issubclass(StudentError, GraderError)

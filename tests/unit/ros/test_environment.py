@@ -108,7 +108,7 @@ def test_another_distribution_is_refused_by_name(elsewhere: Path, distro: str, n
     assert "source /opt/ros/jazzy/setup.bash" in done.stdout
 
 
-def test_a_half_sourced_jazzy_is_reported_with_what_is_missing(elsewhere: Path) -> None:
+def test_a_half_sourced_jazzy_is_reported_with_its_missing_parts(elsewhere: Path) -> None:
     done = python(FIND, PYTHONPATH=str(elsewhere), ROS_DISTRO="jazzy")
     assert done.stdout.startswith(f"RosNotFoundError rclpy is at {elsewhere / 'rclpy'}, but not in AMENT_PREFIX_PATH")
 

@@ -14,7 +14,7 @@ from autograder.ros.log_folder import log_folder
 ROS = RosEnvironment("wheels", (Path("/venv"),), Path("/venv/lib/rclpy"))
 
 
-def test_logs_go_below_the_user_s_home_and_to_no_name_that_another_user_could_take(
+def test_logs_go_below_the_user_s_home_under_names_that_no_other_user_can_take(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     taken = tmp_path / "tmp"
@@ -30,7 +30,7 @@ def test_logs_go_below_the_user_s_home_and_to_no_name_that_another_user_could_ta
 
 
 @pytest.mark.parametrize("home", ["open", "closed", "missing"])
-def test_where_the_home_s_folder_is_not_this_user_s_alone_a_new_folder_is_made(tmp_path: Path, home: str) -> None:
+def test_a_new_folder_is_created_if_others_can_use_the_home_s_folder(tmp_path: Path, home: str) -> None:
     environ = {"HOME": str(tmp_path)} if home != "missing" else {}
     if home == "open":
         (tmp_path / ".ros" / "log").mkdir(parents=True)

@@ -68,7 +68,7 @@ def test_the_environment_of_the_tests_has_no_foreign_paths() -> None:
 
 
 @pytest.mark.promise(
-    "They are used only where the real packages are not importable.",
+    "They are used only if the real packages are not importable.",
     "After `make real-launch`, or with a sourced ROS 2,",
 )
 def test_the_stand_ins_come_last_on_the_path(tmp_path: Path) -> None:
@@ -122,7 +122,7 @@ def test_the_executor_of_this_environment_is_patched() -> None:
     assert "time.sleep" in after
 
 
-@pytest.mark.promise("Set-up puts an empty one in its place.")
+@pytest.mark.promise("Set-up installs an empty replacement.")
 def test_cmake_packages_find_ament_lint_auto_where_the_wheels_are(tmp_path: Path) -> None:
     assert not patch_wheels.offer_lint_auto(tmp_path)
     (tmp_path / "share/ament_cmake").mkdir(parents=True)

@@ -78,7 +78,7 @@ def test_octets_and_numpy_arrays_become_plain_values() -> None:
     frame=st.text(st.characters(exclude_categories=["Cs", "Cc", "Zl", "Zp"])),
     sec=st.integers(-(2**31), 2**31 - 1),
 )
-def test_a_message_is_the_same_after_a_way_through_yaml(x: float, ranges: list[float], frame: str, sec: int) -> None:
+def test_a_message_survives_conversion_to_yaml(x: float, ranges: list[float], frame: str, sec: int) -> None:
     scan = LaserScan(ranges=ranges)
     scan.header.frame_id, scan.header.stamp.sec = frame, sec
     twist = Twist()

@@ -70,9 +70,7 @@ def test_a_folder_is_searched_for_source_files(tmp_path: Path, capsys: pytest.Ca
     assert main([str(tmp_path), "--exclude", "bare.py", "odd.cpp"]) == 0
 
 
-def test_a_missing_file_and_a_file_that_is_no_text_are_errors(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_missing_file_and_a_binary_file_are_errors(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "bad.py").write_bytes(b"\xff\xfe")
     assert main([str(tmp_path)]) == 1
     assert "bad.py: cannot be read as text" in capsys.readouterr().err
@@ -94,6 +92,6 @@ def test_known_licences_can_be_listed(capsys: pytest.CaptureFixture[str]) -> Non
     assert "Apache-2.0" in capsys.readouterr().out.split()
 
 
-def test_no_source_file_is_no_problem(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_missing_source_file_is_not_a_problem(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([str(tmp_path)]) == 0
     assert capsys.readouterr().out.startswith("No repository roots and files found\n")

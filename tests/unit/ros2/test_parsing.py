@@ -95,10 +95,10 @@ def test_numbers_are_checked(kind: type, good: dict[str, float], bad: tuple[str,
 
 
 @pytest.mark.promise(
-    "They are used only where the real packages are not importable.",
+    "They are used only if the real packages are not importable.",
     "After `make real-launch`, or with a sourced ROS 2,",
 )
-def test_the_real_ros2cli_takes_over_when_it_is_there(tmp_path: Path) -> None:
+def test_the_real_ros2cli_takes_over_if_it_is_installed(tmp_path: Path) -> None:
     package = tmp_path / "ros2cli"
     package.mkdir()
     (package / "__init__.py").write_text("")

@@ -70,7 +70,7 @@ def test_licences_can_be_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert not Path("p").exists()
 
 
-def test_an_existing_folder_is_left_alone(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_existing_folder_is_not_changed(capsys: pytest.CaptureFixture[str]) -> None:
     Path("p").mkdir()
     outcome = main(["pkg", "create", "p"])
     assert isinstance(outcome, str)
@@ -98,7 +98,7 @@ def test_an_existing_folder_is_left_alone(capsys: pytest.CaptureFixture[str]) ->
         (("p", "--destination-directory", "/proc/nowhere"), "unable to create /proc/nowhere/p"),
     ],
 )
-def test_a_call_of_pkg_create_that_cannot_work_is_refused(words: tuple[str, ...], error: str) -> None:
+def test_an_invalid_call_of_pkg_create_is_rejected(words: tuple[str, ...], error: str) -> None:
     outcome = main(["pkg", "create", *words])
     assert isinstance(outcome, str)
     assert outcome.startswith(error)

@@ -153,7 +153,7 @@ def test_sources_that_do_not_answer_are_given_up_after_ten_seconds(
         install(find(), {}, sources=sources, requirement="")
 
 
-def test_set_up_uses_the_stand_ins_where_a_source_is_not_reached_and_says_so_in_one_line(
+def test_set_up_uses_the_stand_ins_if_a_source_is_unreachable_and_says_so_in_one_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     nowhere = tmp_path / "nowhere"
@@ -166,7 +166,7 @@ def test_set_up_uses_the_stand_ins_where_a_source_is_not_reached_and_says_so_in_
     assert "\n" not in line
 
 
-def test_set_up_installs_nothing_where_the_stand_ins_are_chosen_and_removes_the_real_packages(
+def test_set_up_installs_nothing_if_the_stand_ins_are_chosen_and_removes_the_real_packages(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     removed: list[list[str]] = []
@@ -189,7 +189,7 @@ def test_a_repository_without_the_package_is_refused(tmp_path: Path) -> None:
         install(find(), {"LAUNCH_SOURCE": str(place)}, sources=(source,), requirement="")
 
 
-def test_a_sourced_installation_is_left_alone() -> None:
+def test_a_sourced_installation_is_not_changed() -> None:
     sourced = RosEnvironment("sourced", (Path("/opt/ros/jazzy"),), Path("/opt/ros/jazzy/rclpy"))
     with pytest.raises(RealLaunchError, match="sourced from /opt/ros/jazzy: it has the real launch and ros2 already"):
         install(sourced, {})

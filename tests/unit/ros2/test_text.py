@@ -98,7 +98,7 @@ def test_a_rate_is_computed_from_the_gaps() -> None:
 
 @settings(deadline=None)
 @given(st.lists(st.integers(0, 10**12), min_size=2).map(sorted))
-def test_the_mean_gap_lies_between_the_shortest_and_the_longest(arrivals: list[int]) -> None:
+def test_the_mean_gap_is_between_the_shortest_and_the_longest(arrivals: list[int]) -> None:
     rate = Rate.of(arrivals)
     assert rate is not None
     if rate.rate:

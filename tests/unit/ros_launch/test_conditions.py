@@ -62,7 +62,7 @@ def test_a_launch_configuration_is_compared_with_a_text(
         assert LaunchConfigurationNotEquals(name, expected).evaluate(context) is not equal
 
 
-def test_a_value_that_is_no_condition_is_refused_at_once() -> None:
+def test_a_value_that_is_not_a_condition_is_rejected_at_once() -> None:
     with pytest.raises(TypeError, match=r"LogInfo: condition must be a launch.Condition such as IfCondition.*got str"):
         LogInfo(msg="", condition="true")
 

@@ -159,7 +159,7 @@ def test_an_opaque_function_gets_its_arguments_and_may_yield_actions(run: Run, n
     assert seen == ["1", "abc"]
 
 
-def test_a_value_that_is_no_entity_is_named(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_value_that_is_not_an_entity_is_named(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("LogInfo") == 1
     assert "expected a LaunchDescriptionEntity such as an action, got str: 'LogInfo'" in capsys.readouterr().out
 

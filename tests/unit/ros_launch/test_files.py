@@ -205,7 +205,7 @@ def test_an_error_in_a_file_is_shown_with_its_kind(
     assert message in capsys.readouterr().out
 
 
-def test_a_file_that_is_not_there_is_named(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_missing_file_is_named(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(IncludeLaunchDescription(PythonLaunchDescriptionSource("/no/such.launch.py"))) == 1
     assert "No such file or directory: '/no/such.launch.py'" in capsys.readouterr().out
 

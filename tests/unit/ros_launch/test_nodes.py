@@ -67,7 +67,7 @@ def test_a_node_without_a_name_in_the_launch_file_keeps_its_own_name(run: Run) -
     assert not node.is_node_name_fully_specified()
 
 
-def test_pushed_namespaces_and_remaps_hold_within_their_group(run: Run) -> None:
+def test_pushed_namespaces_and_remaps_apply_within_their_group(run: Run) -> None:
     first, second, third, outside = (Recorded(name="n") for _ in range(4))
     absolute = Recorded(name="n", namespace="/own")
     deeper = GroupAction([PushRosNamespace("arm"), second])
@@ -117,9 +117,7 @@ def test_single_parameters_are_passed_for_the_named_node(run: Run) -> None:
     assert unnamed.words[-2:] == ["-p", "p:=x\n...\n"]
 
 
-def test_a_parameter_file_that_is_missing_is_warned_of_and_left_out(
-    run: Run, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_missing_parameter_file_causes_a_warning_and_is_ignored(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
     node = Recorded(parameters=["/no/such.yaml"])
     run(node)
     assert node.words == ["/bin/node", "--ros-args"]

@@ -132,7 +132,7 @@ def test_substitutions_in_a_parameter_file_are_performed_where_allowed(
     assert ParameterFile(file).evaluate(context) == file
 
 
-def test_a_value_that_looks_like_a_substitution_is_left_as_it_is(context: LaunchContext, tmp_path: Path) -> None:
+def test_a_value_that_looks_like_a_substitution_is_unchanged(context: LaunchContext, tmp_path: Path) -> None:
     context.launch_configurations.update({"odd": "$(var odd) (so)", "name": "odd"})
     (tmp_path / "p.yaml").write_text("a: $(var $(var name)) $5 (five)")
     evaluated = ParameterFile(tmp_path / "p.yaml", allow_substs=True).evaluate(context)

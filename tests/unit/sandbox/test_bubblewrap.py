@@ -24,7 +24,7 @@ def _sandbox(spec: Sandbox) -> list[str]:
     return bubblewrap.sandbox(["true"], spec, 9)
 
 
-def test_a_sandbox_has_namespaces_of_its_own_and_no_privileges(tmp_path: Path) -> None:
+def test_a_sandbox_has_separate_namespaces_and_no_privileges(tmp_path: Path) -> None:
     options = _options(_sandbox(Sandbox(tmp_path)))
     for flag in ("--unshare-user", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--new-session"):
         assert flag in options
@@ -102,7 +102,7 @@ def test_the_grader_s_own_python_is_shown_read_only(tmp_path: Path) -> None:
         assert sys.prefix in _pairs(options, "--ro-bind")
 
 
-def test_a_cell_has_namespaces_and_a_scratch_folder_of_limited_size(tmp_path: Path) -> None:
+def test_a_worker_sandbox_has_namespaces_and_a_scratch_folder_of_limited_size(tmp_path: Path) -> None:
     arguments = bubblewrap.cell(["worker"], View(), scratch=tmp_path)
     options = _options(arguments)
     for flag in ("--unshare-net", "--unshare-user", "--unshare-pid", "--unshare-ipc"):
@@ -112,7 +112,7 @@ def test_a_cell_has_namespaces_and_a_scratch_folder_of_limited_size(tmp_path: Pa
     assert arguments[-1] == "worker"
 
 
-def test_a_cell_of_root_becomes_an_ordinary_user_before_it_makes_namespaces(tmp_path: Path) -> None:
+def test_a_sandbox_of_root_becomes_an_ordinary_user_before_it_creates_namespaces(tmp_path: Path) -> None:
     arguments = bubblewrap.cell(["worker"], View(), scratch=tmp_path, user=47001)
     assert "--unshare-user" not in _options(arguments)
     become = arguments[arguments.index("setpriv") :]
@@ -120,7 +120,7 @@ def test_a_cell_of_root_becomes_an_ordinary_user_before_it_makes_namespaces(tmp_
     assert become.index("--no-new-privs") < become.index("--unshare-user")
 
 
-def test_a_cell_shows_the_grader_s_code_and_of_all_chapters_nothing_but_what_it_is_to_see(tmp_path: Path) -> None:
+def test_a_worker_sandbox_shows_the_grader_s_code_and_only_the_declared_files_of_chapters(tmp_path: Path) -> None:
     shown, out = layout.SOLUTIONS / "speed_guard", tmp_path / "out"
     options = _options(bubblewrap.cell(["worker"], View((shown,), (tmp_path,), (out,)), scratch=Path("/tmp/cell")))
     read_only, writable = _pairs(options, "--ro-bind"), _pairs(options, "--bind")

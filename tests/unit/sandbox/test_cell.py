@@ -19,7 +19,7 @@ from autograder.run.sandbox import Tier, procfs
 from autograder.run.sandbox.cell import run_in_cell
 
 
-def test_only_folders_of_cells_without_a_lock_are_removed(
+def test_only_folders_of_worker_sandboxes_without_a_lock_are_removed(
     entered_tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(entered_tmp_path))
@@ -71,7 +71,7 @@ with in_cell(lambda scratch: ["sh", "-c", "echo up; exec sleep 600"], Tier.BUBBL
 """
 
 
-def test_nothing_of_a_cell_outlives_a_grader_that_is_killed() -> None:
+def test_nothing_in_a_worker_sandbox_outlives_a_killed_grader() -> None:
     """The kernel sends the signal of a parent's death with the rights of the parent, here those of root without any."""
     command = [sys.executable, "-c", CELL]
     with subprocess.Popen(command, cwd=layout.ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as grader:

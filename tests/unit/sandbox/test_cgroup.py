@@ -83,7 +83,7 @@ def test_a_group_of_version_2_is_one_folder_with_both_bounds(tmp_path: Path, mon
     assert group.ran_out()
 
 
-def test_a_cell_of_version_2_enters_a_group_beside_those_of_its_sandboxes(
+def test_a_worker_sandbox_with_version_2_has_a_group_beside_those_of_its_inner_sandboxes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The kernel lets no group have both processes and groups. This folder has no kernel behind it, only its files."""
@@ -140,7 +140,7 @@ def test_a_control_group_left_by_a_killed_grader_is_removed(monkeypatch: pytest.
     group.close()
 
 
-def test_a_group_whose_members_groups_ran_out_of_memory_did_not_run_out_itself(tmp_path: Path) -> None:
+def test_a_group_does_not_count_memory_events_of_its_subgroups(tmp_path: Path) -> None:
     group = cgroup.ControlGroup({"memory": tmp_path})
     (tmp_path / "memory.events").write_text("oom 1\noom_kill 1\n")
     assert group.ran_out()

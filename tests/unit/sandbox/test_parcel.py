@@ -50,7 +50,7 @@ def test_no_two_trees_have_one_key() -> None:
         [Entry("n" * 1025, "file")],
     ],
 )
-def test_a_path_leads_through_folders_of_the_tree_alone(entries: list[Entry]) -> None:
+def test_a_path_only_leads_through_folders_of_the_tree(entries: list[Entry]) -> None:
     ours, theirs = Pipe()
     with ours, theirs:
         theirs.send_bytes(json.dumps([astuple(entry) for entry in entries]).encode())
@@ -67,7 +67,7 @@ def test_a_list_with_a_size_without_end_is_refused() -> None:
             receive_tree(ours, SOURCES)
 
 
-def test_nothing_that_lies_there_is_overwritten_or_followed(tmp_path: Path) -> None:
+def test_existing_files_are_neither_overwritten_nor_followed(tmp_path: Path) -> None:
     (tmp_path / "outside").mkdir()
     (tmp_path / "root").mkdir()
     (tmp_path / "root" / "p").symlink_to("../outside")

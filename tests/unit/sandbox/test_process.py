@@ -62,7 +62,7 @@ def test_output_of_a_program_can_be_read_at_once() -> None:
         os.close(said)
 
 
-def test_a_running_program_has_neither_status_nor_ending() -> None:
+def test_a_running_program_has_neither_a_status_nor_an_exit_reason() -> None:
     with Process(_python("import signal; print('up', flush=True); signal.pause()"), Limits()) as process:
         assert _until(lambda: process.output == "up\n")
         assert (process.ending, process.returncode) == (None, None)
@@ -139,7 +139,7 @@ signal.pause()
     assert _until(lambda: not _alive(process.pid) and not _alive(child))
 
 
-def test_bytes_that_are_no_utf_8_are_replaced() -> None:
+def test_bytes_that_are_not_utf_8_are_replaced() -> None:
     with Process(_python(r"import os; os.write(1, b'a\xff\x00b')"), Limits()) as process:
         assert process.wait(LONG)
         assert process.output == "a\N{REPLACEMENT CHARACTER}\0b"
@@ -218,7 +218,7 @@ def test_many_processes_at_once_are_each_watched() -> None:
 
 
 @pytest.mark.parametrize(("seconds", "ending"), [(0.5, Ending.EXITED), (LONG, Ending.THREADS)])
-def test_a_cell_outlives_a_bomb_that_is_ended_in_it(seconds: float, ending: Ending) -> None:
+def test_a_worker_sandbox_survives_a_bomb_that_is_stopped_in_it(seconds: float, ending: Ending) -> None:
     code = "import threading, time\nwait = threading.Event()\nfor _ in range(30):\n    "
     code += f"threading.Thread(target=wait.wait).start()\ntime.sleep({seconds})\nwait.set()"
     with Process(_python(code), Limits(threads=10, looks=8)) as process:

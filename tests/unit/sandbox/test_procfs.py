@@ -9,7 +9,7 @@ import time
 from autograder.run.sandbox.procfs import TICK, start_seconds
 
 
-def test_the_start_time_of_a_process_lies_between_two_readings_of_the_clock() -> None:
+def test_the_start_time_of_a_process_is_between_two_readings_of_the_clock() -> None:
     before = time.clock_gettime(time.CLOCK_BOOTTIME)
     with subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE) as child:
         after = time.clock_gettime(time.CLOCK_BOOTTIME)

@@ -33,7 +33,7 @@ def _bwrap(folder: Path, script: str) -> None:
     path.chmod(0o755)
 
 
-def test_without_bubblewrap_the_strong_tier_is_refused_with_the_remedy(tools: Path) -> None:
+def test_without_bubblewrap_the_strong_isolation_level_is_refused_with_the_remedy(tools: Path) -> None:
     with pytest.raises(IsolationError) as caught:
         require(Tier.BUBBLEWRAP)
     sentence = str(caught.value)
@@ -42,16 +42,14 @@ def test_without_bubblewrap_the_strong_tier_is_refused_with_the_remedy(tools: Pa
     assert "`--isolation process`" in sentence
 
 
-def test_the_weak_tier_is_never_chosen_for_the_caller_but_can_be_asked_for(
-    tools: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_weak_isolation_level_is_only_used_if_requested(tools: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "geteuid", lambda: 1000)
     assert require(Tier.PROCESS) is Tier.PROCESS
     assert best_tier() is Tier.PROCESS
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root has to become somebody else")
-def test_root_that_can_become_nobody_else_is_refused_the_weak_tier_too(tools: Path) -> None:
+def test_root_that_cannot_change_its_user_is_also_refused_the_weak_isolation_level(tools: Path) -> None:
     with pytest.raises(IsolationError, match=r"`--isolation process` root's .*setpriv is not installed.*ordinary user"):
         require(Tier.PROCESS)
 
@@ -68,12 +66,12 @@ def test_a_bubblewrap_that_fails_without_a_message_is_named(tools: Path) -> None
         require(Tier.BUBBLEWRAP)
 
 
-def test_outside_any_cell_the_tier_is_the_weak_one(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_outside_a_worker_sandbox_the_isolation_level_is_the_weak_one(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(launcher.TIER_VARIABLE, raising=False)
     assert launcher.current_tier() is Tier.PROCESS
     monkeypatch.setenv(launcher.TIER_VARIABLE, "bubblewrap")
     assert launcher.current_tier() is Tier.BUBBLEWRAP
 
 
-def test_this_machine_gives_the_strong_tier() -> None:
+def test_this_machine_supports_the_strong_isolation_level() -> None:
     assert best_tier() is Tier.BUBBLEWRAP, f"{tiers.namespaces_failure()}; PATH is {os.environ['PATH']}"

@@ -36,7 +36,7 @@ def meanwhile(monkeypatch: pytest.MonkeyPatch, seen: str, change: Callable[[], o
 
 
 @pytest.mark.parametrize("name", ["own", "own/mine"])
-def test_a_link_in_the_place_of_what_was_seen_is_not_followed(
+def test_a_link_that_replaced_a_listed_file_is_not_followed(
     submission: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     place = submission / name

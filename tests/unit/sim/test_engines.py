@@ -149,7 +149,7 @@ def test_the_grid_does_not_change_a_bit_of_a_scan(walls: int) -> None:
         np.testing.assert_array_equal(first, second)
 
 
-def test_every_cell_of_the_grid_holds_the_walls_that_pass_through_it() -> None:
+def test_every_cell_of_the_grid_lists_the_walls_that_cross_it() -> None:
     walls = layout(random_world(8, walls=400).segments)
     grid = grid_of(walls)
     for wall in range(walls.shape[1]):
@@ -220,7 +220,7 @@ def test_a_missing_engine_is_reported_with_the_way_to_install_it(monkeypatch: py
         engine("numba")
 
 
-def test_auto_takes_numba_if_it_is_installed() -> None:
+def test_auto_uses_numba_if_it_is_installed() -> None:
     assert engine("auto") is engine("numba")
 
 

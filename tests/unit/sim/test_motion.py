@@ -83,7 +83,7 @@ def test_the_path_is_the_closed_form_of_an_arc(engine: str, v: float, w: float, 
     assert math.cos(pose.theta - (0.5 + w * t)) == pytest.approx(1.0)
 
 
-def test_a_full_circle_ends_where_it_began() -> None:
+def test_a_full_circle_ends_where_it_started() -> None:
     pose = drive(FREE, Command(0.5, math.tau / 10), 10.0).robots[0].pose
     assert (pose.x, pose.y, pose.theta) == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
 
@@ -181,7 +181,7 @@ def test_a_mover_goes_round_a_loop() -> None:
     assert simulation.movers_at(round(half * 1e9))[0][:2] == pytest.approx((0.5, 0.5))
 
 
-def test_the_seed_decides_where_a_mover_begins() -> None:
+def test_the_seed_decides_where_a_mover_starts() -> None:
     world = World.from_segments([], movers=[Mover(((0, 0), (4, 0))), Mover(((0, 1), (4, 1)))])
     begins = [tuple(x for x, _, _ in Simulation(world, seed=seed).movers_at(0)) for seed in (1, 1, 2)]
     assert begins[0] == begins[1] != begins[2]

@@ -14,7 +14,7 @@ def look(pace: Pace, now: float, speed: float) -> float:
     return seconds
 
 
-def test_time_begins_with_the_first_call() -> None:
+def test_time_starts_with_the_first_call() -> None:
     pace = Pace(0.02)
     assert look(pace, 1000.0, 2.0) == 0.0
     assert not pace.late

@@ -23,7 +23,7 @@ LAB = ROOT / "assets" / "worlds" / "lab.yaml"
 PATIENCE = 60.0
 
 
-def test_scans_and_odometry_come_at_their_mean_rates_whatever_the_tick() -> None:
+def test_scans_and_odometry_have_their_mean_rates_for_any_tick() -> None:
     simulation = Simulation(World(), robots=(RobotSpec(lidar=LidarSpec(rate=5.5)),), tick=0.03)
     driver = Driver(simulation, odometry_rate=20.0)
     sent = list(driver.run(driver.ticks(60.0)))
@@ -101,7 +101,7 @@ def test_a_bridge_does_not_use_the_default_rclpy_context(bridge: Bridge) -> None
     assert bridge.running
 
 
-def test_a_stopped_bridge_raises_an_error_that_says_so(bridge: Bridge) -> None:
+def test_a_stopped_bridge_raises_a_clear_error(bridge: Bridge) -> None:
     bridge.stop()
     bridge.stop()
     assert not bridge.running

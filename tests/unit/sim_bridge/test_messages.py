@@ -78,14 +78,14 @@ def test_odometry_has_the_pose_the_twist_and_an_honest_covariance() -> None:
 
 
 @given(st.floats(-3.1, 3.1))
-def test_a_quaternion_turns_by_the_yaw_about_z_alone(yaw: float) -> None:
+def test_a_quaternion_turns_by_the_yaw_about_z_only(yaw: float) -> None:
     rotation = yaw_to_quaternion(yaw)
     assert 2.0 * math.atan2(rotation.z, rotation.w) == pytest.approx(yaw, abs=1e-12)
     assert (rotation.x, rotation.y) == (0.0, 0.0)
 
 
 @given(st.floats(-10, 10), st.floats(-10, 10))
-def test_a_command_is_the_same_after_a_way_through_twist_and_twist_stamped(linear: float, angular: float) -> None:
+def test_a_command_survives_conversion_to_twist_and_twist_stamped(linear: float, angular: float) -> None:
     command = Command(linear, angular)
     twist, stamped = Twist(), TwistStamped()
     twist.linear.x, twist.angular.z = linear, angular
@@ -93,7 +93,7 @@ def test_a_command_is_the_same_after_a_way_through_twist_and_twist_stamped(linea
     assert twist_to_command(twist) == twist_to_command(stamped) == command
 
 
-def test_speeds_that_a_differential_drive_cannot_have_are_left_out() -> None:
+def test_speeds_that_a_differential_drive_cannot_have_are_omitted() -> None:
     msg = Twist()
     msg.linear.y = msg.linear.z = msg.angular.x = 5.0
     assert twist_to_command(msg) == Command()

@@ -221,7 +221,7 @@ def test_a_broken_picture_is_refused_by_name(tmp_path: Path, picture: bytes, mes
     assert str(tmp_path / "map.pgm") in str(caught.value)
 
 
-def test_a_picture_of_noise_is_refused(tmp_path: Path) -> None:
+def test_a_picture_of_noise_is_rejected(tmp_path: Path) -> None:
     noise = np.indices((400, 600)).sum(axis=0) % 2 * 254
     with pytest.raises(WorldError, match="an outline of 480,000 edges is no floor plan"):
         load_map(write(tmp_path, pgm(noise.astype(np.uint8))))
@@ -243,7 +243,7 @@ def test_a_picture_of_noise_is_refused(tmp_path: Path) -> None:
         (b"a: !!python/object:os.system {}\n", "missing"),
     ],
 )
-def test_a_file_that_is_no_yaml_mapping_is_refused(tmp_path: Path, content: bytes, message: str) -> None:
+def test_a_file_that_is_not_a_yaml_mapping_is_rejected(tmp_path: Path, content: bytes, message: str) -> None:
     (tmp_path / "map.yaml").write_bytes(content)
     with pytest.raises(WorldError) as caught:
         load_map(tmp_path / "map.yaml")

@@ -39,7 +39,7 @@ def test_a_world_shows_its_walls_names_and_size(world: World) -> None:
     assert len(walls.get_segments()) == len(world.segments)
 
 
-def test_names_can_be_left_out(world: World) -> None:
+def test_names_can_be_omitted(world: World) -> None:
     (ax,) = show(world, names=False).figure.axes
     assert texts(ax) == {"The lab", "12.0 × 8.0 m"}  # noqa: RUF001
 
@@ -59,7 +59,7 @@ def test_the_same_drawing_gives_the_same_bytes(world: World, recording: Recordin
     assert plot(recording, mark=3.0).svg() == plot(recording, mark=3.0).svg()
 
 
-def test_robots_and_what_they_see_are_drawn_with_a_state(world: World) -> None:
+def test_robots_and_their_scans_are_drawn_with_a_state(world: World) -> None:
     simulation = Simulation(world)
     bare, full = show(simulation), show(simulation, start(simulation))
     assert not [line for line in bare.figure.axes[0].lines if line.get_color() == LIGHT.hit]

@@ -99,7 +99,7 @@ def test_steps_are_exact(world: World) -> None:
     assert len(view.recording) == 31
 
 
-def test_a_view_can_seek_to_the_past_and_go_on_from_there(world: World) -> None:
+def test_a_view_can_seek_to_the_past_and_continue_from_there(world: World) -> None:
     view = paused(world, go)
     view.step(2.0)
     newest = widgets_of(view)["Image"].value
@@ -141,7 +141,7 @@ def test_without_a_callback_the_robot_cannot_be_given_back(world: World) -> None
     assert "Let your code drive" not in widgets_of(paused(world))
 
 
-def test_an_exception_of_the_callback_stops_time_and_is_shown_without_our_own_lines(world: World) -> None:
+def test_an_exception_of_the_callback_stops_time_and_is_shown_without_internal_frames(world: World) -> None:
     def broken(scan: Scan) -> Command:
         raise LookupError("no such wall")
 
@@ -171,7 +171,7 @@ def test_a_callback_gets_each_scan_once(world: World) -> None:
     assert stamps == [0, SECOND // 5, 2 * SECOND // 5, 3 * SECOND // 5, 4 * SECOND // 5, SECOND]
 
 
-def test_a_recording_is_played_by_the_page_alone(recording: Recording) -> None:
+def test_a_recording_is_played_without_other_files(recording: Recording) -> None:
     view = live(recording, speed=2.0, theme="dark")
     assert isinstance(view, Player)
     shown = view._repr_mimebundle_()[0]
@@ -215,7 +215,7 @@ def test_an_invalid_speed_is_refused(world: World, speed: float) -> None:
         live(world, speed=speed)
 
 
-def test_a_recording_takes_no_callback(recording: Recording) -> None:
+def test_a_recording_does_not_accept_a_callback(recording: Recording) -> None:
     with pytest.raises(ValueError, match="a callback can't drive a recording"):
         live(recording, go)
 

@@ -156,7 +156,7 @@ def test_a_pattern_that_is_slow_on_some_text_is_found(pattern: str, anchored: bo
         (r"(?:\d+h )?[\d.]+s", "1h 2.5s 3s s"),
     ],
 )
-def test_steps_are_counted_by_finding_what_python_finds(pattern: str, text: str) -> None:
+def test_the_step_counter_finds_the_same_matches_as_python(pattern: str, text: str) -> None:
     compiled = re.compile(pattern)
     counter = Steps(compiled, MOST)
     counter.search(text, anchored=False, full=False)

@@ -46,7 +46,7 @@ def starts(path: Path) -> Iterator[ast.Call]:
                 yield node
 
 
-def test_whoever_starts_a_program_says_in_which_folder() -> None:
+def test_every_started_program_has_an_explicit_working_folder() -> None:
     found = {str(path.relative_to(GRADER)) for path in GRADER.rglob("*.py") if any(starts(path))}
     assert found == set(ELSEWHERE), "name a folder (cwd=), or say here why the present one is right"
 

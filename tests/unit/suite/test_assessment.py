@@ -29,7 +29,7 @@ def test_the_notebook_asks_each_question_with_four_choices() -> None:
         assert re.findall(r"^- ([a-d])\)", choices, re.MULTILINE) == list("abcd")
 
 
-def test_every_objective_is_asked_for() -> None:
+def test_every_objective_has_a_question() -> None:
     assert {question.objective for question in QUESTIONS.values()} == set(Syllabus.read().objectives)
 
 
@@ -52,7 +52,7 @@ def test_the_reference_holds_the_key_and_the_release_does_not() -> None:
     assert parse(cell.source).keys().isdisjoint(QUESTIONS)
 
 
-def test_no_letter_is_the_right_answer_too_often() -> None:
+def test_no_letter_is_the_correct_answer_too_often() -> None:
     letters = [question.right for question in QUESTIONS.values()]
     assert all(letters.count(letter) == 3 for letter in contract.LETTERS)
 
@@ -82,7 +82,7 @@ def test_a_sheet_is_read_line_by_line(text: str, given: dict[str, str]) -> None:
     ("given", "message"),
     [({}, "There is no answer to q1: write a line `q1: LETTER`."), ({"q1": "e"}, "The answer to q1 is 'e', instead")],
 )
-def test_an_answer_that_is_no_letter_is_named(given: dict[str, str], message: str) -> None:
+def test_an_answer_that_is_not_a_letter_is_named(given: dict[str, str], message: str) -> None:
     with pytest.raises(CheckFailed) as failed:
         expect_letter(given, "q1")
     assert failed.value.message.startswith(message)

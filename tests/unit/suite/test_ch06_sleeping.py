@@ -24,5 +24,5 @@ def test_the_lines_of_sleeps_are_found_and_nothing_else() -> None:
 
 
 @pytest.mark.parametrize("text", ["def (", "\0", "-" * 5000 + "1", "#" * (MAX_BYTES + 1)])
-def test_a_file_that_is_no_python_has_no_sleeps(text: str) -> None:
+def test_a_file_that_is_not_python_has_no_sleeps(text: str) -> None:
     assert sleeps(text.encode()) == []

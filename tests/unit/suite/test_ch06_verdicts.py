@@ -95,7 +95,7 @@ def test_enough_passing_tests_are_usable() -> None:
     assert is_usable(LIMITS, ENOUGH)
 
 
-def test_of_a_closed_report_nothing_but_a_known_name_is_shown() -> None:
+def test_only_known_names_of_a_closed_report_are_shown() -> None:
     claims = Claims({"test_limits::test_0[secret]": BAD}, {"test_limits::test_0[secret]": "secret"})
     failed = replace(report(BAD), claims=claims)
     assert describe_failure(LIMITS, failed.closed(frozenset({"test_limits::test_0"})), "here") == (

@@ -32,7 +32,7 @@ def test_a_declared_check_takes_its_id_and_title_from_the_function() -> None:
     assert (found.needs, found.visibility) == (("starts",), Visibility.HIDDEN)
 
 
-def test_a_function_that_declares_nothing_is_no_check() -> None:
+def test_a_function_without_a_declaration_is_not_a_check() -> None:
     assert check_of(lambda: None) is None
 
 

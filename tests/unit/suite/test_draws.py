@@ -38,7 +38,7 @@ def test_some_trip_has_as_many_legs_as_its_message_holds() -> None:
     assert max(lengths) == MAX_LEGS
 
 
-def test_a_battery_lasts_for_a_trip_and_what_is_left_is_no_matter_of_rounding() -> None:
+def test_a_battery_lasts_for_a_trip_and_its_rest_does_not_depend_on_rounding() -> None:
     for seed in SEEDS:
         for trip in draw_trips(random.Random(f"{seed}:test_trip_level")):
             used = sum(trip.legs) / METRES_PER_PERCENT
@@ -58,13 +58,13 @@ def test_a_short_trip_leaves_a_reserve_to_choose() -> None:
 
 
 @pytest.mark.parametrize("level", [10, 39])
-def test_a_trip_too_far_takes_more_than_there_is(level: int) -> None:
+def test_a_trip_that_is_too_long_needs_more_than_the_battery_has(level: int) -> None:
     for seed in SEEDS:
         for legs in draw_too_far(random.Random(seed), level):
             assert sum(legs) / METRES_PER_PERCENT > level + EXACT
 
 
-def test_each_bad_leg_stands_beside_a_right_one() -> None:
+def test_each_bad_leg_is_beside_a_correct_one() -> None:
     for seed in SEEDS:
         for bad, legs in draw_bad_legs(random.Random(seed)):
             assert len(legs) == 2
@@ -98,7 +98,7 @@ def test_a_robot_that_keeps_to_the_rule_drives_far_enough_and_touches_nothing(na
     assert path >= MIN_PATH
 
 
-def test_what_is_near_for_every_limit_can_be_measured_and_is_within_the_sector() -> None:
+def test_a_near_obstacle_is_measurable_and_within_the_sector_for_every_limit() -> None:
     assert all(RANGE_MIN < near < 0.2 for near in (*NEAR, JUST_AHEAD.value))
     assert all(0.0 < bearing < nodes.HALF_SECTOR - 6.0 for bearing in BESIDE)
     for low, high, others, counts, phantom in OTHER_LIMITS:
@@ -110,7 +110,7 @@ def test_what_is_near_for_every_limit_can_be_measured_and_is_within_the_sector()
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 @pytest.mark.parametrize(("lidar", "count"), [(COARSE, 1), (FINE, 3)])
-def test_what_stands_beside_the_sector_s_edge_is_seen_by_so_many_beams(
+def test_an_obstacle_beside_the_sector_s_edge_is_hit_by_enough_beams(
     side: float, lidar: tuple[int, float], count: int
 ) -> None:
     beams, wide = lidar

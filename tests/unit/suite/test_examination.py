@@ -43,7 +43,7 @@ def ordered(monkeypatch: pytest.MonkeyPatch) -> list[TestRun]:
 
 
 @pytest.mark.parametrize("checks", [("slow",), ("limits_pass", "limits_right", "slow")], ids=len)
-def test_only_the_runs_by_which_a_check_judges_are_made(
+def test_only_the_runs_that_a_check_needs_are_executed(
     workspace: Workspace, ordered: list[TestRun], checks: tuple[str, ...]
 ) -> None:
     examination = Examination(workspace, 1, frozenset(checks))
@@ -79,7 +79,7 @@ def test_a_run_does_not_depend_on_which_other_runs_are_made(workspace: Workspace
     assert all(order in many for order in few)
 
 
-def test_right_and_faulty_versions_are_mixed_anew_for_each_seed(workspace: Workspace, ordered: list[TestRun]) -> None:
+def test_correct_and_faulty_versions_are_shuffled_for_each_seed(workspace: Workspace, ordered: list[TestRun]) -> None:
     mixed = {tuple(Examination(workspace, seed, frozenset(FILES)).runs) for seed in range(5)}
     assert len(mixed) == 5
     assert len(ordered) > 5 * len(faults())

@@ -35,7 +35,7 @@ def judge(fractions: dict[str, float]) -> tuple[Any, Any]:
     return shared, lone
 
 
-def test_what_is_right_in_one_of_the_two_passes() -> None:
+def test_a_check_that_passes_in_one_of_two_gradings_passes() -> None:
     assert judge({})[0].closed == 0
     shared, lone = judge({"shared": 0.0})
     assert (shared.closed, lone.closed) == (1, 0)
@@ -45,7 +45,7 @@ def test_what_is_right_in_one_of_the_two_passes() -> None:
     ("fractions", "said"),
     [({"shared": 0.0, "lone": 0.0}, "shared"), ({"shared": 0.25, "lone": 0.5}, "lone")],
 )
-def test_what_is_wrong_in_both_has_the_better_of_the_two_outcomes(fractions: dict[str, float], said: str) -> None:
+def test_a_check_that_fails_in_both_gradings_has_the_better_outcome(fractions: dict[str, float], said: str) -> None:
     with pytest.raises(CheckFailed) as failed:
         judge(fractions)
     assert failed.value.message == said

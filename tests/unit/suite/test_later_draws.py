@@ -87,7 +87,7 @@ def test_08_shows_obstacles_that_a_lidar_measures_and_the_robot_turns_at() -> No
 
 
 @pytest.mark.parametrize("seed", SOME)
-def test_08_draws_corridors_in_which_the_robot_stands_free_and_has_a_way_to_go(seed: int) -> None:
+def test_08_draws_corridors_in_which_the_robot_is_free_and_can_drive(seed: int) -> None:
     bend = drives.draw_bend(random.Random(seed))
     simulation = Simulation(bend.world, (RobotSpec(radius=drives.RADIUS),), seed=1)
     assert clearance(simulation, start(simulation)).distance > 0.1
@@ -96,7 +96,7 @@ def test_08_draws_corridors_in_which_the_robot_stands_free_and_has_a_way_to_go(s
     assert float(bend.share(np.array([bend.first]), np.array([bend.side * bend.second]))[0]) == 1.0
 
 
-def test_09_draws_thresholds_of_which_cool_is_the_lower() -> None:
+def test_09_draws_a_cool_threshold_below_the_other_one() -> None:
     for seed in SEEDS:
         hot, cool = nodes.draw_thresholds(random.Random(seed))
         assert cool + 2.0 < hot - 2.0  # with room for what lies between

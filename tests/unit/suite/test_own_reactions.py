@@ -23,7 +23,7 @@ def _commands(*pairs: Pair) -> list[ReceivedMessage]:
     return made
 
 
-def test_a_wrong_velocity_is_a_reaction_of_its_own() -> None:
+def test_a_wrong_velocity_is_a_separate_reaction() -> None:
     own = own_reactions(_commands((30.0, 0.0)), _commands((0.0, -0.5)))
     assert (own.forward, own.turn) == ((30.0, 0.0), (0.0, -0.5))
     own.expect_forward(_commands((30.0, 0.0)), "Now")

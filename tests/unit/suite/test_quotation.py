@@ -79,7 +79,7 @@ def test_a_row_or_a_sentence_is_quoted_whole_and_without_markup(text: str, read:
         ("It ends here", "It ends here, with 0."),
     ],
 )
-def test_code_is_quoted_as_it_stands(text: str, read: str) -> None:
+def test_code_is_quoted_verbatim(text: str, read: str) -> None:
     assert quote({"cell_type": "code", "source": CODE}, text) == read
 
 

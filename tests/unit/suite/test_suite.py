@@ -67,7 +67,7 @@ def test_results_show_the_groups_in_their_own_order_and_files_are_run_in_that_of
         suites.read(name, "01_tiny", KIND)
 
 
-def test_a_check_is_graded_with_the_checks_that_it_needs_and_without_those_that_it_comes_after(home: Home) -> None:
+def test_a_check_is_graded_with_the_checks_in_needs_and_without_those_in_after(home: Home) -> None:
     first = _check("a") + _check("b", '("a",)') + _check("c")
     read = suites.read(home(first=first, second=_check("d", '("b",)', after='("c",)')), "01_tiny", KIND)
     assert read.with_dependencies("d") == ("a", "b", "d")

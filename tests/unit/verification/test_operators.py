@@ -127,7 +127,7 @@ def test_only_the_named_functions_and_the_module_are_changed() -> None:
         ("a.yaml", "name: 'x'\n", "value", "name: 'xs'\n"),
     ],
 )
-def test_other_files_have_operators_of_their_own(file: str, text: str, operator: str, changed: str) -> None:
+def test_other_file_types_have_their_own_operators(file: str, text: str, operator: str, changed: str) -> None:
     found = []
     for _, (name, ((start, end, new),)) in mutations(file, text, None):
         data = text.encode()

@@ -35,7 +35,7 @@ def test_a_missing_executable_is_reported_with_the_installed_ones(
     assert "console_scripts in setup.py" in caught.value.diagnosis.sentence
 
 
-def test_programs_get_an_environment_of_their_own(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_programs_get_a_separate_environment(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SECRET", "of the grader")
     environment = workspace.environment()
     assert "SECRET" not in environment

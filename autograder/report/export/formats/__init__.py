@@ -1,7 +1,7 @@
-"""The export formats. Each module of this folder is a format of the same name.
+"""The export formats. Each module in this folder is a format of the same name.
 
-Such a module has `FOLDER`, which is True if the format is written to a folder and False if it is written to one file.
-Its `write(results, out)` writes results to the file or folder `out` and returns the file to open first.
+Its `FOLDER` is True if the format is written to a folder, and False if it is written to a single file. Its
+`write(results, out)` writes results to the file or folder `out`, and returns the file to open first.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from autograder.exceptions import UsageError
 from autograder.result.model import Result
 
 FORMATS: Mapping[str, ModuleType] = {
-    found.name: import_module(f"{__name__}.{found.name}") for found in pkgutil.iter_modules(__path__)
+    module.name: import_module(f"{__name__}.{module.name}") for module in pkgutil.iter_modules(__path__)
 }
 
 
@@ -31,7 +31,7 @@ def write(results: Sequence[Result], name: str, out: Path, **options: Any) -> Pa
         options: further arguments of the format's own function.
 
     Raises:
-        UsageError: `out` is a folder instead of a file or the other way round, or two results need the same file.
+        UsageError: `out` is a folder instead of a file or vice versa, or two results need the same file.
     """
     format = FORMATS[name]
     if out.exists() and out.is_dir() is not format.FOLDER:

@@ -11,7 +11,7 @@ from autograder.report.feedback.text import one_line
 from autograder.result.model import Result, Status
 
 FOLDER = False
-# What splits a text for a spreadsheet that takes the file to be separated by semicolons, tabs or bars.
+# Characters at which a spreadsheet may split a cell if it assumes another separator.
 _SEPARATOR = re.compile(r"([;|\t])")
 
 
@@ -53,6 +53,6 @@ def _row(result: Result) -> dict[str, str | float]:
 
 
 def _text(value: str) -> str:
-    """Return the text on one line. A quote before each cell that can begin with =, +, - or @ stops a formula."""
+    """Return the text on one line. A quote before every part that starts with =, +, - or @ prevents formulas."""
     parts = _SEPARATOR.split(one_line(value))
     return "".join(f"'{part}" if part.lstrip(" \"'").startswith(("=", "+", "-", "@")) else part for part in parts)

@@ -19,7 +19,7 @@ from autograder.suite import Outcome, Visibility
 
 FOLDER = True
 
-# The result of a hidden check is part of the feedback, which students get when the marks are published.
+# Students see the results of hidden checks when the marks are published.
 VISIBILITY = {Visibility.VISIBLE: "visible", Visibility.HIDDEN: "after_published"}
 
 
@@ -49,17 +49,17 @@ def report(result: Result) -> dict[str, Any]:
 
 
 def _tests(result: Result) -> list[dict[str, Any]]:
-    """Return the tests in the order of the suite. What came with another failure names it, as nothing can be folded."""
-    found = causes(result.checks, result.diagnosis.sentence)
-    came_with = {id(check): cause.check for cause in found for check in cause.checks[1:]}
+    """Return the tests in the order of the suite. Consequences name their cause, as Gradescope cannot fold them."""
+    all_causes = causes(result.checks, result.diagnosis.sentence)
+    came_with = {id(check): cause.check for cause in all_causes for check in cause.checks[1:]}
     return [_test(check, index, came_with.get(id(check))) for index, check in enumerate(result.checks, start=1)]
 
 
 def _test(check: CheckResult, index: int, cause: CheckResult | None) -> dict[str, Any]:
     lines: list[str] = []
     if check.outcome is not Outcome.PASSED and cause is not None:
-        came = f'This came with "{cause.title}": mend that first and run again.'
-        lines = [check.message, came] if check.outcome is Outcome.FAILED else [f"Not checked. {came}"]
+        advice = f'This came with "{cause.title}": fix that first and run again.'
+        lines = [check.message, advice] if check.outcome is Outcome.FAILED else [f"Not checked. {advice}"]
     elif check.outcome is not Outcome.PASSED:
         hints = check.hints if check.outcome is Outcome.FAILED else ()
         lines = [check.message, *(f"Hint: {hint}" for hint in hints)]

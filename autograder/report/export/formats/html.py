@@ -1,4 +1,4 @@
-"""HTML: the feedback page of each submission, and a table with links to them."""
+"""HTML: a feedback page for each submission, and a table with links to the pages."""
 
 from __future__ import annotations
 

@@ -34,12 +34,12 @@ def _submission(result: Result) -> list[str]:
     if _diagnosis(result):
         lines += ["", _plain(_diagnosis(result))]
     if result.status is Status.GRADED and result.checks:
-        lines += ["", "| | Check | Points | Why |", "|---|---|--:|---|", *_rows(result)]
+        lines += ["", "| | Check | Points | Reason |", "|---|---|--:|---|", *_rows(result)]
     return lines
 
 
 def _rows(result: Result) -> Iterator[str]:
-    """Yield a row for each check; what did not pass because of another check stands below that, with an arrow."""
+    """Yield a row for each check. Consequences of a failure follow it, with an arrow."""
     for cause in causes(result.checks, result.diagnosis.sentence):
         yield _row(cause.check, cause.check.message)
         yield from (_row(check, f"↳ {check.message}") for check in cause.failed)
@@ -65,5 +65,5 @@ def _diagnosis(result: Result) -> str:
 
 
 def _plain(text: str) -> str:
-    """Return the text on one line, with the characters escaped that are markup in Markdown or HTML (CommonMark 2.4)."""
+    """Return the text on one line, with Markdown and HTML markup escaped (CommonMark 2.4)."""
     return re.sub(r"([\\`*_\[\]<>|~&])", r"\\\1", one_line(text))
