@@ -32,7 +32,7 @@ PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-r
 LINTERS := lint-types lint-standins lint-style lint-imports
 SIDE_BY_SIDE = $(MAKE) --no-print-directory -j $(words $(LINTERS)) --output-sync
 
-.PHONY: help setup demo test check nightly lint $(LINTERS) fast-engine lab tour classes docs bench cluster cluster-certificates fuzz verify capstones real-launch sourced-layout public-packages tutorials lock clean
+.PHONY: help setup demo test check nightly lint $(LINTERS) fast-engine lab tour classes docs bench cluster hub-setup hub cluster-certificates fuzz verify capstones real-launch sourced-layout public-packages tutorials lock clean
 
 help:           ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -114,6 +114,14 @@ cluster:        ## set up, with what `autograder grade --scheduler` needs
 	@$(BOOTSTRAP)
 	@$(BIN)/pip install --quiet --no-deps --require-hashes -r requirements-cluster.lock
 
+hub-setup:      ## set up, with JupyterHub and what runs its proxy
+	@$(BOOTSTRAP)
+	@$(BIN)/pip install --quiet --no-deps --require-hashes -r requirements-hub.lock
+
+HUB_ARGS ?=
+hub: hub-setup  ## as root: a JupyterHub for trying, with three students and a teacher, until Ctrl-C (HUB_ARGS=--port=8000)
+	@$(BIN)/python -m autograder.lms.hub $(HUB_ARGS)
+
 # One certificate, which signs itself, and its key: for scheduler, workers and client. What is there is kept.
 cluster-certificates: cluster-certificates/cluster.pem ## the certificate and the key by which the machines of a cluster know each other
 cluster-certificates/cluster.pem:
@@ -169,6 +177,7 @@ lock:           ## pin the dependencies of pyproject.toml again (LOCK_ARGS=--upg
 	$(COMPILE) pyproject.toml --all-extras -c requirements.lock -o requirements-dev.lock
 	$(COMPILE) --group bench -c requirements-dev.lock -o requirements-bench.lock
 	$(COMPILE) --group cluster -c requirements-dev.lock -o requirements-cluster.lock
+	$(COMPILE) --group hub -c requirements-dev.lock -o requirements-hub.lock
 
 clean:          ## remove what is made, .venv too
 	rm -rf .venv .build .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info

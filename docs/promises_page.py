@@ -19,7 +19,7 @@ from autograder.layout import ROOT
 PAGES = (
     "README.md",
     *(f"docs/{name}.md" for name in ("index", "students", "instructors", "authors", "first_check", "troubleshooting")),
-    *(f"docs/{name}.md" for name in ("first_launch_check", "lms", "cluster", "platform", "limits")),
+    *(f"docs/{name}.md" for name in ("first_launch_check", "lms", "jupyterhub", "cluster", "platform", "limits")),
 )
 HEAD = """# Promises and their tests
 

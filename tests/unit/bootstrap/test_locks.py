@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 from pathlib import Path
@@ -18,7 +19,7 @@ else:
     import tomli as tomllib
 
 ROOT = Path(__file__).parents[3]
-BASE, DEV, BENCH, CLUSTER = (f"requirements{part}.lock" for part in ("", "-dev", "-bench", "-cluster"))
+BASE, DEV, BENCH, CLUSTER, HUB = (f"requirements{part}.lock" for part in ("", "-dev", "-bench", "-cluster", "-hub"))
 ENTRY = r"[a-z0-9-]+==[^\s;]+( ; [^\\]+?)?( +--hash=sha256:[0-9a-f]{64})+"
 
 
@@ -38,14 +39,14 @@ def names(lock: str) -> set[str]:
     return {pin.partition("==")[0] for pin in pins(lock)}
 
 
-@pytest.mark.parametrize("lock", [BASE, DEV, BENCH, CLUSTER])
+@pytest.mark.parametrize("lock", [BASE, DEV, BENCH, CLUSTER, HUB])
 def test_a_lock_holds_nothing_but_exact_pins_with_hashes(lock: str) -> None:
     odd = [entry for entry in entries(lock) if not re.fullmatch(ENTRY, entry)]
     assert odd == []
-    assert len(entries(lock)) > (10 if lock in (BENCH, CLUSTER) else 100)
+    assert len(entries(lock)) > (10 if lock in (BENCH, CLUSTER, HUB) else 100)
 
 
-@pytest.mark.parametrize("lock", [BASE, DEV, BENCH, CLUSTER])
+@pytest.mark.parametrize("lock", [BASE, DEV, BENCH, CLUSTER, HUB])
 def test_a_lock_names_no_address_and_no_index(lock: str) -> None:
     assert (
         re.findall(r"(?im)^.*(?:://|@ |--index|--extra-index|--find-links|^-[a-z]).*$", (ROOT / lock).read_text()) == []
@@ -57,15 +58,26 @@ def test_the_tests_run_with_the_pins_that_users_install() -> None:
     assert pins(BASE) <= pins(DEV)
 
 
-@pytest.mark.parametrize("lock", [BENCH, CLUSTER])
+@pytest.mark.parametrize("lock", [BENCH, CLUSTER, HUB])
 def test_additional_locks_do_not_change_the_pins_of_the_tests(lock: str) -> None:
     assert {pin for pin in pins(lock) if pin.partition("==")[0] in names(DEV)} <= pins(DEV)
     assert not any(name.startswith("ros-") for name in names(lock))
 
 
-def test_the_extra_for_clusters_has_the_packages_of_its_lock() -> None:
+@pytest.mark.parametrize("name", ["cluster", "hub"])
+def test_an_extra_with_a_lock_of_its_own_has_the_packages_of_the_lock(name: str) -> None:
     data = tomllib.loads((ROOT / "pyproject.toml").read_text())
-    assert data["dependency-groups"]["cluster"] == data["project"]["optional-dependencies"]["cluster"]
+    assert data["dependency-groups"][name] == data["project"]["optional-dependencies"][name]
+
+
+def test_the_lock_of_the_hubs_proxy_has_a_hash_for_each_package_and_no_address() -> None:
+    folder = ROOT / "assets" / "hub"
+    lock, asked = (json.loads((folder / name).read_text()) for name in ("package-lock.json", "package.json"))
+    own = lock["packages"].pop("")
+    assert own["dependencies"] == asked["dependencies"]
+    assert len(lock["packages"]) > 10
+    assert [name for name, package in lock["packages"].items() if "integrity" not in package] == []
+    assert [name for name, package in lock["packages"].items() if "resolved" in package] == []
 
 
 def test_every_dependency_of_the_project_is_pinned() -> None:
@@ -76,6 +88,7 @@ def test_every_dependency_of_the_project_is_pinned() -> None:
         (DEV, [line for extra in project["optional-dependencies"].values() for line in extra]),
         (BENCH, data["dependency-groups"]["bench"]),
         (CLUSTER, data["dependency-groups"]["cluster"]),
+        (HUB, data["dependency-groups"]["hub"]),
     ):
         missing = {canonicalize_name(Requirement(line).name) for line in asked} - names(lock)
         assert missing == set(), f"{lock} is older than pyproject.toml: run `make lock`"

@@ -1,0 +1,39 @@
+"""`make hub`: serves a hub for trying until Ctrl-C."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import sys
+from pathlib import Path
+from threading import Event
+
+import click
+
+from autograder import layout
+from autograder.exceptions import UsageError
+from autograder.lms.hub.trial import install_release, serving
+
+
+@click.command()
+@click.option("--port", default=8000, show_default=True, help="Of the hub, on this machine alone.")
+@click.option("--place", default=layout.ROOT / ".build" / "hub", type=click.Path(path_type=Path), help="Its folder.")
+def main(port: int, place: Path) -> None:
+    """Serve a JupyterHub with three students and a teacher on this machine until Ctrl-C."""
+    place.mkdir(parents=True, exist_ok=True)
+    course = place / "course"
+    if not (course / ".venv" / "bin" / "jupyterhub-singleuser").exists():
+        install_release(place)
+    with serving(place, course, port) as hub:
+        click.echo(f"{hub.url} is open. Log in as {', '.join(hub.students)} (students) or {hub.teacher} (teacher);")
+        click.echo(f"the password of each is {hub.password}. Ctrl-C stops the hub and removes these users.")
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
+        with contextlib.suppress(KeyboardInterrupt):
+            Event().wait()
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except UsageError as error:
+        sys.exit(f"hub: {error}")

@@ -1,0 +1,97 @@
+"""Starts a user's server: from the release or from the repository, in a ROS domain that no other user has."""
+
+from __future__ import annotations
+
+import grp
+import os
+from pathlib import Path
+from typing import Any, ClassVar
+
+from jupyterhub.spawner import LocalProcessSpawner
+from traitlets import Unicode
+
+from autograder.ros.domains import DOMAINS, Domain
+
+SYSTEM_PATH = "/usr/local/bin:/usr/bin:/bin"
+
+
+class NoDomainLeftError(Exception):
+    """All ROS domains of this machine are in use. The hub shows the message to the user."""
+
+    jupyterhub_message = (
+        f"All {len(DOMAINS)} ROS domains of this machine are in use. A server that is stopped gives its domain back: "
+        "try again later, or ask your instructor."
+    )
+
+
+class CourseSpawner(LocalProcessSpawner):
+    """Starts the servers of users of this machine with the course, ROS and nbgrader's exchange.
+
+    A user's notebooks and terminals are all in one ROS domain, which the user keeps until the server stops. The hub
+    holds the claim, also after a restart of the hub.
+    """
+
+    course = Unicode(help="The release that students run: a folder after `make setup`.").tag(config=True)
+    repository = Unicode(help="The repository that teachers run.").tag(config=True)
+    exchange = Unicode(help="nbgrader's exchange folder.").tag(config=True)
+    teachers = Unicode(help="The group of this machine whose users are teachers.").tag(config=True)
+
+    _given: ClassVar[set[int]] = set()
+    _domain: Domain | None = None
+
+    async def start(self) -> Any:
+        self.cmd = [str(self._folder / ".venv" / "bin" / "autograder"), "ros", "jupyterhub-singleuser"]
+        self.claim_domain()
+        try:
+            return await super().start()
+        except BaseException:
+            self.leave_domain()
+            raise
+
+    def get_env(self) -> dict[str, str]:
+        env: dict[str, str] = super().get_env()
+        env["PATH"] = os.pathsep.join([str(self._folder / ".venv" / "bin"), SYSTEM_PATH])  # not that of root
+        settings = (self._folder / "jupyter", self._folder / "assets" / "students" / "jupyter")
+        env["JUPYTER_CONFIG_PATH"] = os.pathsep.join(map(str, settings))
+        env["NBGRADER_EXCHANGE"] = self.exchange
+        if self._domain is not None:
+            env["ROS_DOMAIN_ID"] = str(self._domain.number)
+        return env
+
+    def get_state(self) -> dict[str, Any]:
+        state: dict[str, Any] = super().get_state()
+        return state if self._domain is None else {**state, "ros_domain": self._domain.number}
+
+    def load_state(self, state: dict[str, Any]) -> None:
+        super().load_state(state)
+        if (number := state.get("ros_domain")) is not None:
+            self.claim_domain(int(number))
+
+    def clear_state(self) -> None:
+        super().clear_state()
+        self.leave_domain()
+
+    @property
+    def _folder(self) -> Path:
+        is_teacher = self.user.name in grp.getgrnam(self.teachers).gr_mem
+        return Path(self.repository if is_teacher else self.course)
+
+    def claim_domain(self, number: int | None = None) -> None:
+        """Claim the first free domain, or the one that this user's running server has already.
+
+        Raises:
+            NoDomainLeftError: another user has each of them.
+        """
+        domain = Domain((number or DOMAINS[0]) - DOMAINS[0])
+        if domain.number in self._given:  # shared, since all are taken
+            domain.close()
+            raise NoDomainLeftError(NoDomainLeftError.jupyterhub_message)
+        self._given.add(domain.number)
+        self._domain = domain
+
+    def leave_domain(self) -> None:
+        """Let another user have the domain."""
+        if self._domain is not None:
+            self._given.discard(self._domain.number)
+            self._domain.close()
+            self._domain = None

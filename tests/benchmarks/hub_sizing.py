@@ -1,0 +1,79 @@
+"""Measures what students need on a hub: memory and processor time of some who run chapter 02 whole, at the same time.
+
+`sudo .venv/bin/python -m tests.benchmarks.hub_sizing 2` prints a line for each and the sum; docs/jupyterhub.md has the
+figures. Students run this clone's own environment.
+"""
+
+from __future__ import annotations
+
+import os
+import pwd
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from threading import Event
+from time import monotonic
+
+import nbformat
+
+from autograder import layout
+from autograder.author.course.forms import Form, in_form
+from autograder.author.course.sync import Chapter
+from autograder.lms.hub.trial import Hub, serving
+from tests.e2e.hub_client import User
+
+ASSIGNMENT = "02_nodes"
+TICKS = os.sysconf("SC_CLK_TCK")
+
+
+def use_of(name: str) -> tuple[float, float]:
+    """Return what a user's processes use: their memory in MiB, shared pages by their part, and their seconds so far."""
+    uid, memory, seconds = pwd.getpwnam(name).pw_uid, 0.0, 0.0
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            if process.stat().st_uid != uid:
+                continue
+            share = next(
+                line for line in (process / "smaps_rollup").read_text().splitlines() if line.startswith("Pss:")
+            )
+            times = (process / "stat").read_text().rpartition(")")[2].split()[11:15]
+        except (OSError, StopIteration):
+            continue  # it has ended
+        memory += int(share.split()[1]) / 1024
+        seconds += sum(map(int, times)) / TICKS
+    return memory, seconds
+
+
+def run_the_chapter(hub: Hub, name: str) -> float:
+    """Log in, run each code cell of the solved chapter in a kernel, and return the seconds that the cells took."""
+    user = User(hub, name).log_in()
+    user.ask("PUT", f"api/contents/{ASSIGNMENT}", json={"type": "directory"})
+    notebook = in_form(Chapter(layout.chapter(ASSIGNMENT)).read(), Form.SOLVED)
+    path = f"{ASSIGNMENT}/{ASSIGNMENT}.ipynb"
+    user.ask("PUT", f"api/contents/{path}", json={"type": "notebook", "content": nbformat.from_dict(notebook)})
+    cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+    begin = monotonic()
+    user.run(path, f"!cp -r {layout.chapter(ASSIGNMENT)}/ws .", *cells)
+    return monotonic() - begin
+
+
+def main() -> None:
+    """Run the chapter as so many students as are asked for (two by default), and print what each has used."""
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 2
+    with tempfile.TemporaryDirectory(dir="/tmp") as scratch:
+        Path(scratch).chmod(0o755)
+        with serving(Path(scratch), layout.ROOT) as hub, ThreadPoolExecutor(count) as pool:
+            names, pause = hub.students[:count], Event()
+            runs = {name: pool.submit(run_the_chapter, hub, name) for name in names}
+            most = dict.fromkeys(names, (0.0, 0.0))
+            while not all(run.done() for run in runs.values()):
+                for name in names:
+                    most[name] = tuple(map(max, most[name], use_of(name)))  # type: ignore[assignment]
+                pause.wait(0.5)
+            for name, run in runs.items():
+                print(f"{name}: {most[name][0]:.0f} MiB, {most[name][1]:.0f} core-seconds in {run.result():.0f} s")
+
+
+if __name__ == "__main__":
+    main()

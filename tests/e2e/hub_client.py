@@ -1,0 +1,112 @@
+"""A user of a JupyterHub: logs in by the page's form, starts the server, and talks to Jupyter and nbgrader in it."""
+
+from __future__ import annotations
+
+import json
+import re
+import uuid
+from dataclasses import dataclass, field
+from typing import Any
+from urllib.parse import urlsplit
+
+import requests
+import websocket
+
+from autograder.lms.hub.trial import Hub
+
+PATIENCE = 600.0  # seconds, a deadline and not an expectation
+
+
+@dataclass
+class User:
+    """A user who is logged in, with a server that runs."""
+
+    hub: Hub
+    name: str
+    session: requests.Session = field(default_factory=requests.Session)
+
+    def log_in(self) -> User:
+        """Log in by the form of the hub's page, take a token, and start the server; return this user."""
+        page = f"{self.hub.url}/hub/login"
+        self.session.get(page, timeout=PATIENCE).raise_for_status()
+        form = {"username": self.name, "password": self.hub.password, "_xsrf": self._xsrf()}
+        answer = self.session.post(page, data=form, allow_redirects=False, timeout=PATIENCE)
+        assert answer.status_code == 302, f"{self.name} cannot log in: {answer.status_code}"
+        self.session.get(f"{self.hub.url}/hub/home", timeout=PATIENCE).raise_for_status()
+        tokens = f"{self.hub.url}/hub/api/users/{self.name}/tokens"
+        made = self.session.post(tokens, headers={"X-XSRFToken": self._xsrf()}, json={}, timeout=PATIENCE)
+        made.raise_for_status()
+        self.session = requests.Session()
+        self.session.headers["Authorization"] = f"token {made.json()['token']}"
+        server = f"{self.hub.url}/hub/api/users/{self.name}/server"
+        self.session.post(server, timeout=PATIENCE).raise_for_status()
+        with self.session.get(f"{server}/progress", stream=True, timeout=PATIENCE) as events:
+            progress = [json.loads(line[6:]) for line in events.iter_lines() if line.startswith(b"data: ")]
+        assert progress[-1].get("ready"), progress
+        return self
+
+    def ask(self, method: str, path: str, **arguments: Any) -> Any:
+        """Return the answer of this user's server to a request, as plain data."""
+        url = f"{self.hub.url}/user/{self.name}/{path}"
+        answer = self.session.request(method, url, timeout=PATIENCE, **arguments)
+        assert answer.ok, f"{method} {path}: {answer.status_code} {answer.text[:2000]}"
+        return json.loads(answer.text) if answer.text else None
+
+    def nbgrader(self, path: str, **arguments: Any) -> Any:
+        """Do something in nbgrader's extensions by a POST, and return its value; it must succeed."""
+        answer = self.ask("POST", path, **arguments)
+        assert answer["success"], answer
+        return answer.get("value")
+
+    def run(self, notebook: str, *cells: str) -> list[str]:
+        """Run cells in a kernel in the notebook's folder; return what each printed. None may raise an error."""
+        body = {"path": notebook, "name": notebook, "type": "notebook", "kernel": {"name": "python3"}}
+        session = self.ask("POST", "api/sessions", json=body)
+        line = self._connect(f"api/kernels/{session['kernel']['id']}/channels")
+        try:
+            return [self._run_cell(line, cell) for cell in cells]
+        finally:
+            line.close()
+            self.ask("DELETE", f"api/sessions/{session['id']}")
+
+    def in_terminal(self, command: str) -> str:
+        """Run a command in a new terminal; return the one word that it prints, or nothing."""
+        name = self.ask("POST", "api/terminals")["name"]
+        line = self._connect(f"terminals/websocket/{name}")
+        try:
+            line.send(json.dumps(["stdin", f'echo "<$({command})>"\r']))
+            printed = ""
+            while not (word := re.search(r"<(\w*)>", printed)):
+                kind, *content = json.loads(line.recv())
+                printed += str(content[0]) if kind == "stdout" else ""
+            return word[1]
+        finally:
+            line.close()
+            self.ask("DELETE", f"api/terminals/{name}")
+
+    def _connect(self, path: str) -> websocket.WebSocket:
+        url = f"ws://{urlsplit(self.hub.url).netloc}/user/{self.name}/{path}"
+        header = {"Authorization": str(self.session.headers["Authorization"])}
+        return websocket.create_connection(url, timeout=PATIENCE, header=header)
+
+    def _run_cell(self, line: websocket.WebSocket, cell: str) -> str:
+        number = uuid.uuid4().hex
+        header = {"msg_id": number, "msg_type": "execute_request", "username": self.name, "session": number}
+        content = {"code": cell, "silent": False, "store_history": True, "user_expressions": {}, "allow_stdin": False}
+        message = {"header": {**header, "version": "5.3"}, "parent_header": {}, "metadata": {}, "content": content}
+        line.send(json.dumps({**message, "channel": "shell", "buffers": []}))
+        printed = ""
+        while True:
+            answer = json.loads(line.recv())
+            if answer["parent_header"].get("msg_id") != number:
+                continue
+            kind, content = answer["msg_type"], answer["content"]
+            if kind == "stream":
+                printed += content["text"]
+            if kind == "error":
+                raise AssertionError("\n".join(content["traceback"]))
+            if kind == "status" and content["execution_state"] == "idle":
+                return printed
+
+    def _xsrf(self) -> str:
+        return next(str(cookie.value) for cookie in self.session.cookies if cookie.name == "_xsrf")

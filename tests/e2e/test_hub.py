@@ -1,0 +1,108 @@
+"""A class on a JupyterHub with users of this machine, from their login to the marks in the teacher's gradebook."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import nbformat
+import pytest
+
+from autograder import layout
+from autograder.bootstrap import closed_to_other_users
+from autograder.lms.hub.trial import Hub, serving
+from autograder.suite import suites
+from tests.e2e.classroom import fill_in
+from tests.e2e.hub_client import User
+
+ASSIGNMENT = "02_nodes"
+COURSE = {"course_id": "ros2-python", "assignment_id": ASSIGNMENT}
+SOLUTION = "robot-controller"
+FLAW, LOST = ("HALF_SECTOR = math.radians(30.0)", "HALF_SECTOR = math.radians(33.0)"), "only_forward_counts"
+# What a student's kernel says of itself: its folder, its domain, and whether the installation can be written to.
+ABOUT = (
+    "import os, sys; print(os.path.basename(os.getcwd()), os.environ['ROS_DOMAIN_ID'], os.access(sys.prefix, os.W_OK))"
+)
+
+CLOSED = closed_to_other_users(Path(sys.executable).resolve(), layout.ROOT)
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.timeout(1800),
+    pytest.mark.skipif(os.geteuid() != 0, reason="only root can start the servers of other users"),
+    pytest.mark.skipif(CLOSED is not None, reason=str(CLOSED)),
+]
+
+
+@pytest.fixture
+def place() -> Iterator[Path]:
+    """A folder that other users can enter; pytest's own are closed to them."""
+    folder = Path(tempfile.mkdtemp(dir="/tmp"))
+    folder.chmod(0o755)
+    yield folder
+    shutil.rmtree(folder)
+
+
+def hand_in(student: User, *, flawed: bool) -> list[str]:
+    """Fetch, solve, run and submit the assignment; return what the student's kernel says of itself."""
+    student.nbgrader("assignments/fetch", data=COURSE)
+    path = f"{ASSIGNMENT}/{ASSIGNMENT}.ipynb"
+    notebook = nbformat.from_dict(student.ask("GET", f"api/contents/{path}")["content"])
+    fill_in(notebook, ASSIGNMENT)
+    answer = next(cell for cell in notebook.cells if cell.id == SOLUTION)
+    if flawed:
+        assert answer.source.count(FLAW[0]) == 1
+        answer.source = answer.source.replace(*FLAW)
+    student.ask("PUT", f"api/contents/{path}", json={"type": "notebook", "content": notebook})
+    first = next(cell for cell in notebook.cells if "ros()" in cell.source)
+    *_, about, listed = student.run(path, first.source, answer.source, ABOUT, "import rclpy; print(rclpy.__name__)")
+    assert listed == "rclpy\n"
+    student.nbgrader("assignments/submit", data=COURSE)
+    return about.split()
+
+
+def check_a_class(hub: Hub, *, with_reference: bool) -> None:
+    """Let students of a running hub hand in, and the teacher release, collect and autograde by formgrader.
+
+    Args:
+        hub: in which nobody has logged in yet.
+        with_reference: whether the student whose answer is right hands it in, besides the one whose answer is flawed.
+    """
+    teacher = User(hub, hub.teacher).log_in()
+    for step in ("assign", "release"):
+        teacher.nbgrader(f"formgrader/api/assignment/{ASSIGNMENT}/{step}")
+    ada, ben = (User(hub, name).log_in() for name in hub.students[:2])
+    folder, domain, can_write = hand_in(ben, flawed=True)
+    assert (folder, can_write) == (ASSIGNMENT, "False")
+    assert ben.in_terminal("printenv ROS_DOMAIN_ID") == domain
+    assert ben.in_terminal("type -t autograder ros2 colcon | sort -u") == "file"
+    assert ada.in_terminal("printenv ROS_DOMAIN_ID") != domain
+    if with_reference:
+        hand_in(ada, flawed=False)
+
+    teacher.nbgrader(f"formgrader/api/assignment/{ASSIGNMENT}/collect")
+    marks = {}
+    for student in (ada, ben) if with_reference else (ben,):
+        teacher.nbgrader(f"formgrader/api/submission/{ASSIGNMENT}/{student.name}/autograde")
+        booked = teacher.ask("GET", f"formgrader/api/submission/{ASSIGNMENT}/{student.name}")
+        assert booked["max_score"] == suites.hidden(ASSIGNMENT).max_score
+        marks[student.name] = booked["score"]
+    suite = suites.hidden(ASSIGNMENT)
+    assert marks[ben.name] == suite.max_score - sum(check.points for check in suite.checks if check.id == LOST)
+    if with_reference:
+        assert marks[ada.name] == suite.max_score
+
+
+@pytest.mark.promise(
+    "This starts a hub on this machine alone, with three students and a teacher",
+    "`autograder ros jupyterhub-singleuser`",
+    "`autograder`, `ros2` and `colcon` work in each terminal.",
+)
+def test_students_log_in_and_hand_in_and_the_teacher_grades_on_a_hub(place: Path) -> None:
+    with serving(place, layout.ROOT) as hub:
+        check_a_class(hub, with_reference=False)
+    users = Path("/etc/passwd").read_text()
+    assert not any(name in users for name in (*hub.students, hub.teacher))

@@ -1,0 +1,24 @@
+"""Users of this machine that a trial did not make are not touched, and who cannot make any is told why."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from autograder.exceptions import UsageError
+from autograder.lms.hub import trial
+from autograder.lms.hub.users import remove_users
+
+
+def test_a_user_who_was_not_made_by_a_trial_is_not_removed() -> None:
+    with pytest.raises(UsageError, match="there is a user root on this machine already"):
+        remove_users({"a-group-that-is-not-there": ["root"]})
+
+
+def test_whoever_is_not_root_is_told_how_to_start_a_hub(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "geteuid", lambda: 1000)
+    with pytest.raises(UsageError, match="call it by sudo, or as root"), trial.serving(tmp_path, tmp_path):
+        pass
+    assert list(tmp_path.iterdir()) == []
