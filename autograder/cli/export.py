@@ -31,12 +31,12 @@ _FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if fo
 _FEEDBACK = {f"{system}-feedback": system for system in SYSTEMS}  # the formats of feedback
 _WITH_LATENESS = ("csv", *SYSTEMS)
 
-Missed = list[tuple[str, str]]  # students who get no mark or no feedback, each with the reason
+Missed = list[tuple[str, str]]  # (student, reason) of those without a mark or feedback
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What is to be written: for each student what is there and what takes its place, and who is left out."""
+    """The planned changes: the old and new cells of each student, and the students who are left out."""
 
     rows: Sequence[tuple[str, str, str]]
     missed: Missed
@@ -66,12 +66,12 @@ class Plan:
 @click.option(
     "--manual",
     type=click.Path(path_type=Path, dir_okay=False, exists=True),
-    help="A CSV file with the points that a person gave: the columns student, and one for each manually graded cell.",
+    help="A CSV file with manual points: the column student, and one for each manually graded cell.",
 )
 @click.option(
     "--download",
     type=click.Path(path_type=Path, exists=True),
-    help="For canvas-feedback: the download of the submissions, whose names Canvas takes back.",
+    help="For canvas-feedback: the download of the submissions, for the file names that Canvas expects.",
 )
 @late_options
 @click.option("--dry-run", is_flag=True, help="Write nothing: list what would be written for each student.")
@@ -89,8 +89,8 @@ def export(
 ) -> None:
     """Write stored RESULTS (a folder or a JSON file) as marks or feedback for other programs.
 
-    The exit status is 0 when every student of RESULTS got what was asked for, 1 when one is listed who did not, and 2
-    for a wrong call.
+    The exit status is 0 if every student in RESULTS is included, 1 if some are left out and listed, and 2 for wrong
+    usage.
     """
     stored: Sequence[Result] = exporters.load(results)
     students = read_roster(roster) if roster is not None else None
@@ -124,7 +124,7 @@ def export(
 
 
 def _with_manual(stored: Sequence[Result], manual: Path | None, find: FindStudent) -> tuple[Sequence[Result], Missed]:
-    """Return the results with the points that a person gave, and the students whom nobody has given all of them."""
+    """Return the results with manual points, and the students whose manual points are incomplete."""
     if manual is None:
         for assignment in sorted({result.assignment for result in stored} & _assignments()):
             if cells := manual_cells(assignment):
@@ -139,7 +139,7 @@ def _with_manual(stored: Sequence[Result], manual: Path | None, find: FindStuden
 
 
 def _assignments() -> set[str]:
-    """Return the assignments of the course; results can be exported without one."""
+    """Return the assignments of the course, or nothing if there is no course. Export does not need one."""
     try:
         return set(layout.assignments())
     except UsageError:
@@ -147,7 +147,7 @@ def _assignments() -> set[str]:
 
 
 def _marks(stored: Sequence[Result], system: str, roster: Roster, lateness: Mapping[str, Lateness], out: Path) -> Plan:
-    """Return the plan of a table for a learning management system."""
+    """Plan a table for a learning management system."""
     unclear = {student: found.unclear for student, found in lateness.items() if found.unclear}
     kept = {student: None if found.unclear else found.kept for student, found in lateness.items()}
     filled = mark_table(stored, system, roster, kept)
@@ -163,7 +163,7 @@ def _marks(stored: Sequence[Result], system: str, roster: Roster, lateness: Mapp
 
 
 def _feedback(stored: Sequence[Result], name: str, roster: Roster, download: Path | None, out: Path) -> Plan:
-    """Return the plan of a zip with the feedback of those whom the grader did not fail."""
+    """Plan a zip with the feedback of all students except those on whom the grader failed."""
     told = [result for result in stored if result.status is not Status.NOT_GRADED]
     students = [result.student for result in told]
     if _FEEDBACK[name] == "moodle":
@@ -184,7 +184,7 @@ def _feedback(stored: Sequence[Result], name: str, roster: Roster, download: Pat
 
 
 def _results(stored: Sequence[Result], name: str, lateness: Mapping[str, Lateness], out: Path) -> Plan:
-    """Return the plan of a format of results; a CSV file gets the marks of late submissions in columns of their own."""
+    """Plan an export of results. A CSV file gets additional columns for late submissions."""
     more = {result.student: _late_cells(result, lateness[result.student]) for result in stored if lateness}
     missed = [(student, found.unclear) for student, found in lateness.items() if found.unclear]
     rows = [(r.student, "", str(more[r.student]["mark"] if more else _score(r))) for r in stored]

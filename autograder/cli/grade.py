@@ -155,25 +155,25 @@ def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None
 
 
 def _preview(submissions: Sequence[Job], resume: bool) -> bool:
-    """Print what counts of each submission, and what becomes of its stored result; return whether each is clear."""
+    """Print the files of each submission to grade and the effect on its result. Return whether all are clear."""
     rows, all_clear = [], True
     for job in submissions:
         effect = _effect(job, resume)
         try:
-            found = read_preview(job.path, job.assignment, job.tier)
+            preview = read_preview(job.path, job.assignment, job.tier)
         except StudentError as error:
             rows.append((job.student, effect, "unclear", on_line(str(error))))
             all_clear = False
             continue
-        runs = "the notebook has to run" if found.files is None else f"{found.files} files count"
-        rows.append((job.student, effect, runs, on_line(" ".join((*found.notices, _not_used(found.unused))))))
-    echo(table(rows, ("submission", "result", "what counts", "notes")))
+        files = "the notebook has to run" if preview.files is None else f"{preview.files} files are graded"
+        rows.append((job.student, effect, files, on_line(" ".join((*preview.notices, _not_used(preview.unused))))))
+    echo(table(rows, ("submission", "result", "status", "notes")))
     echo("Nothing was graded or written.")
     return all_clear
 
 
 def _effect(job: Job, resume: bool) -> str:
-    """Return what grading does to the result that is there."""
+    """Describe the effect of grading on the stored result."""
     file = job.out / RESULT
     if not file.is_file():
         return "new"

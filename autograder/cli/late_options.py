@@ -1,4 +1,4 @@
-"""The options of `autograder export` about late submissions, and what they make of a class."""
+"""The options of `autograder export` for late submissions, and their effect on a class."""
 
 from __future__ import annotations
 
@@ -61,14 +61,14 @@ _OPTIONS = (
 
 
 def late_options(command: Command) -> Command:
-    """Add the options to a command, which gets them by their names."""
+    """Add the options to a command, which receives them as keyword arguments."""
     for option in reversed(_OPTIONS):
         command = option(command)
     return command
 
 
 def read_policy(find: FindStudent, options: dict[str, Any]) -> LatePolicy:
-    """Return what the options say. Raises UsageError if they contradict each other, or a file or time is wrong."""
+    """Return the policy from the options. Raises UsageError if they conflict, or if a file or time is invalid."""
     if options["late_penalty"] and options["late_per_day"]:
         raise UsageError("--late-penalty is for all late submissions, --late-per-day for each day: give one of the two")
     text, extensions = options["due"], options["extensions"]
@@ -88,7 +88,7 @@ def read_policy(find: FindStudent, options: dict[str, Any]) -> LatePolicy:
 
 
 def judge_class(policy: LatePolicy, results: Path, students: Iterable[str]) -> dict[str, Lateness]:
-    """Return what the submissions of students lose, by what `autograder grade --roster` found of their times."""
+    """Return the lateness of students' submissions, based on the times recorded by `autograder grade --roster`."""
     file = results / COLLECTION_REPORT
     told = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
     late, late_by, times = set(told.get("late", ())), told.get("late_by", {}), told.get("times", {})

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("--assignment", required=True, metavar="ID", help="The assignment that the submissions answer.")
+@click.option("--assignment", required=True, metavar="ID", help="The assignment of the submissions.")
 @click.option("--out", required=True, type=click.Path(path_type=Path, file_okay=False), help="The folder for the page.")
 @roster_option
 @click.option(
@@ -36,18 +36,19 @@ if TYPE_CHECKING:
     default=50.0,
     show_default=True,
     metavar="PERCENT",
-    help="Put two students into a group if at least PERCENT of the own text of one is also in the other's.",
+    help="Group two students if at least PERCENT of one's own code is also in the other's.",
 )
 @json_option
 def similar(
     paths: tuple[Path, ...], assignment: str, out: Path, roster: Path | None, least: float, json_file: Path | None
 ) -> None:
-    """List groups of submissions at PATHS with similar passages. Text of the release does not count.
+    """List groups of submissions at PATHS with similar passages. Code from the student release is ignored.
 
-    PATHS are what `autograder grade` takes. A group is a hint to read the texts, and no verdict. No mark changes.
+    PATHS are the same as for `autograder grade`. A group is a reason to read the submissions, not a verdict. No mark
+    changes.
 
-    The exit status is 0 when every submission was compared, 1 when one cannot be read or fits no student of --roster,
-    or when there are no two to compare, and 2 for a wrong call.
+    The exit status is 0 if every submission was compared, 1 if one cannot be read or matches no student in --roster, or
+    if there are fewer than two to compare, and 2 for wrong usage.
     """
     try:
         from autograder.lms.similar import compare, write_page
@@ -66,22 +67,22 @@ def similar(
         codes, all_read = _codes(submissions, assignment)
     comparison = compare(codes, given, least / 100, in_part)
     for student in comparison.without_own:
-        echo(f"Not compared: {on_line(student)}: it has no passage of its own", err=True)
+        echo(f"Not compared: {on_line(student)}: it contains no code of its own", err=True)
     compared = len(codes) - len(comparison.without_own)
     if compared < 2:
-        hint = "; for a download of an LMS, give its table of students with --roster" if roster is None else ""
+        hint = "; for a download from an LMS, give its table of students with --roster" if roster is None else ""
         raise AutograderError(f"nothing was compared: of {len(submissions)} submissions, {compared} has own code{hint}")
     for group in comparison.groups:
         echo(_sentence(group))
     groups = f"{len(comparison.groups)} {'group' if len(comparison.groups) == 1 else 'groups'}"
-    echo(f"{compared} compared, {groups} to read, no verdict: {write_page(comparison, out)}")
+    echo(f"{compared} compared, {groups} to read (not a verdict): {write_page(comparison, out)}")
     if json_file is not None:
         write_json(json_file, [_as_json(group) for group in comparison.groups])
     sys.exit(0 if all_fit and all_read else 1)
 
 
 def _codes(submissions: Mapping[str, Path], assignment: str) -> tuple[dict[str, str], bool]:
-    """Return the code of each submission, and whether all can be read. Students who share one stand together."""
+    """Return the code of each submission, and whether all are readable. Students who share one have a joint entry."""
     students: dict[Path, list[str]] = {}
     for student, path in submissions.items():
         students.setdefault(path, []).append(student)

@@ -1,13 +1,13 @@
-"""Writes the zip of feedback pages that Moodle or Canvas gives back to the students. Names of files say whose one is.
+"""Writes the zip of feedback pages that Moodle or Canvas returns to students. File names identify the student.
 
-Moodle ("Upload multiple feedback files in a zip"; mod/assign/feedback/file/importziplib.php): a part of a path is
+Moodle ("Upload multiple feedback files in a zip"; mod/assign/feedback/file/importziplib.php): a path contains
 NAME_NUMBER_assignsubmission_file_, as in a download of submissions. The number is the participant's, the name has no
-underscore, and what follows is the student's file.
+underscore, and the rest is the name of the feedback file.
 
 Canvas ("Re-Upload Submissions"; app/models/abstract_assignment.rb, `infer_comment_context_from_filename`): a file has
-the name that it has in the download. The first two parts between underscores that are numbers are the user's and the
-attachment's, and the attachment must be one of the submission. The student gets the file under the name of their own
-one, so it is of the same kind: a zip or tar with the page, a page, or a notebook with the feedback as text.
+the same name as in the download. The first two numbers between underscores are the ids of the user and of an attachment
+of the submission. The student gets the feedback under the name of the submitted file, so it has the same type: a zip or
+tar with the page, a page, or a notebook with the feedback as text.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from autograder.result.model import Result
 from autograder.submission.intake.names import is_notebook
 
 NOT_IN_A_NAME = re.compile(r'[_/\\:*?"<>|\x00-\x1f]+')
-MAX_NAME = 100  # characters of a student's name in that of a folder
+MAX_NAME = 100  # characters of a student's name in a folder name
 TAR = {
     **{".tar": "w", ".tar.gz": "w:gz", ".tgz": "w:gz", ".tar.bz2": "w:bz2", ".tbz2": "w:bz2", ".tbz": "w:bz2"},
     **{".tar.xz": "w:xz", ".txz": "w:xz"},
@@ -42,14 +42,14 @@ TAR = {
 
 @dataclass(frozen=True)
 class Places:
-    """Where each student's feedback goes in the zip, and who cannot get any: pairs of a student and the reason."""
+    """The path of each student's feedback in the zip, and pairs (student, reason) of those without one."""
 
     names: Mapping[str, str]
     left_out: tuple[tuple[str, str], ...]
 
 
 def moodle_places(roster: Roster, students: Iterable[str]) -> Places:
-    """Return where the feedback of students goes in Moodle's zip. Raises UsageError if the table is not Moodle's."""
+    """Return the paths of students' feedback in Moodle's zip. Raises UsageError if the table is not from Moodle."""
     columns = [normalized(heading) for heading in roster.headings]
     if "identifier" not in columns:
         raise UsageError(f"{roster.path}: the column 'identifier' is missing; give the grading worksheet of Moodle")
@@ -66,13 +66,13 @@ def moodle_places(roster: Roster, students: Iterable[str]) -> Places:
 
 
 def canvas_places(folder: Path, roster: Roster, assignment: str, students: Iterable[str]) -> Places:
-    """Return where the feedback of students goes in Canvas's zip: the name of a file that they handed in.
+    """Return the paths of students' feedback in Canvas's zip, which are the names of submitted files.
 
     Args:
-        folder: the download of the submissions, unpacked.
+        folder: the unpacked download of the submissions.
         roster: the exported gradebook.
         assignment: the course's own name of the assignment.
-        students: those who get feedback.
+        students: the students who get feedback.
     """
     newest = newest_items(folder, roster, assignment)
     names, left_out = {}, []
@@ -87,7 +87,7 @@ def canvas_places(folder: Path, roster: Roster, assignment: str, students: Itera
 
 
 def write_archive(results: Collection[Result], places: Places, out: Path) -> None:
-    """Write the zip with the feedback of results, in one step."""
+    """Write the zip with the feedback of results atomically."""
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=out.parent, prefix=".feedback-") as scratch:
         written = Path(scratch) / "feedback.zip"
@@ -99,7 +99,7 @@ def write_archive(results: Collection[Result], places: Places, out: Path) -> Non
 
 
 def _member(name: str) -> zipfile.ZipInfo:
-    """Return a file of a zip that everybody can read, with the same time always."""
+    """Return a zip entry that is readable by everyone and has a fixed time."""
     member = zipfile.ZipInfo(name)
     member.compress_type, member.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
     return member
@@ -109,7 +109,7 @@ Write = Callable[[Result, Path], bytes]
 
 
 def _of_kind(name: str) -> Write:
-    """Return what makes the feedback of a result a file of this name; the folder is one for files in between."""
+    """Return the function that writes a result's feedback as a file of this type, with a folder for scratch files."""
     low = name.casefold()
     if low.endswith(".zip"):
         return _zip
@@ -120,14 +120,14 @@ def _of_kind(name: str) -> Write:
 
 
 def _rank(name: str) -> int | None:
-    """Return how well a file of this name can be replaced by feedback, the best as 0; None if it cannot."""
+    """Return how suitable a file of this name is for feedback, 0 being the best, or None if it is not."""
     low = name.casefold()
     kinds = ((".html", ".htm"), (".zip",), tuple(TAR))
     return next((rank for rank, endings in enumerate(kinds) if low.endswith(endings)), 3 if is_notebook(name) else None)
 
 
 def _is_read(item: DownloadedItem) -> bool:
-    """Return whether Canvas finds the user in the name of its file, and does not take it for a link."""
+    """Return whether Canvas recognizes the user in the file's name, and does not treat it as a link."""
     *parts, last = item.path.name.split("_")
     numbers = [part for part in parts if part.isascii() and part.isdigit()]
     return item.system == "canvas" and ("id", numbers[0]) in item.keys and not last.startswith("link")

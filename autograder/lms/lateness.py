@@ -1,14 +1,12 @@
-"""Says how late a submission is, and what share of its marks it keeps.
+"""Determines how late a submission is, and which share of its marks it keeps.
 
-What counts, the first that is known:
+The deadline is `until` in the student's row of the table of extensions, or the due time plus the `days` of the row.
 
-1. the deadline: `until` of the student's row in the table of extensions; the due time and the `days` of the row;
-2. when it was handed in: `submitted` of the row; the time in the download; the delay in Moodle's table after the due
-   time;
-3. without a time, the system's word that it is late.
+The submission time is `submitted` in that row, the time in the download, or the due time plus the delay in Moodle's
+table, whichever is known first. Without a time, a submission is late if the system says so.
 
-Nothing is lost up to the end of the grace period. After it, the delay counts from the deadline on, and a day that has
-begun counts whole. The floor comes last.
+Within the grace period, no marks are deducted. After it, the delay is counted from the deadline, and a started day
+counts as a whole day. The floor is applied last.
 """
 
 from __future__ import annotations
@@ -29,7 +27,7 @@ DAYS, UNTIL, SUBMITTED = "days", "until", "submitted"
 
 @dataclass(frozen=True)
 class Extension:
-    """What a student was granted, days or a deadline, and when they handed in, if a person says it."""
+    """A student's extension, as days or a deadline, and the submission time if the instructor gives it."""
 
     days: timedelta = timedelta()
     until: datetime | None = None
@@ -38,7 +36,7 @@ class Extension:
 
 @dataclass(frozen=True)
 class Delivery:
-    """What a system says of the time of a submission: late or not, by how much, and when it came; None if unknown."""
+    """A system's information about a submission: whether it is late, by how much, and its time; None if unknown."""
 
     late: bool = False
     late_by: timedelta | None = None
@@ -47,12 +45,12 @@ class Delivery:
 
 @dataclass(frozen=True)
 class Lateness:
-    """What a submission loses by its time.
+    """The effect of lateness on a submission.
 
     Attributes:
         kept: the share of its marks that it keeps, 0 to 1.
-        days: the late days that count, None if the system says only that it is late.
-        unclear: the sentence that says why nobody can tell, or an empty string.
+        days: the number of late days, or None if the system only says that it is late.
+        unclear: a sentence with the reason if the effect cannot be determined, or an empty string.
     """
 
     kept: float = 1.0
@@ -62,16 +60,16 @@ class Lateness:
 
 @dataclass(frozen=True)
 class LatePolicy:
-    """How much late submissions lose.
+    """The rules for late submissions.
 
     Attributes:
-        flat: the percentage of its marks that a late submission loses, however late.
-        per_day: the percentage that it loses for each day that has begun; one of the two is 0.
-        floor: the percentage that it keeps in any case.
-        grace: a delay up to this costs nothing.
-        due: when the assignment was due, None if the system's word is all that counts.
-        zone: the time zone of times that do not say theirs, None for this machine's.
-        extensions: those of single students.
+        flat: the percentage of its marks that a late submission loses, independent of the delay.
+        per_day: the percentage that it loses for each started day; one of the two is 0.
+        floor: the percentage that it always keeps.
+        grace: the longest delay without a deduction.
+        due: when the assignment was due, or None to rely on the system alone.
+        zone: the time zone of times without one; None means this machine's.
+        extensions: extensions of individual students.
     """
 
     flat: float = 0.0
@@ -83,7 +81,7 @@ class LatePolicy:
     extensions: Mapping[str, Extension] = field(default_factory=dict)
 
     def judge(self, student: str, delivery: Delivery) -> Lateness:
-        """Return what the submission of a student loses."""
+        """Return the lateness of a student's submission."""
         extension = self.extensions.get(student, Extension())
         deadline = extension.until or (None if self.due is None else self.due + extension.days)
         handed_in = extension.submitted or delivery.time
@@ -114,8 +112,8 @@ class LatePolicy:
 def read_extensions(path: Path, find: FindStudent, zone: tzinfo | None) -> dict[str, Extension]:
     """Read the extensions of students: a CSV file with the columns `student`, and `days`, `until` or both.
 
-    The column `submitted` says when a student handed in, where the system does not. Raises UsageError, with the line,
-    if all of these are missing, a row has both days and a deadline, or a cell is not a number of days or a time.
+    The column `submitted` gives a submission time that the system does not know. Raises UsageError, with the line, if
+    all of these columns are missing, a row has both days and a deadline, or a cell is not a number of days or a time.
     """
     rows = read_rows(path, (), find, one_of=(DAYS, UNTIL, SUBMITTED))
     return {row.student: _extension(row, zone) for row in rows}
@@ -139,11 +137,11 @@ def _extension(row: Row, zone: tzinfo | None) -> Extension:
 
 
 def moment(text: str, zone: tzinfo | None) -> datetime:
-    """Return the time that a text in ISO 8601 means; a day alone means its end.
+    """Return the time of an ISO 8601 text. A day without a time means its end.
 
     Args:
         text: such as `2026-05-04`, `2026-05-04 18:00` or `2026-05-04T18:00+02:00`.
-        zone: the time zone of a time without one, None for this machine's.
+        zone: the time zone of a time without one; None means this machine's.
 
     Raises:
         UsageError: it is not such a time.
@@ -155,7 +153,7 @@ def moment(text: str, zone: tzinfo | None) -> datetime:
 
 
 def zone_of(text: str) -> tzinfo | None:
-    """Return the time zone that a time in ISO 8601 names, None if it names none. Raises UsageError as `moment` does."""
+    """Return the time zone in an ISO 8601 time, or None. Raises UsageError like `moment`."""
     return _parsed(text).tzinfo
 
 

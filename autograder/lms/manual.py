@@ -1,10 +1,10 @@
-"""Adds the points that a person gave to results: a column of a CSV file for each manually graded cell.
+"""Adds manual points to results, from a CSV file with a column for each manually graded cell.
 
     student,q2-answer,q2-answer comment
     ada,5.5,A missing reason.
 
-The most points of a cell are those of the course's own notebook. A result with these points has a check more for each
-cell, so every export and every page counts them.
+The maximum points of a cell come from the course's own notebook. A result with manual points has an additional check
+for each cell, so that every export and every page includes them.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from autograder.lms.tables import FindStudent, Row, read_rows
 from autograder.result.model import CheckResult, Result, Status
 from autograder.suite import Outcome, Visibility
 
-COMMENT = " comment"  # follows the name of a cell in the heading of a column that need not be there
+COMMENT = " comment"  # after a cell's name, the heading of an optional column
 
 
 @dataclass(frozen=True)
 class ManualMark:
-    """The points that a person gave for a cell, None if nobody has given any yet, and a comment for the student."""
+    """The manual points for a cell, or None if there are none yet, and a comment for the student."""
 
     points: float | None
     comment: str = ""
@@ -39,17 +39,17 @@ ManualMarks = Mapping[str, Mapping[str, ManualMark]]
 
 
 def manual_cells(assignment: str) -> dict[str, float]:
-    """Return the cells of an assignment's notebook that a person grades, with the most points of each."""
+    """Return the manually graded cells of an assignment's notebook, with their maximum points."""
     cells = Chapter(chapter(assignment)).read().cells
     graded = (cell.metadata.nbgrader for cell in cells if is_manually_graded(cell))
     return {str(found["grade_id"]): float(found["points"]) for found in graded}
 
 
 def read_manual(path: Path, cells: Mapping[str, float], find: FindStudent) -> ManualMarks:
-    """Read the points that a person gave for the cells of an assignment.
+    """Read the manual points for the cells of an assignment.
 
-    Raises UsageError, with the line, if a column is missing, a student is unknown or twice there, or points are not a
-    number from 0 to the most points of their cell.
+    Raises UsageError, with the line, if a column is missing, a student is unknown or repeated, or points are not a
+    number from 0 to the cell's maximum.
     """
     return {
         row.student: {
@@ -63,10 +63,10 @@ def read_manual(path: Path, cells: Mapping[str, float], find: FindStudent) -> Ma
 def add_manual(
     results: Sequence[Result], marks: ManualMarks, cells: Mapping[str, float]
 ) -> tuple[list[Result], list[tuple[str, str]]]:
-    """Add manual points to graded results; return also the students whom nobody has given all, each with a sentence.
+    """Add manual points to graded results. Also return pairs (student, sentence) of those with incomplete points.
 
-    The result of such a student is unclear: it has no mark, and its sentence says what is missing. Raises UsageError if
-    somebody has points above 0 and no result.
+    The result of such a student is unclear: it has no mark, and its sentence says which points are missing. Raises
+    UsageError if a student has points above 0 but no result.
     """
     strangers = sorted(
         student

@@ -30,7 +30,7 @@ class MarkTable:
     Attributes:
         rows: all of its rows, the headings first.
         marks: the cell of each student with a mark, before and after.
-        unknown: the students who have a result and are not in the table.
+        unknown: the students who have a result but are not in the table.
     """
 
     rows: Rows
@@ -49,17 +49,16 @@ def mark_table(
 ) -> MarkTable:
     """Return the table of a system with the marks of one assignment.
 
-    A submission that was not graded, or that nobody handed in, leaves its cell as it is. Marks are scaled to the most
-    that the table says.
+    If a submission is missing or was not graded, its cell is unchanged. Marks are scaled to the maximum in the table.
 
     Args:
-        results: those of one assignment.
+        results: the results of one assignment.
         system: a key of `SYSTEMS`.
-        roster: the table as the system exported it.
-        kept: the share of their marks, 0 to 1, that students keep whose submissions were late; None for no mark.
+        roster: the table that the system exported.
+        kept: the share of the marks, 0 to 1, that students with late submissions keep; None for no mark.
 
     Raises:
-        UsageError: the table lacks a column, or the results are of several assignments.
+        UsageError: the table lacks a column, or the results belong to several assignments.
     """
     assignment = one_assignment(results)
     graded = {result.student: result for result in results if result.status is Status.GRADED}
@@ -76,7 +75,7 @@ def mark_table(
 
 
 def one_assignment(results: Sequence[Result]) -> str:
-    """Return the assignment of results. Raises UsageError if they are of several ones."""
+    """Return the assignment of results. Raises UsageError if they belong to several assignments."""
     assignments = {result.assignment for result in results}
     if len(assignments) != 1:
         raise UsageError(

@@ -40,7 +40,7 @@ COLUMNS = {
 }
 # The first of these kinds that a student has becomes the name of the result folder.
 NAMES_A_STUDENT = ("login", "number", "email", "identifier", "id", "name")
-# What a text may be that names a student, the most certain first.
+# The kinds of identity that a text may be, the most certain first.
 ANY_KIND = ("login", "number", "sis id", "email", "identifier", "id", "github", "name")
 LATE = re.compile(r"\d \w+ late\b")  # in Moodle's status: "Submitted for grading - 1 day 2 hours late"
 PART = re.compile(r"(\d{1,9}) (year|week|day|hour|min|sec)s?\b")  # of a duration, as Moodle's `format_time` writes it
@@ -54,8 +54,9 @@ NOT_STUDENTS = ("points possible", "student, test")  # special rows of Canvas
 class Student:
     """A student of the roster.
 
-    Kinds are values of `COLUMNS`. Kind and text are normalized. Rows are counted from 0, without the headings. `late`
-    says whether Moodle's table calls the submission late, and `late_by` by how many seconds, rounded down by Moodle.
+    `keys` are identities as pairs (kind, text), both normalized; kinds are values of `COLUMNS`. `row` is counted from
+    0, without the headings. `late` says whether Moodle's table marks the submission as late, and `late_by` by how many
+    seconds, rounded down by Moodle.
     """
 
     id: str
@@ -84,7 +85,7 @@ class Roster:
         return None
 
     def named(self, text: str) -> Student | None:
-        """Return the one student whom a text names, by whatever the roster says of them."""
+        """Return the student that a text identifies by any column of the roster, or None if it is ambiguous."""
         return self.find(tuple((kind, text) for kind in ANY_KIND))
 
 

@@ -1,10 +1,10 @@
-"""Finds groups of submissions with similar passages. Text that the course gives does not count.
+"""Finds groups of submissions with similar passages. Code that the course provides is ignored.
 
-A group is a hint for a person to read the texts, and no verdict. copydetect compares the passages: each name and each
-string is one token, whatever its text, so that other names hide nothing.
+A group is a reason for a person to read the submissions, not a verdict. copydetect compares the passages. It treats
+every name and every string as one token, so that renaming does not hide a copy.
 
-A text may be made to take long: of each, so many characters are compared, without empty lines. A pair then takes steps
-and memory in proportion to these, and of so many pairs the texts are shown.
+A submission may try to make the comparison slow. Therefore only the first characters of each text are compared, without
+empty lines, which bounds the time and memory for a pair. The number of pairs whose texts are shown is also limited.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from autograder.report.feedback.pages import environment
 from autograder.result.class_folder import SUMMARY
 from autograder.result.model import write_atomically
 
-MIN_MATCH_TOKENS = 50  # a shorter passage does not count; these are about three lines
-MAX_CHARACTERS = 100_000  # of a text; these are 2,500 lines, and take 0.5 s and 50 MiB
-MAX_PAIRS = 100  # on the page, which holds both texts of each
+MIN_MATCH_TOKENS = 50  # about three lines; shorter passages are ignored
+MAX_CHARACTERS = 100_000  # of a text: about 2,500 lines, which take 0.5 s and 50 MiB
+MAX_PAIRS = 100  # whose texts are on the page
 
 Names = tuple[str, ...]
 Prints = Mapping[Names, CodeFingerprint]
@@ -33,12 +33,12 @@ Prints = Mapping[Names, CodeFingerprint]
 
 @dataclass(frozen=True)
 class Pair:
-    """Two texts that are alike. Students with the same text are on one side; where all have it, the first is alone.
+    """Two similar texts. If all students have the same text, the first student forms one side of the pair.
 
     Attributes:
-        names: the students of either text.
-        shares: the share of each text's own passages, 0 to 1, that is in the other one.
-        texts: both with the passages marked; None if `MAX_PAIRS` other pairs are more alike.
+        names: the students of each text.
+        shares: for each text, the share of its own passages, 0 to 1, that the other text also contains.
+        texts: both texts with the passages highlighted; None if `MAX_PAIRS` other pairs are more similar.
     """
 
     names: tuple[Names, Names]
@@ -48,7 +48,7 @@ class Pair:
 
 @dataclass(frozen=True)
 class Group:
-    """Students whose submissions are alike, and the pairs that join them, the most alike first."""
+    """Students with similar submissions, and the pairs that connect them, most similar first."""
 
     names: Names
     pairs: tuple[Pair, ...]
@@ -56,7 +56,7 @@ class Group:
 
 @dataclass(frozen=True)
 class Comparison:
-    """The groups of a class, the most alike first, and the students without a passage of their own."""
+    """The groups of a class, most similar first, and the students without any code of their own."""
 
     groups: tuple[Group, ...]
     without_own: Names
@@ -69,38 +69,39 @@ def compare(
 
     Args:
         codes: the text of each student.
-        given: the text that the course gives.
-        least: the share of its own text, 0 to 1, that one of a pair has to have in the other for the two to be in one
-            group. What joins a group is the chain of its most similar pairs; the two ends of a chain may be less alike.
-        in_part: is called with each student whose text is not compared whole, and what of it is.
+        given: the text that the course provides.
+        least: the share of a student's own text, 0 to 1, that must also be in the other text to put a pair into one
+            group. Groups are chains of similar pairs, so the two ends of a chain may be less similar.
+        in_part: called with each student whose text is only compared in part, and a description of the part.
     """
-    gift = _fingerprint(_dense(given))
+    given_print = _fingerprint(_dense(given))
     prints: dict[Names, CodeFingerprint] = {}
     for text, names in _by_text(codes, in_part).items():
-        found = prints[names] = _fingerprint(text)
-        found.hashes -= gift.hashes
-        found.hash_idx = {key: places for key, places in found.hash_idx.items() if key in found.hashes}
-        found.token_coverage = get_token_coverage(found.hash_idx, MIN_MATCH_TOKENS, len(found.filtered_code))
-    own = {names: found for names, found in prints.items() if found.hashes}
+        fingerprint = prints[names] = _fingerprint(text)
+        fingerprint.hashes -= given_print.hashes
+        own_places = {key: places for key, places in fingerprint.hash_idx.items() if key in fingerprint.hashes}
+        fingerprint.hash_idx = own_places
+        fingerprint.token_coverage = get_token_coverage(own_places, MIN_MATCH_TOKENS, len(fingerprint.filtered_code))
+    own = {names: fingerprint for names, fingerprint in prints.items() if fingerprint.hashes}
     links = sorted(_links(own, least), key=lambda pair: (-max(pair.shares), pair.names))
     groups = _with_texts(_joined(links), own)
     return Comparison(groups, tuple(name for names in prints if names not in own for name in names))
 
 
 def _by_text(codes: Mapping[str, str], in_part: Callable[[str, str], None]) -> dict[str, Names]:
-    """Return the students of each text that is compared."""
+    """Return the students of each text to compare."""
     students: dict[str, Names] = {}
     for name, code in codes.items():
         dense = _dense(code)
         if len(dense) > MAX_CHARACTERS:
-            in_part(name, f"the first {MAX_CHARACTERS:,} characters of its code, look at the rest yourself")
+            in_part(name, f"the first {MAX_CHARACTERS:,} characters of its code; please check the rest yourself")
         text = dense[:MAX_CHARACTERS]
         students[text] = (*students.get(text, ()), name)
     return students
 
 
 def _links(prints: Prints, least: float) -> Iterable[Pair]:
-    """Yield the pairs of texts that are alike, and one for each text that several students have."""
+    """Yield the pairs of similar texts, and one pair for each text that several students have."""
     for names in prints:
         if len(names) > 1:
             yield Pair((names[:1], names[1:]), (1.0, 1.0))
@@ -111,7 +112,7 @@ def _links(prints: Prints, least: float) -> Iterable[Pair]:
 
 
 def _joined(links: Iterable[Pair]) -> list[Group]:
-    """Join pairs, the most alike first, to groups; a pair inside a group that other pairs have joined is left out."""
+    """Join pairs into groups, most similar first. A pair that is already in one group is omitted."""
     group_of: dict[str, Group] = {}
     for link in links:
         one, two = (group_of.get(names[0], Group(names, ())) for names in link.names)
@@ -123,12 +124,12 @@ def _joined(links: Iterable[Pair]) -> list[Group]:
 
 
 def _with_texts(groups: Sequence[Group], prints: Prints) -> tuple[Group, ...]:
-    """Return groups in order, with the texts of the pairs that are most alike."""
+    """Return the groups in order, with the texts of the most similar pairs."""
     ranked = sorted((pair for group in groups for pair in group.pairs), key=_rank)
-    shown = {pair: _shown(pair, prints) for pair in ranked[:MAX_PAIRS]}
+    with_texts = {pair: _with_highlights(pair, prints) for pair in ranked[:MAX_PAIRS]}
     ordered = sorted(groups, key=lambda group: min(map(_rank, group.pairs)))
     return tuple(
-        Group(tuple(sorted(group.names)), tuple(shown.get(pair, pair) for pair in sorted(group.pairs, key=_rank)))
+        Group(tuple(sorted(group.names)), tuple(with_texts.get(pair, pair) for pair in sorted(group.pairs, key=_rank)))
         for group in ordered
     )
 
@@ -137,28 +138,28 @@ def _rank(pair: Pair) -> tuple[float, tuple[Names, Names]]:
     return -max(pair.shares), pair.names
 
 
-def _shown(pair: Pair, prints: Prints) -> Pair:
+def _with_highlights(pair: Pair, prints: Prints) -> Pair:
     together = pair.names[0] + pair.names[1]  # students with the same text
     first, second = (prints[together] if together in prints else prints[names] for names in pair.names)
     _, _, slices = compare_files(first, second)
     return Pair(pair.names, pair.shares, (_marked(first.raw_code, slices[0]), _marked(second.raw_code, slices[1])))
 
 
-def write_page(found: Comparison, out: Path) -> Path:
-    """Write a page with the groups, and the texts of each pair side by side, and return its path."""
+def write_page(comparison: Comparison, out: Path) -> Path:
+    """Write a page with the groups and the texts of each pair side by side, and return its path."""
     out.mkdir(parents=True, exist_ok=True)
     page = out / SUMMARY
-    write_atomically(page, environment().get_template("similar.html.j2").render(groups=found.groups).encode())
+    write_atomically(page, environment().get_template("similar.html.j2").render(groups=comparison.groups).encode())
     return page
 
 
 def _dense(text: str) -> str:
-    """Return a text without its empty lines, of which the lexer looks at all that follow from each."""
+    """Return a text without empty lines, because the lexer's time is quadratic in consecutive ones."""
     return "\n".join(line for line in text.splitlines() if line.strip())
 
 
 def _fingerprint(text: str) -> CodeFingerprint:
-    """Return all passages of a text: those that are there do not depend on a hash's luck."""
+    """Return the fingerprint of a text with all of its passages, without copydetect's sampling by hashes."""
     return CodeFingerprint("submission.py", MIN_MATCH_TOKENS, 1, fp=io.StringIO(text))
 
 

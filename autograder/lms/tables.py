@@ -1,4 +1,4 @@
-"""Reads the tables that an instructor writes: CSV in UTF-8 with headings, one of which is `student`."""
+"""Reads tables that an instructor writes: UTF-8 CSV files with headings, including `student`."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from autograder.lms.roster import Roster, normalized
 STUDENT = "student"
 
 FindStudent = Callable[[str], "str | None"]
-"""Returns the name that a student has in results, None if there is no such student."""
+"""Returns a student's name in results, or None if the student is unknown."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """A row of a table: its student, its cells by their headings in lower case, and its file and line, for messages."""
+    """A row of a table: its student, its cells by lower-case headings, and its file and line for messages."""
 
     student: str
     cells: Mapping[str, str]
@@ -30,7 +30,7 @@ class Row:
 
 
 def student_finder(known: Collection[str], roster: Roster | None) -> FindStudent:
-    """Return a function that finds students by the names of their results, and by all that the roster says of them."""
+    """Return a function that finds students by the names of their results, and by any column of the roster."""
 
     def find(name: str) -> str | None:
         if name in known:
@@ -42,11 +42,10 @@ def student_finder(known: Collection[str], roster: Roster | None) -> FindStudent
 
 
 def read_rows(path: Path, needed: Collection[str], find: FindStudent, *, one_of: Collection[str] = ()) -> list[Row]:
-    """Read the rows of a table. Empty rows are left out, and columns that nobody knows may be there.
+    """Read the rows of a table. Empty rows and unknown columns are ignored.
 
-    Raises UsageError if the file cannot be read, lacks the column `student`, one that is `needed` or all of `one_of`,
-    has a row that names an unknown student or one that another row names, or a row with more or fewer cells than
-    headings. The message says which file and line.
+    Raises UsageError, with the file and line, if the file cannot be read, lacks the column `student`, a column in
+    `needed` or all columns in `one_of`, or has a row with an unknown or repeated student or the wrong number of cells.
     """
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:

@@ -106,9 +106,9 @@ def _check(
     part: str,
     first: list[str],
 ) -> dict[str, Any]:
-    """Run the checks of a chapter, or of the exercise whose name is `part`; those with the ids `first` before others.
+    """Run the checks of a chapter, or of the exercise called `part`. Those with ids in `first` run before the others.
 
-    What became of these is written to `out` at once.
+    Their results are written to `out` immediately.
     """
     from autograder.building.build import build_workspace
     from autograder.building.colcon import StoppedBuildError
@@ -126,7 +126,7 @@ def _check(
     results: dict[str, CheckResult] = {}
 
     def answer(found: Diagnosis, ids: Collection[str], *, lasting: bool = True) -> dict[str, Any]:
-        """Return what became of checks, and of those that they need and that did not pass."""
+        """Return the results of checks, and of their failed dependencies."""
         lost = {name for name, result in results.items() if result.outcome is not Outcome.PASSED}
         shown = [check for check in suite.checks if check.id in ids or check.id in lost]
         lines = [results.get(check.id) or CheckResult.of(check, Outcome.NOT_CHECKED) for check in shown]

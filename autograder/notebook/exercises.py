@@ -1,8 +1,8 @@
-"""The exercises of a chapter, as its notebook numbers them, and which checks are those of each.
+"""The exercises of a chapter, as numbered in its notebook, and the checks of each exercise.
 
-A heading such as `Exercise 2: repair a package`, `Step 4: ...` or `Question 3: ...` begins an exercise; a heading
-`Exercise` without a number is exercise 1. The sentences of the contract that stand below the heading are those of the
-exercise (`autograder.suite.contract`).
+A heading such as `Exercise 2: repair a package`, `Step 4: ...` or `Question 3: ...` starts an exercise. A heading
+`Exercise` without a number is exercise 1. The requirements below the heading belong to the exercise
+(`autograder.suite.contract`).
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ class Exercise:
     """An exercise of a chapter.
 
     Attributes:
-        kind: what the notebook calls it, one of `KINDS`.
+        kind: its kind in the notebook, one of `KINDS`.
         number: its number in the heading.
         title: the rest of the heading.
-        sentences: the ids of the contract's sentences that stand in it.
-        groups: the groups of checks that the notebook's objectives give to this exercise alone.
+        sentences: the ids of the requirements in it.
+        groups: the groups of checks that the notebook's objectives assign only to this exercise.
     """
 
     kind: str
@@ -44,12 +44,12 @@ class Exercise:
 
     @property
     def name(self) -> str:
-        """What the notebook and a command call it, such as `step 2`."""
+        """Its name in the notebook and in commands, such as `step 2`."""
         return f"{self.kind} {self.number}"
 
 
 def exercises(assignment: str) -> tuple[Exercise, ...]:
-    """Return the exercises of a chapter that checks can judge, in the order of its notebook.
+    """Return the exercises of a chapter that have checks, in the order of its notebook.
 
     Raises:
         UsageError: there is no such chapter, or its notebook cannot be read.
@@ -64,7 +64,7 @@ def exercises(assignment: str) -> tuple[Exercise, ...]:
 
 
 def find(assignment: str, there: Sequence[Exercise], kind: str, number: int) -> Exercise:
-    """Return an exercise of a chapter; a UsageError lists those that there are."""
+    """Return an exercise of a chapter. A UsageError lists the existing ones."""
     for exercise in there:
         if (exercise.kind, exercise.number) == (kind, number):
             return exercise
@@ -74,17 +74,17 @@ def find(assignment: str, there: Sequence[Exercise], kind: str, number: int) -> 
 
 
 def checks_of(chosen: Exercise, there: Sequence[Exercise], checks: Sequence[Check]) -> tuple[str, ...]:
-    """Return the ids of the checks of one exercise among a chapter's, in the order of the suite.
+    """Return the ids of the checks that belong to an exercise, in the order of the suite.
 
-    A group of checks whose sentences stand in one exercise belongs to it. Where they stand in several, the notebook's
-    objectives decide, and if these give the group to none or to several, each check belongs to the last exercise that
-    has a sentence of it. A check with no sentence in an exercise belongs to each: none is left out everywhere.
+    If all requirements of a group of checks are in one exercise, the group belongs to it. If they are in several, the
+    notebook's objectives decide. If these assign the group to no or several exercises, each check belongs to the last
+    exercise with one of its requirements. A check without a requirement in an exercise belongs to every exercise.
     """
     return tuple(check.id for check in checks if _home(check, there, checks) in (None, chosen))
 
 
 def _home(check: Check, there: Sequence[Exercise], checks: Sequence[Check]) -> Exercise | None:
-    """Return the exercise of a check; None if no exercise has a sentence of it."""
+    """Return the exercise of a check, or None if no exercise contains one of its requirements."""
     group = [each for other in checks if other.group == check.group for each in _stating(other, there)]
     if len(set(group)) > 1:
         named = next((each for each in there if check.group in each.groups), None)
@@ -97,8 +97,8 @@ def _stating(check: Check, there: Sequence[Exercise]) -> list[Exercise]:
 
 
 def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]:
-    """Yield the exercises among cells; `objectives` are those of the notebook's metadata."""
-    given: dict[str, set[str]] = {}  # the cells whose exercises a group serves
+    """Yield the exercises in cells. `objectives` come from the notebook's metadata."""
+    given: dict[str, set[str]] = {}  # the cells of the exercises that a group tests
     for objective in objectives:
         for group in objective["groups"]:
             given.setdefault(group, set()).add(objective["exercise"])
@@ -117,7 +117,7 @@ def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]
         if now:
             sentences.setdefault(now, {}).update(cell["metadata"].get("course", {}).get("contract", {}))
     for name, each in found.items():
-        if named := sentences.get(name):  # a question that a person reads obliges to nothing that a check could hold
+        if named := sentences.get(name):  # a question that a person grades has no requirements that a check could cover
             yield Exercise(each.kind, each.number, each.title, tuple(named), each.groups)
 
 

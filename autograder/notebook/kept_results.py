@@ -1,8 +1,8 @@
-"""Keeps what a check found, for as long as everything that it depends on is the same.
+"""Stores the result of a check for as long as everything that it depends on is unchanged.
 
-That is the student's files in `src`, every file that a grading with the checks reads (`autograder.suite.fingerprint`),
-and the environment: the Python, ROS 2 with all installed packages, the variables that a worker gets, and how programs
-are kept apart. Of the chapter's notebook the cells count; what they have shown does not.
+A result depends on the student's files in `src`, on every file that the checks read (`autograder.suite.fingerprint`),
+and on the environment: Python, ROS 2 with all installed packages, a worker's environment variables, and the isolation
+level. It depends on the cells of the chapter's notebook, but not on their outputs.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ from autograder.run.sandbox import best_tier
 from autograder.suite import fingerprint
 
 CACHE = "checks"
-MOST = 100  # files that are kept, one for each chapter of a workspace
-# A kernel and a terminal differ in these, and a workspace's programs get their own.
+MOST = 100  # stored files, one for each chapter of a workspace
+# These differ between a kernel and a terminal, and a workspace's programs get their own values.
 _IGNORED = frozenset({"ROS_DOMAIN_ID", "ROS_LOG_DIR", "PYTHONDONTWRITEBYTECODE", *LOGS_TO_STDOUT})
 _VARIABLES = (
     *("PATH", "LANG", "LC_", "TZ", "PYTHON", "LD_LIBRARY_PATH", "AUTOGRADER_", "AMENT_", "CMAKE_PREFIX_PATH"),
@@ -41,11 +41,11 @@ _VARIABLES = (
 
 @dataclass(frozen=True)
 class Inputs:
-    """What a result depends on, at one moment.
+    """The inputs of a result at one moment.
 
     Attributes:
-        digest: of all of it.
-        stamp: a digest of when and how each file was last written. It differs if one was changed and changed back.
+        digest: a digest of all inputs.
+        stamp: a digest of each file's last modification. It differs even if a file was changed and changed back.
     """
 
     digest: str
@@ -54,13 +54,13 @@ class Inputs:
 
 @dataclass(frozen=True)
 class Kept:
-    """A result that is kept.
+    """A stored result.
 
     Attributes:
-        digest: of the inputs that it was made of; empty if they changed meanwhile.
-        at: when it was made, in ISO 8601.
-        reads: files of the course that the checks read besides their own.
-        answer: the worker's.
+        digest: the digest of its inputs; empty if they changed during the run.
+        at: when it was created, in ISO 8601.
+        reads: additional files of the course that the checks read.
+        answer: the worker's reply.
     """
 
     digest: str
@@ -70,18 +70,18 @@ class Kept:
 
     @property
     def since(self) -> str:
-        """The time of day at which it was made, and the day unless that is today."""
+        """The time of day at which it was created, with the date unless that is today."""
         made = datetime.fromisoformat(self.at)
         return f"{made:%H:%M}" if made.date() == datetime.now().date() else f"{made:%d %B, %H:%M}"
 
 
 def take_inputs(assignment: str, source: Path, reads: Iterable[str] = ()) -> Inputs | None:
-    """Return what a check of a folder of packages depends on; None while files come and go, or where one is a link.
+    """Return the inputs of a check of a folder of packages, or None if files are changing or one is a link.
 
     Args:
         assignment: the chapter.
         source: the folder `src` of a workspace.
-        reads: files of the course that the checks read besides their own, by their paths in it.
+        reads: additional files of the course that the checks read, as paths relative to the course.
     """
     digest, stamp = hashlib.sha256(), hashlib.sha256()
     digest.update(json.dumps(_environment(), sort_keys=True, default=str).encode())
@@ -100,7 +100,7 @@ def take_inputs(assignment: str, source: Path, reads: Iterable[str] = ()) -> Inp
 
 
 def load(workspace: Path, assignment: str, part: str) -> Kept | None:
-    """Return what was kept of a chapter, or of a part of it; None if nothing is, or nothing that can be read."""
+    """Return the stored result of a chapter or a part of it, or None if there is none or it is unreadable."""
     with suppress(OSError, ValueError, TypeError, LookupError, AttributeError):
         found: Kept = structure(Kept, json.loads(_place(workspace, assignment).read_bytes())[part])
         return found
@@ -108,7 +108,7 @@ def load(workspace: Path, assignment: str, part: str) -> Kept | None:
 
 
 def keep(workspace: Path, assignment: str, part: str, kept: Kept) -> None:
-    """Keep a result in the place of the one before; a disk that is full keeps none."""
+    """Store a result instead of the previous one. If the disk is full, store none."""
     place, others = _place(workspace, assignment), {}
     with suppress(OSError, ValueError):
         others = json.loads(place.read_bytes())
@@ -120,7 +120,7 @@ def keep(workspace: Path, assignment: str, part: str, kept: Kept) -> None:
 
 
 def stamp_of(paths: Iterable[Path]) -> str:
-    """Return a digest of when files, and those in folders, were last written. What cannot be read is left out."""
+    """Return a digest of the modification times of files, including those in folders. Skip unreadable ones."""
     found = hashlib.sha256()
     for top in paths:
         for path in (top,) if top.is_file() else sorted(top.rglob("*")):
@@ -137,7 +137,7 @@ def _place(workspace: Path, assignment: str) -> Path:
 def _files(source: Path) -> Iterator[Path]:
     """Yield the folders and files that a check copies, sorted.
 
-    Raises OSError if there are none, or at a link: what it leads to may change.
+    Raises OSError if there are none, or if there is a link, whose target may change.
     """
     os.scandir(source).close()
     for folder, folders, names in os.walk(source):
@@ -150,7 +150,7 @@ def _files(source: Path) -> Iterator[Path]:
 
 
 def _cells(notebook: Path) -> bytes:
-    """Return what counts of a notebook. One that is half written counts as it stands."""
+    """Return the relevant content of a notebook, or all bytes of one that is only partly written."""
     data = notebook.read_bytes()
     try:
         found = json.loads(data)
@@ -189,7 +189,7 @@ def _site_packages() -> list[Path]:
 
 
 def _versions(folder: Path) -> Iterator[str]:
-    """Yield each installed package with the time of its installation. To read what it says of itself takes long."""
+    """Yield each installed package with its installation time, because reading its metadata takes too long."""
     with os.scandir(folder) as entries:
         for entry in entries:
             if entry.name.endswith((".dist-info", ".egg-info", ".pth")):

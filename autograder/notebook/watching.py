@@ -1,7 +1,7 @@
 """`autograder check --watch`: checks a workspace again when a file is saved, until Ctrl-C.
 
-Files are looked at a few times a second. They are checked once they have been left alone for a moment, so a file that
-is being written is not read by halves; if it is, it is checked again when the rest has come.
+Files are polled a few times a second. They are checked when they have not changed for a moment, so that a file is not
+read while it is being written. If that happens anyway, the files are checked again afterwards.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from autograder.notebook.kept_results import stamp_of
 from autograder.notebook.notices import Notice
 from autograder.suite import Outcome, fingerprint
 
-LOOK = 0.25  # s between two looks at the files
+LOOK = 0.25  # s between polls of the files
 QUIET = 0.5  # s without a change, after which files count as saved
 WAITING = "Waiting for a file to be saved. Ctrl-C ends this."
 
@@ -25,13 +25,13 @@ Show = Callable[[object], None]
 
 
 def watch(part: Part, workspace: Path, show: Show, *, pause: Callable[[float], None] = time.sleep) -> None:
-    """Check a workspace, and again each time one of its files, or of the chapter's, has changed, until Ctrl-C.
+    """Check a workspace, and again whenever one of its files or of the chapter's files changes, until Ctrl-C.
 
     Args:
-        part: what is checked.
+        part: the part to check.
         workspace: a colcon workspace.
-        show: gets each report, and each sentence about what goes on.
-        pause: waits for some seconds between two looks.
+        show: called with each report and each progress message.
+        pause: waits for some seconds between polls.
 
     Raises:
         UsageError: there is no such workspace.
@@ -47,7 +47,7 @@ def watch(part: Part, workspace: Path, show: Show, *, pause: Callable[[float], N
                 report = run_part(part, workspace, first=failed, early=show)
                 failed = tuple(line.id for line in report.lines if line.outcome is Outcome.FAILED)
                 show(report)
-            except (GraderError, UsageError, OSError) as error:  # such as a file that went away while it was copied
+            except (GraderError, UsageError, OSError) as error:  # such as a file that was deleted while it was copied
                 show(Notice(str(error)))
             if _stamp(part.assignment, workspace) == seen:
                 show(Notice(WAITING))
@@ -57,7 +57,7 @@ def watch(part: Part, workspace: Path, show: Show, *, pause: Callable[[float], N
 
 
 def _wait(assignment: str, workspace: Path, seen: str, pause: Callable[[float], None]) -> None:
-    """Wait until the files are not as they were seen, and have been left alone for a moment."""
+    """Wait until the files have changed since `seen` and then stayed the same for a moment."""
     newest, since = seen, time.monotonic()
     while newest == seen or time.monotonic() - since < QUIET:
         pause(LOOK)

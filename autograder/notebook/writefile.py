@@ -71,7 +71,7 @@ def write(line: str, cell: str, original: Any) -> None:
 
 
 def _make_folder(folder: Path) -> None:
-    """Make a folder, and say so if it is not there. Raises UsageError if a file is in its place or above it."""
+    """Create a folder if it does not exist, and say so. Raises UsageError if part of its path is a file."""
     if folder.is_dir():
         return
     try:
@@ -79,8 +79,8 @@ def _make_folder(folder: Path) -> None:
     except (FileExistsError, NotADirectoryError):
         parts = (folder, *folder.parents)
         file = next(part for part in parts if part.exists())
-        raise UsageError(f"{file} is a file, so the folder {folder} cannot be made: rename one of them") from None
-    print(f"Made the folder {folder}")
+        raise UsageError(f"{file} is a file, so the folder {folder} cannot be created: rename one of them") from None
+    print(f"Created the folder {folder}")
 
 
 def _show(sentence: str) -> None:

@@ -1,4 +1,4 @@
-"""What cells with `%%writefile` wrote last: a record in each workspace."""
+"""The record of the texts that cells last wrote with `%%writefile`, one in each workspace."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import hashlib
 import json
 from pathlib import Path
 
-RECORD = ".writefile.json"  # in a workspace: by path, a digest of what a cell wrote last
+RECORD = ".writefile.json"  # in a workspace: by path, a digest of the text that a cell last wrote
 
 
 def digest(text: str) -> str:
-    """Return the SHA-256 of a text, in hexadecimal digits."""
+    """Return the SHA-256 of a text as hexadecimal digits."""
     return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()
 
 
 def read_record(home: Path) -> dict[str, str]:
-    """Read what cells wrote last; nothing where there is no record, or none that can be read."""
+    """Read the record. It is empty if the file is missing or unreadable."""
     try:
         record = json.loads((home / RECORD).read_text())
     except (OSError, ValueError):

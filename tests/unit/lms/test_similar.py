@@ -107,7 +107,7 @@ def test_the_page_of_a_pair_shows_both_texts_escaped_and_says_that_it_is_not_a_v
     assert page.count("<mark>") == page.count("</mark>") >= 2
     assert "<script>" not in page
     assert "<bob>" not in page
-    assert "no verdict" in page
+    assert "not a verdict" in page
 
 
 def test_the_code_of_a_submission_is_its_modules_and_its_notebooks_cells() -> None:
@@ -238,7 +238,7 @@ def test_only_the_start_of_a_long_text_is_compared_which_is_reported() -> None:
     (found,) = compare({"alice": long, "bob": "a\n" * 700_000 + OTHER, "carol": OWN}, "", 0.5, told.__setitem__).groups
     assert found.names == ("alice", "carol")
     assert set(told) == {"alice", "bob"}
-    assert told["alice"] == "the first 100,000 characters of its code, look at the rest yourself"
+    assert told["alice"] == "the first 100,000 characters of its code; please check the rest yourself"
     (pair,) = found.pairs
     assert pair.texts is not None
     assert len(pair.texts[0].striptags()) <= similar.MAX_CHARACTERS

@@ -130,16 +130,18 @@ def test_appending_and_names_in_quotes_work_as_before(run: Run) -> None:
 
 def test_a_cell_makes_the_missing_folders_of_its_file_and_says_so(run: Run) -> None:
     file = "ws/src/new_pkg/launch/robot.launch.py"
-    assert run(SOLVED, file) == f"Made the folder ws/src/new_pkg/launch\nWriting {file}\n"
+    assert run(SOLVED, file) == f"Created the folder ws/src/new_pkg/launch\nWriting {file}\n"
     assert Path(file).read_text() == SOLVED
     assert run(SOLVED, file) == f"Overwriting {file}\n"
-    assert run("# end\n", "-a ws/src/new_pkg/config/more.yaml").startswith("Made the folder ws/src/new_pkg/config\n")
+    assert run("# end\n", "-a ws/src/new_pkg/config/more.yaml").startswith("Created the folder ws/src/new_pkg/config\n")
 
 
 @pytest.mark.parametrize("below", ["robot.launch.py", "deep/er/robot.launch.py"])
 def test_a_file_in_the_place_of_a_folder_is_named(run: Run, below: str) -> None:
     Path("ws/src/pkg/launch").write_text("a file\n")
-    with pytest.raises(UsageError, match=r"^ws/src/pkg/launch is a file, so the folder .* cannot be made: rename one"):
+    with pytest.raises(
+        UsageError, match=r"^ws/src/pkg/launch is a file, so the folder .* cannot be created: rename one"
+    ):
         run(SOLVED, f"ws/src/pkg/launch/{below}")
     assert Path("ws/src/pkg/launch").read_text() == "a file\n"
 
