@@ -19,7 +19,7 @@ _FORBIDDING = (
     (
         "kernel.apparmor_restrict_unprivileged_userns",
         "1",
-        "AppArmor restricts user namespaces, by default since Ubuntu 24.04",
+        "AppArmor restricts user namespaces, which Ubuntu does by default since 24.04",
         "sudo sysctl -w kernel.apparmor_restrict_unprivileged_userns=0",
     ),
     (
