@@ -142,3 +142,14 @@ def test_a_zip_of_moodle_is_graded_and_its_worksheet_gets_the_marks(
         share = shares[f"s{int(identifier.removeprefix('Participant ')) - 1000}@example.edu"]
         assert (share == 1.0, share == 0.0) == (kind == full, kind == none), identifier
         assert float(marks[identifier]) == pytest.approx(WORTH * share * (1 - PENALTY / 100 * late), abs=0.005)
+
+    # 26 hours are two days that have begun; a day more for one student leaves one.
+    first, *others = (identifier for identifier, (_, late) in given.items() if late)
+    (tmp_path / "extensions.csv").write_text(f"student,days\n{first},1\n")
+    daily = ("--late-per-day", f"{PENALTY:g}", "--extensions", "extensions.csv")
+    assert autograder("export", "results", *arguments, *daily).returncode == 0
+    extended = imported(tmp_path / "marks.csv", tmp_path / "worksheet.csv")
+    assert extended[first] == marks[first]
+    for identifier in others:
+        whole = float(marks[identifier]) / (1 - PENALTY / 100)
+        assert float(extended[identifier]) == pytest.approx(whole * (1 - 2 * PENALTY / 100), abs=0.02)
