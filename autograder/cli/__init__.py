@@ -21,7 +21,7 @@ from autograder.exceptions import AutograderError, UsageError
 
 VERBS = (
     *("check", "compare", "course", "demo", "doctor", "export", "grade", "gradescope", "new", "notebooks", "release"),
-    *("replay", "ros", "similar", "update", "verify"),
+    *("replay", "ros", "serve", "similar", "update", "verify"),
 )
 INTERRUPTED = 130  # the exit status of a shell after Ctrl-C
 

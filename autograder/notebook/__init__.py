@@ -4,6 +4,7 @@
 faster than real time, and `side_by_side(...)` compares drives. `check(...)` runs the visible checks. `grade(...)` is in
 the locked cells. `source(...)` is the kernel's equivalent of `source install/setup.bash`. `simulator(...)` runs the
 simulator in the background. `graph()` draws the running nodes and their topics. `score(...)` ranks a student's drives.
+`submit(...)` hands in, on a hub that grades at once.
 
 Students' programs run in separate processes, never in the kernel.
 """
@@ -23,6 +24,7 @@ from sim.grading import grading
 if TYPE_CHECKING:
     from autograder.notebook.checking import check
     from autograder.notebook.driving import drive, side_by_side
+    from autograder.notebook.handing_in import submit
     from autograder.notebook.node_graph import graph
     from autograder.notebook.scoring import score
     from autograder.notebook.simulator_session import simulator
@@ -38,6 +40,7 @@ __all__ = [
     "side_by_side",
     "simulator",
     "source",
+    "submit",
 ]
 # Imported when a notebook asks for them: a worker and the command line need few, and pay for each.
 _MODULES = {
@@ -48,6 +51,7 @@ _MODULES = {
     "side_by_side": "driving",
     "simulator": "simulator_session",
     "source": "sourcing",
+    "submit": "handing_in",
 }
 
 

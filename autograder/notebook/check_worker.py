@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from autograder import layout
-from autograder.diagnosis import OK, Diagnosis
+from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.notebook.worker_client import EARLY_FILE, RECORDING, REPLY_FILE
 from autograder.result.model import structure, write_json
@@ -28,11 +28,14 @@ from autograder.ros.domains import Domain
 from autograder.run.sandbox import line
 from autograder.run.sandbox.launcher import current_tier, restore_sigint
 from autograder.run.sandbox.tiers import Tier
+from autograder.submission import intake
+from autograder.submission.reading import reading
 
 if TYPE_CHECKING:
     from autograder.run.workspace import Workspace
 
 SEED = 1  # for the inputs of visible checks
+NEEDS_ITS_NOTEBOOK = "The notebook has to run before there is something to check: run check(...) in it."
 
 
 def main() -> None:
@@ -48,9 +51,25 @@ def main() -> None:
     home.mkdir(parents=True)
     domain = 0 if current_tier() is Tier.BUBBLEWRAP else Domain().number
     workspace = Workspace(scratch / "ws", ros, home, domain=domain)
-    shutil.copytree(request["source"], workspace.root / "src", ignore=layout.NOT_COPIED)
-    reply = VERBS[request["verb"]](workspace, out, **request["arguments"])
+    try:
+        _fill(workspace, Path(request["source"]), request["arguments"])
+    except StudentError as error:
+        reply: dict[str, Any] = {"diagnosis": asdict(error.diagnosis), "checks": ()}
+    else:
+        reply = VERBS[request["verb"]](workspace, out, **request["arguments"])
     write_json(out / REPLY_FILE, reply)
+
+
+def _fill(workspace: Workspace, source: Path, arguments: dict[str, Any]) -> None:
+    """Put a source tree into the workspace, or the packages of an answer as it was handed in."""
+    if source.is_dir():
+        shutil.copytree(source, workspace.root / "src", ignore=layout.NOT_COPIED)
+        return
+    packages = intake.read_submission(source, arguments["assignment"]).packages
+    if packages is None:
+        raise StudentError(Diagnosis(Kind.NOTHING_SUBMITTED, NEEDS_ITS_NOTEBOOK))
+    with reading("Your submission"):
+        intake.write_tree(packages, workspace.root / "src")
 
 
 def _drive(

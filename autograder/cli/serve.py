@@ -1,0 +1,53 @@
+"""`autograder serve`: grades what students hand in on a JupyterHub, at once."""
+
+from __future__ import annotations
+
+import logging
+import os
+from pathlib import Path
+
+import click
+
+from autograder.cli.options import isolation_option, seed_option
+from autograder.cli.terminal import echo
+from autograder.exceptions import UsageError
+from autograder.lms.serve.grading import Way
+from autograder.lms.serve.settings import read_settings
+from autograder.run.sandbox import Tier
+
+
+@click.command()
+@click.argument("settings", type=click.Path(path_type=Path, dir_okay=False))
+@click.option(
+    "--data",
+    required=True,
+    type=click.Path(path_type=Path, file_okay=False),
+    help="The folder for all that is handed in, with its results. Nobody else can read it.",
+)
+@click.option(
+    "-j", "--jobs", type=click.IntRange(1, 64), default=1, show_default=True, help="How many are graded at once."
+)
+@click.option("--check", is_flag=True, help="Read the settings, say what they are, and end.")
+@seed_option
+@isolation_option
+def serve(settings: Path, data: Path, jobs: int, check: bool, seed: int, isolation: str) -> None:
+    """Grade what students hand in, as a service of a JupyterHub, by the file SETTINGS.
+
+    The hub starts it: docs/serve.md has the lines for its configuration. It ends when it is ended, in whatever way, and
+    loses nothing by that.
+    """
+    read = read_settings(settings)
+    if check:
+        for name, each in read.assignments.items():
+            due = f"due at {each.due:%Y-%m-%d %H:%M %Z}" if each.due is not None else "never due"
+            counts = "best" if each.best_counts else "last"
+            echo(f"{name}: {due}, {each.tries_a_day} tries a day, shows {each.shown.value}, the {counts} one counts")
+        return
+    try:
+        from autograder.lms.serve import service
+    except ModuleNotFoundError as error:
+        if error.name != "jupyterhub":
+            raise
+        raise UsageError("serve needs JupyterHub, which is not installed here: run `make hub-setup`") from None
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(message)s")
+    service.serve(read, data, Way(jobs, seed, Tier(isolation)), service.address(os.environ))

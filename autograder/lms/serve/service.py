@@ -1,0 +1,77 @@
+"""The process of the service: it listens where the hub says, and grades until it is ended, in whatever way."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import secrets
+import signal
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from tornado.httpserver import HTTPServer
+
+from autograder.exceptions import UsageError
+from autograder.lms.serve.grading import Grader, Way
+from autograder.lms.serve.handlers import Service, application
+from autograder.lms.serve.settings import Settings
+from autograder.lms.serve.store import Store
+from autograder.notebook.handing_in import MAX_ANSWER
+from autograder.run.sandbox import require
+
+# What the hub tells a service, by the names of its variables.
+TOKEN, NAME, URL, PREFIX = (
+    "JUPYTERHUB_API_TOKEN",
+    "JUPYTERHUB_SERVICE_NAME",
+    "JUPYTERHUB_SERVICE_URL",
+    "JUPYTERHUB_SERVICE_PREFIX",
+)
+
+
+@dataclass(frozen=True)
+class Address:
+    """Where the service listens, and the part of the hub's addresses that is its own."""
+
+    host: str
+    port: int
+    prefix: str
+
+
+def address(environment: Mapping[str, str]) -> Address:
+    """Return the address that a hub gives its service. Raises UsageError if no hub started this process."""
+    missing = [name for name in (TOKEN, NAME, URL, PREFIX) if not environment.get(name)]
+    if missing:
+        raise UsageError(
+            f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} not set: `autograder serve` is started by a "
+            "JupyterHub, as one of its services; docs/serve.md has the lines for its configuration"
+        )
+    url, prefix = urlsplit(environment[URL]), environment[PREFIX]
+    if url.scheme != "http" or url.hostname is None or url.port is None:
+        raise UsageError(f"{URL} is {environment[URL]!r}: give the service an address such as http://127.0.0.1:10180")
+    return Address(url.hostname, url.port, f"/{prefix.strip('/')}/")
+
+
+def serve(settings: Settings, folder: Path, way: Way, place: Address) -> None:
+    """Serve until this process is ended. Nothing is lost by that, at any instant.
+
+    Raises UsageError if the folder or the address cannot be used, and IsolationError if the sandbox cannot be made.
+    """
+    require(way.tier)
+    # Ctrl-C ends the process at once, as any other signal does: what was being graded is graded again.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    store = Store(folder)
+    asyncio.run(_serve(settings, store, way, place))
+
+
+async def _serve(settings: Settings, store: Store, way: Way, place: Address) -> None:
+    grader = Grader(settings, store, way)
+    service = Service(settings, store, grader, place.prefix)
+    # A cookie of the hub's is of use for as long as this process: who has one logs in again, without a word.
+    server = HTTPServer(application(service, secrets.token_bytes(32)), max_body_size=4 * MAX_ANSWER)
+    try:
+        server.listen(place.port, place.host)
+    except OSError as error:
+        raise UsageError(f"{place.host}:{place.port}: cannot listen there ({os.strerror(error.errno or 0)})") from None
+    await grader.run()

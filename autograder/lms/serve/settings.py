@@ -1,0 +1,186 @@
+"""The instructor's settings of the service: a YAML file, whose mistakes are named with their lines.
+
+    instructors: [grace]              they see the class and everybody's feedback
+    timezone: Europe/Berlin           of the times below, and of the day of the tries; UTC by default
+    assignments:
+      10_mapping:
+        due: 2026-10-12 23:59         nothing is taken after it; never by default
+        tries_a_day: 5                of a student; 5 by default
+        shown: visible                before it is due: everything, visible, points or nothing
+        counts: best                  which of a student's marks counts: best or last; last by default
+        extensions: {ada: 2026-10-19 23:59}
+
+Only `assignments` is needed.
+"""
+
+from __future__ import annotations
+
+import zoneinfo
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from datetime import datetime, timezone, tzinfo
+from enum import Enum
+from pathlib import Path
+
+import yaml
+
+from autograder.exceptions import UsageError
+from autograder.suite import suites
+from sim.exceptions import WorldError
+from sim.fields import Reader, Units, bad
+
+TRIES_A_DAY = 5
+MOST_TRIES = 1000
+MOST_STUDENTS = 100_000
+MAX_BYTES = 1024 * 1024
+
+
+class Shown(str, Enum):
+    """What a student sees of a grading before the assignment is due. After it, everything is shown."""
+
+    EVERYTHING = "everything"  # the feedback page
+    VISIBLE = "visible"  # the checks that students can run themselves
+    POINTS = "points"  # the sum
+    NOTHING = "nothing"  # that it was received and graded
+
+
+@dataclass(frozen=True)
+class AssignmentSettings:
+    """The settings of one assignment. Times know their zone; None is never."""
+
+    due: datetime | None = None
+    tries_a_day: int = TRIES_A_DAY
+    shown: Shown = Shown.EVERYTHING
+    best_counts: bool = False
+    extensions: Mapping[str, datetime] = field(default_factory=dict)
+
+    def due_of(self, student: str) -> datetime | None:
+        """Return until when a student can hand in."""
+        return self.extensions.get(student, self.due)
+
+    def is_open(self, student: str, now: datetime) -> bool:
+        """Return whether a student can hand in."""
+        due = self.due_of(student)
+        return due is None or now <= due
+
+    def shown_to(self, student: str, now: datetime) -> Shown:
+        """Return what a student sees of their own gradings."""
+        return self.shown if self.is_open(student, now) else Shown.EVERYTHING
+
+
+@dataclass(frozen=True)
+class Settings:
+    """All settings of the service."""
+
+    assignments: Mapping[str, AssignmentSettings]
+    instructors: frozenset[str] = frozenset()
+    zone: tzinfo = timezone.utc
+
+    def tries_left(self, assignment: str, earlier: Iterable[datetime], now: datetime) -> int:
+        """Return how often a student can hand in today, who has handed in at these times."""
+        today = now.astimezone(self.zone).date()
+        used = sum(time.astimezone(self.zone).date() == today for time in earlier)
+        return max(0, self.assignments[assignment].tries_a_day - used)
+
+
+def read_settings(path: Path) -> Settings:
+    """Read a file of settings. Raises UsageError, which names the file and the line, if it is wrong."""
+    try:
+        top = _composed(path)
+        read = Reader(path, Units())
+        fields = read.fields(top, "the file", ("assignments",), ("instructors", "timezone"))
+        zone = _zone(read, fields.get("timezone"))
+        instructors = (_text(read, node, "an instructor") for node in _items(read, fields.get("instructors")))
+        names = suites.graded_assignments()
+        entries = read.fields(fields["assignments"], "assignments", (), names)
+        assignments = {name: _assignment(read, name, node, zone) for name, node in entries.items()}
+        if not assignments:
+            raise bad(path, fields["assignments"], "there is no assignment", f"Name one, such as {names[0]}")
+        return Settings(assignments, frozenset(instructors), zone)
+    except WorldError as error:  # of the readers that the simulator's files have, too
+        raise UsageError(str(error)) from None
+
+
+def _composed(path: Path) -> yaml.MappingNode:
+    try:
+        data = path.read_bytes()
+        if len(data) > MAX_BYTES:
+            raise UsageError(f"{path}: the file is larger than {MAX_BYTES // 2**20} MiB: these are no settings")
+        node = yaml.compose(data.decode("utf-8-sig"), Loader=yaml.SafeLoader)
+    except OSError as error:
+        raise UsageError(f"{path}: the settings cannot be read ({error.strerror})") from None
+    except UnicodeDecodeError:
+        raise UsageError(f"{path}: the settings are not UTF-8 text: save them as UTF-8") from None
+    except yaml.MarkedYAMLError as error:
+        line = f":{error.problem_mark.line + 1}" if error.problem_mark else ""
+        raise UsageError(f"{path}{line}: this is not YAML: {error.problem}. Indent with spaces.") from None
+    except (yaml.YAMLError, RecursionError) as error:
+        raise UsageError(f"{path}: this is not YAML: {error}") from None
+    if not isinstance(node, yaml.MappingNode):
+        raise UsageError(f"{path}:1: the settings are a mapping: begin with a line `assignments:`")
+    return node
+
+
+def _assignment(read: Reader, name: str, node: yaml.Node, zone: tzinfo) -> AssignmentSettings:
+    if isinstance(node, yaml.ScalarNode) and not node.value:  # its name alone
+        return AssignmentSettings()
+    known = ("due", "tries_a_day", "shown", "counts", "extensions")
+    fields = read.fields(node, name, (), known)
+    due = _time(read, fields["due"], "due", zone) if "due" in fields else None
+    extensions = _extensions(read, fields.get("extensions"), zone)
+    if extensions and due is None:
+        raise bad(read.path, fields["extensions"], f"{name} has extensions and is never due", "Say when it is `due`")
+    shown = read.choice(fields.get("shown"), "shown", [each.value for each in Shown], Shown.EVERYTHING.value)
+    counts = read.choice(fields.get("counts"), "counts", ("best", "last"), "last")
+    return AssignmentSettings(due, _tries(read, fields.get("tries_a_day")), Shown(shown), counts == "best", extensions)
+
+
+def _extensions(read: Reader, node: yaml.Node | None, zone: tzinfo) -> dict[str, datetime]:
+    if node is None:
+        return {}
+    if not isinstance(node, yaml.MappingNode):
+        raise bad(read.path, node, "extensions are no mapping", "Give {ada: 2026-10-19 23:59}")
+    names = [_text(read, key, "a student") for key, _ in node.value]
+    fields = read.fields(node, "extensions", (), names)
+    return {name: _time(read, value, f"the extension of {name}", zone) for name, value in fields.items()}
+
+
+def _tries(read: Reader, node: yaml.Node | None) -> int:
+    if node is None:
+        return TRIES_A_DAY
+    number = read.number(node, "tries_a_day")
+    if number != int(number) or not 1 <= number <= MOST_TRIES:
+        raise bad(read.path, node, f"tries_a_day is {number:g}", f"Give a whole number from 1 to {MOST_TRIES}")
+    return int(number)
+
+
+def _time(read: Reader, node: yaml.Node, what: str, zone: tzinfo) -> datetime:
+    text = _text(read, node, what)
+    try:
+        time = datetime.fromisoformat(text)
+    except ValueError:
+        raise bad(read.path, node, f"{what} is {text!r}", "Give a time such as 2026-10-12 23:59") from None
+    if len(text) <= len("2026-10-12"):  # Python takes a day for its first instant, and people for its last
+        raise bad(read.path, node, f"{what} has no time of day", f"Write {text} 23:59")
+    return time if time.tzinfo is not None else time.replace(tzinfo=zone)
+
+
+def _zone(read: Reader, node: yaml.Node | None) -> tzinfo:
+    name = "UTC" if node is None else _text(read, node, "timezone")
+    if node is None or name == "UTC":
+        return timezone.utc
+    try:
+        return zoneinfo.ZoneInfo(name)
+    except (OSError, ValueError, KeyError):  # a folder, a path out of the data base, and what is not in it
+        raise bad(read.path, node, f"there is no time zone {name!r}", "Give one such as Europe/Berlin") from None
+
+
+def _items(read: Reader, node: yaml.Node | None) -> list[yaml.Node]:
+    return read.items(node, "instructors", MOST_STUDENTS)
+
+
+def _text(read: Reader, node: yaml.Node, what: str) -> str:
+    text = read.text(node, what).strip()
+    if not text:
+        raise bad(read.path, node, f"{what} is blank", "Write it, or leave the line out")
+    return text

@@ -1,0 +1,58 @@
+"""The visible checks on an answer that was handed in: what `check(...)` says of the same files."""
+
+from __future__ import annotations
+
+import json
+import logging
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from autograder.diagnosis import OK
+from autograder.exceptions import GraderError, UsageError
+from autograder.notebook.worker_client import run_on
+from autograder.plain_text import visible
+from autograder.result.model import CheckResult, structure, write_json
+from autograder.run.sandbox import Tier
+
+LOG = logging.getLogger(__name__)
+FILE = "visible.json"  # beside the result
+FAILED = "The visible checks could not be run here. Run check(...) in the notebook."
+NOT_RUN = "The visible checks were not run on this answer. Run check(...) in the notebook."
+
+
+@dataclass(frozen=True)
+class VisibleReport:
+    """What became of the visible checks."""
+
+    sentence: str  # what kept them from being run, or the packages from being built; empty if nothing did
+    checks: tuple[CheckResult, ...] = ()
+
+
+def run_visible(answer: Path, assignment: str, tier: Tier) -> VisibleReport:
+    """Run the visible checks on an answer, in a cell. Where they fail themselves, the log says why."""
+    try:
+        whole: dict[str, Any] = {"exercises": (), "part": "", "first": ()}
+        with run_on(answer.resolve(), tier, "check", assignment=assignment, **whole) as (said, _):
+            diagnosis, checks = said["diagnosis"], said["checks"]
+    except GraderError as error:
+        LOG.error("The visible checks of %s: %s", assignment, visible(str(error)))
+        return VisibleReport(FAILED)
+    sentence = "" if diagnosis["kind"] == OK.kind.value else diagnosis["sentence"]
+    return VisibleReport(sentence, tuple(structure(CheckResult, check) for check in checks))
+
+
+def write(report: VisibleReport, folder: Path) -> None:
+    """Write a report to the folder of a result."""
+    write_json(folder / FILE, asdict(report))
+
+
+def read(folder: Path) -> VisibleReport:
+    """Read the report in the folder of a result. Raises UsageError if it holds something else."""
+    try:
+        report: VisibleReport = structure(VisibleReport, json.loads((folder / FILE).read_text(encoding="utf-8")))
+    except FileNotFoundError:  # the settings were others then
+        return VisibleReport(NOT_RUN)
+    except (ValueError, TypeError, KeyError) as error:
+        raise UsageError(f"{folder / FILE}: cannot be read: {error}") from None
+    return report

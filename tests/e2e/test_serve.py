@@ -1,0 +1,88 @@
+"""`autograder serve` as a hub starts it: an answer is handed in from the notebook, and graded in the sandbox."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from autograder import layout
+from autograder.notebook import submit
+from autograder.notebook.handing_in import SERVICE, TOKEN, Receipt
+from autograder.notebook.notices import Notice
+from autograder.suite import suites
+from tests.unit.serve.classroom import Classroom, running_hub
+
+CHAPTER = "01_package_structure"
+SETTINGS = f"""
+instructors: [grace]
+assignments:
+  {CHAPTER}: {{shown: visible, due: 2100-01-01 12:00}}
+"""
+
+
+@pytest.fixture(scope="module")
+def classroom(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Classroom]:
+    """The real service of a real hub, on a folder of its own."""
+    folder = tmp_path_factory.mktemp("classroom")
+    (folder / "serve.yaml").write_text(SETTINGS)
+    command = [sys.executable, "-c", "from autograder.cli import main; main()", "serve", str(folder / "serve.yaml")]
+    with running_hub(tmp_path_factory.mktemp("hub")) as hub:
+        environment = {**os.environ, **hub.environment()}
+        with subprocess.Popen([*command, "--data", str(folder / "data")], env=environment) as process:
+            try:
+                classroom = Classroom(hub, folder)
+                classroom.wait(classroom.listens)
+                yield classroom
+            finally:
+                process.kill()
+
+
+@pytest.fixture
+def as_ada(classroom: Classroom, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The variables of ada's server."""
+    monkeypatch.setenv(SERVICE, classroom.url)
+    monkeypatch.setenv(TOKEN, classroom.hub.token("ada"))
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+@pytest.mark.usefixtures("as_ada")
+def test_a_student_hands_in_from_the_notebook_and_sees_the_visible_checks(classroom: Classroom, tmp_path: Path) -> None:
+    for package in suites.hidden(CHAPTER).packages:
+        shutil.copytree(layout.SOLUTIONS / package, tmp_path / "ws" / "src" / package)
+    receipt = submit(CHAPTER, tmp_path)
+    assert isinstance(receipt, Receipt)
+    assert f"{CHAPTER} is handed in as number {receipt.number}" in repr(receipt)
+    page = f"feedback/{receipt.number}"
+    classroom.wait((classroom.folder / "data" / "gradings" / f"{receipt.number:06}" / "feedback.html").exists)
+    classroom.wait(lambda: "Received and graded" in classroom.get("ada", page)[1])
+    seen = classroom.get("ada", page)[1]
+    assert seen.count('class="check passed"') == len(suites.visible(CHAPTER).checks)
+    assert "points" not in seen.partition("Visible checks")[2]
+    assert "points, 100 %" in classroom.get("grace", page)[1]
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+def test_what_is_no_submission_is_unclear_and_no_markup_of_it_is_shown(classroom: Classroom) -> None:
+    number = classroom.hand_in("bob", b"<script>alert(1)</script>", assignment=CHAPTER).number
+    classroom.wait((classroom.folder / "data" / "gradings" / f"{number:06}" / "feedback.html").exists)
+    classroom.wait(lambda: "unclear" in classroom.get("bob")[1])
+    for user in ("bob", "grace"):
+        assert "<script>alert" not in classroom.get(user, f"feedback/{number}")[1]
+    assert "Unclear" in classroom.get("grace", f"feedback/{number}")[1]
+
+
+@pytest.mark.usefixtures("as_ada")
+def test_a_folder_without_an_answer_is_not_handed_in(classroom: Classroom, tmp_path: Path) -> None:
+    before = classroom.get("ada")[1].count("feedback/")
+    said = submit(CHAPTER, tmp_path)
+    assert isinstance(said, Notice)
+    assert said.sentence == "Nothing was handed in."
+    assert classroom.get("ada")[1].count("feedback/") == before

@@ -1,0 +1,84 @@
+"""The service is killed at any instant, and started again: each answer has one mark, and none is lost.
+
+An instant is a line of the service's own code, in whichever thread. Students hand in all the while, and hand in again
+under the same key where no answer came.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from threading import Thread
+
+import pytest
+
+from autograder.grade.store import RESULT
+from autograder.lms.serve.store import Store
+from autograder.notebook.handing_in import Receipt
+from autograder.result.model import Status
+from tests.answers import zipped
+from tests.unit.serve.classroom import FORKS, Classroom
+from tests.unit.serve.serving import ORDER
+
+CLASS = ("ada", "bob", "ada", "cleo")  # who hands in, one after the other
+INSTANTS = 20
+LINES = 950  # of the service's code from its start to the last grading, at least; the test below counts them
+QUICK = (1, 7, 13, 19)  # the instants of a quick run
+
+
+class Class(Thread):
+    """Students who hand in one after the other, whatever becomes of the service meanwhile."""
+
+    def __init__(self, classroom: Classroom) -> None:
+        super().__init__(daemon=True)
+        self._classroom = classroom
+        self.receipts: list[Receipt] = []
+
+    def run(self) -> None:
+        for number, student in enumerate(CLASS):
+            answer = zipped({"src/package/package.xml": f"{student} {number}".encode()})
+            self.receipts.append(self._classroom.hand_in(student, answer))
+
+
+def marks_in(folder: Path) -> dict[int, tuple[str, float]]:
+    """Return what is in the store: students and points by their numbers. Each has its result."""
+    store = Store(folder)
+    try:
+        found = {one.number: one for one in store.of_assignment("02_nodes")}
+        assert all(one.mark is not None and one.mark.status is Status.GRADED for one in found.values())
+        assert all((store.folder(number) / RESULT).is_file() for number in found)
+        return {number: (one.student, one.mark.points) for number, one in found.items() if one.mark is not None}
+    finally:
+        store.close()
+
+
+def test_a_class_runs_as_many_lines_as_the_instants_are_spread_over(classroom: Classroom) -> None:
+    lines = FORKS.Value("L", 0)
+    classroom.start(lines=lines)
+    Class(classroom).run()
+    order = classroom.folder / ORDER  # a request for a page would run lines, too
+    classroom.wait(lambda: order.exists() and len(order.read_text().split()) == len(CLASS))
+    assert lines.value > LINES
+
+
+@pytest.mark.parametrize(
+    "instant", [pytest.param(each, marks=() if each in QUICK else pytest.mark.nightly) for each in range(INSTANTS)]
+)
+def test_a_kill_at_any_instant_loses_nothing_and_grades_nothing_twice(classroom: Classroom, instant: int) -> None:
+    for student in (*CLASS, "grace"):
+        classroom.hub.token(student)
+    lines, more_lines = (FORKS.Value("L", 0) for _ in range(2))
+    classroom.start(lines=lines, kill_at=instant * LINES // INSTANTS)
+    students = Class(classroom)
+    students.start()
+    classroom.wait_for_the_kill()
+    classroom.start(lines=more_lines, kill_at=(INSTANTS - instant) * LINES // INSTANTS // 2)
+    classroom.wait_for_the_kill()
+    classroom.start()
+    students.join()
+    classroom.wait(classroom.listens)
+    classroom.wait_for_marks(3)  # a row for each student
+    classroom.wait(lambda: "In the queue, of all assignments: 0." in classroom.get("grace", "class/02_nodes")[1])
+    classroom.kill()
+    found = marks_in(classroom.folder / "data")
+    assert [receipt.number for receipt in students.receipts] == list(found) == [1, 2, 3, 4]
+    assert list(found.values()) == [(student, 53.0) for student in CLASS]

@@ -1,0 +1,125 @@
+"""Whose turn it is: nobody is lost or served twice, and nobody who waits is overtaken twice by the same student."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autograder.lms.serve.queue import Waiting, ahead_of, in_order, next_turn
+
+STUDENTS = st.sampled_from("abcde")
+# What happens at the service: a student hands in, or the next turn comes, with so many workers.
+EVENTS = st.lists(st.one_of(STUDENTS, st.none()), max_size=60)
+
+
+def arrived(students: str) -> list[Waiting]:
+    return [Waiting(number, student) for number, student in enumerate(students, 1)]
+
+
+def order(students: str, turns: dict[str, int] | None = None, busy: str = "") -> str:
+    return "".join(each.student for each in in_order(arrived(students), turns or {}, busy))
+
+
+@dataclass
+class Desk:
+    """A queue that is served by one worker after the other."""
+
+    waiting: list[Waiting] = field(default_factory=list)
+    turns: dict[str, int] = field(default_factory=dict)
+    served: list[Waiting] = field(default_factory=list)
+    came: int = 0
+
+    def receive(self, student: str) -> None:
+        self.came += 1
+        self.waiting.append(Waiting(self.came, student))
+
+    def serve(self) -> None:
+        if (turn := next_turn(self.waiting, self.turns, ())) is not None:
+            self.waiting.remove(turn)
+            self.served.append(turn)
+            self.turns[turn.student] = len(self.served)
+
+
+def test_students_take_turns() -> None:
+    assert order("aaabbc") == "abcaba"
+
+
+def test_who_had_the_last_turn_longest_ago_is_next() -> None:
+    assert order("abc", {"a": 3, "b": 1, "c": 2}) == "bca"
+
+
+def test_who_never_had_a_turn_comes_before_all_who_had_one() -> None:
+    assert order("abc", {"a": 1, "b": 2}) == "cab"
+
+
+def test_who_is_being_graded_comes_after_all_others() -> None:
+    assert order("aabc", {"b": 9}, busy="a") == "cbaa"
+
+
+def test_a_student_has_one_answer_graded_at_a_time() -> None:
+    assert next_turn(arrived("aab"), {}, ("a",)) == Waiting(3, "b")
+    assert next_turn(arrived("aa"), {}, ("a",)) is None
+
+
+def test_how_many_come_before_is_the_place_in_the_order() -> None:
+    assert [ahead_of(number, arrived("aab"), {}, ()) for number in (1, 2, 3)] == [0, 2, 1]
+
+
+@given(st.text("abcde", max_size=40), st.dictionaries(STUDENTS, st.integers(1, 99)), st.sets(STUDENTS))
+def test_each_answer_has_one_turn_and_those_of_a_student_keep_their_order(
+    students: str, turns: dict[str, int], busy: set[str]
+) -> None:
+    waiting = arrived(students)
+    served = list(in_order(reversed(waiting), turns, busy))
+    assert sorted(served, key=lambda each: each.number) == waiting
+    for student in set(students):
+        own = [each.number for each in served if each.student == student]
+        assert own == sorted(own)
+
+
+@given(EVENTS)
+def test_nobody_who_waits_is_overtaken_twice_by_the_same_student(events: list[str | None]) -> None:
+    desk = Desk()
+    overtaken: dict[str, Counter[str]] = {}  # of each student who waits: by whom, since the last turn or the arrival
+    for event in events:
+        if event is not None:
+            desk.receive(event)
+            overtaken.setdefault(event, Counter())
+            continue
+        before = len(desk.served)
+        desk.serve()
+        for turn in desk.served[before:]:
+            del overtaken[turn.student]
+            for student in {each.student for each in desk.waiting}:
+                overtaken.setdefault(student, Counter())[turn.student] += student != turn.student
+            assert max((count for each in overtaken.values() for count in each.values()), default=0) <= 1
+
+
+@given(EVENTS)
+def test_whenever_they_come_all_are_served_once(events: list[str | None]) -> None:
+    desk = Desk()
+    for event in events:
+        if event is None:
+            desk.serve()
+        else:
+            desk.receive(event)
+    while desk.waiting:
+        desk.serve()
+    assert sorted(each.number for each in desk.served) == list(range(1, desk.came + 1))
+
+
+@given(EVENTS)
+def test_the_order_that_is_announced_is_kept_if_nobody_comes(events: list[str | None]) -> None:
+    desk = Desk()
+    for event in events:
+        if event is None:
+            desk.serve()
+        else:
+            desk.receive(event)
+    announced, before = list(in_order(desk.waiting, desk.turns)), len(desk.served)
+    while desk.waiting:
+        desk.serve()
+    assert desk.served[before:] == announced
