@@ -83,7 +83,7 @@ def test_git_ignores_what_is_built_in_a_new_course(course: Path, tmp_path: Path)
 
 @pytest.mark.promise(
     "Without `--only`, `verify` also generates small errors in everything that students write",
-    "Without `--quick`, `verify` also makes each small change that its operators know",
+    "Without `--quick`, `verify` also generates mutants",
 )
 @pytest.mark.nightly
 def test_every_mutant_of_new_chapters_is_killed(course: Path) -> None:
@@ -143,7 +143,7 @@ def test_the_package_and_the_node_of_a_new_chapter_have_the_given_names(course: 
     "`--record` writes all checks that the error fails to `mutants.snapshot.yaml`.",
     "`autograder verify --assignment 02_nodes --only index_zero_is_forward` grades a single mutant",
     "`sync` updates it",
-    "`course check` says in a second all that is wrong with a chapter",
+    "`course check` takes a second, and reports all mistakes in a chapter",
     "`graded/ada/feedback.html` shows the check, your hint, and the requirement from the notebook.",
     "This command creates the student release, which has no hidden checks and no answers:",
 )

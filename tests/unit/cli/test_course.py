@@ -62,7 +62,7 @@ def run(verb: str, *names: str) -> Result:
     return CliRunner().invoke(command.course, [verb, *names])
 
 
-@pytest.mark.promise("`autograder course check` reports what is wrong with a chapter")
+@pytest.mark.promise("`autograder course check` reports all mistakes in a chapter at once")
 def test_course_check_names_all_findings_and_exits_with_1(course: Path) -> None:
     result = run("check")
     assert result.exit_code == 1

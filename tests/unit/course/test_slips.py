@@ -194,7 +194,7 @@ def slip(course: Path, file: str, text: str | None, put: str) -> Callable[[], No
     return lambda: path.write_text(whole) and None
 
 
-@pytest.mark.promise("every slip is a sentence with its file and line")
+@pytest.mark.promise("names the file and line of every mistake")
 @pytest.mark.parametrize(("file", "text", "put", "line", "sentence"), SLIPS, ids=[each[4][:40] for each in SLIPS])
 def test_a_slip_is_a_sentence_with_its_file_and_line(
     course: Path, check: CheckCourse, file: str, text: str | None, put: str, line: str, sentence: str

@@ -206,7 +206,7 @@ def test_links_and_pipes_in_a_folder_are_refused(tmp_path: Path, make: Callable[
     assert "without links" in sentence
 
 
-def test_too_many_too_deep_and_too_long_are_refused(tmp_path: Path) -> None:
+def test_too_many_files_deep_folders_and_long_paths_are_rejected(tmp_path: Path) -> None:
     many = {f"src/pkg/{n}": b"" for n in range(intake.MAX_FILES + 1)}
     deep = {"src/" + "d/" * intake.MAX_DEPTH + "x": b""}
     long = {"src/" + "漢" * (intake.MAX_PATH_BYTES // 3): b""}  # 3 bytes each
