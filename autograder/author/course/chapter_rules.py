@@ -24,6 +24,7 @@ from autograder.author.course.notebook_rules import broken_rules
 from autograder.author.course.reference_rules import broken_packages, broken_python, broken_variants
 from autograder.author.course.suite_rules import read_suite, shown
 from autograder.author.course.sync import Chapter, find_outdated
+from autograder.author.course.tables import titles_of
 from autograder.author.course.workload import outdated_time_sentence
 from autograder.exceptions import AutograderError
 from autograder.suite import Check, Visibility, suites
@@ -79,8 +80,9 @@ def read_chapter(chapter: Chapter) -> ReadChapter:
         notebook = notebook if usable else None
     hidden = None if read.checks is None else tuple(c for c in read.checks if c.visibility is Visibility.HIDDEN)
     findings = [replace(each, file=path) if each.file == name else each for each in found]
+    later = [] if not hidden else list(_outdated_titles(chapter.assignment))
     unproven = unproven_checks(folder, shown(folder), [check.id for check in hidden]) if hidden else ()
-    return ReadChapter((*read.findings, *unproven, *findings), notebook, hidden)
+    return ReadChapter((*read.findings, *unproven, *later, *findings), notebook, hidden)
 
 
 def read_checks(assignment: str) -> ReadChecks:
@@ -114,6 +116,13 @@ def require_checks(assignments: Iterable[str]) -> None:
     read = [read_checks(name) for name in assignments if name in graded]
     if wrong := [str(finding) for each in read if each.checks is None for finding in each.findings]:
         raise CourseError("\n".join(dict.fromkeys(wrong)))
+
+
+def _outdated_titles(assignment: str) -> Iterator[Finding]:
+    """Yield that the list of hidden checks is out of date, which students read when all visible checks pass."""
+    path = layout.judged_later(assignment)
+    if not path.is_file() or path.read_text(encoding="utf-8") != titles_of(assignment):
+        yield Finding(shown(path), None, "is not the list of the hidden checks: run `autograder course tables`", 1)
 
 
 def _import_error(error: Exception, folder: Path) -> Finding:

@@ -108,12 +108,13 @@ def _where(locations: Sequence[Location]) -> str:
 def titles() -> dict[Path, str]:
     """Return the text of each assignment's file with titles for students, by path."""
     return {
-        layout.judged_later(name): _titles(name)
+        layout.judged_later(name): titles_of(name)
         for name in sorted({*suites.checkable_assignments()} & {*suites.graded_assignments()})
     }
 
 
-def _titles(assignment: str) -> str:
+def titles_of(assignment: str) -> str:
+    """Return the text of an assignment's file of titles for students."""
     visible_titles = {check.title for check in suites.visible(assignment).checks}
     hidden = [check.title for check in suites.hidden(assignment).checks if check.title not in visible_titles]
     return json.dumps(hidden, indent=1, ensure_ascii=False) + "\n"
