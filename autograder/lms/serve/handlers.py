@@ -11,10 +11,11 @@ The same key again is the same hand-in: a client that got no answer can ask agai
 
 from __future__ import annotations
 
+import asyncio
 import json
 import sqlite3
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from http import HTTPStatus
 from typing import Any
@@ -30,6 +31,7 @@ from autograder.lms.serve.settings import AssignmentSettings, Settings, Shown
 from autograder.lms.serve.store import Store
 from autograder.notebook.handing_in import MAX_ANSWER
 
+MOST_QUESTIONS = 8  # to the hub at once
 KEY = r"[0-9a-f]{32}"  # of a hand-in, which its client draws
 
 
@@ -42,6 +44,8 @@ class Service:
     grader: Grader
     prefix: str
     now: Callable[[], datetime] = lambda: datetime.now(timezone.utc)
+    # A whole class at once waits here: in the queue of the client that asks the hub, it would time out.
+    asking: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MOST_QUESTIONS))
 
 
 def application(service: Service, cookie_secret: bytes) -> Application:
@@ -86,7 +90,11 @@ class Known(HubOAuthenticated, RequestHandler):
         self.service = self.application.settings["service"]
 
     async def prepare(self) -> None:
-        await self.hub_auth.get_user(self, sync=False)  # kept for current_user, which would hold up all others
+        try:
+            async with self.service.asking:
+                await self.hub_auth.get_user(self, sync=False)  # kept for current_user, which would hold up all others
+        except HTTPError:
+            raise Refused(503, "The hub does not say who you are. Try again.") from None
         user = self.current_user
         if user is None and self.request.method in ("GET", "HEAD"):
             self.redirect(self.get_login_url())
