@@ -109,9 +109,10 @@ def test_regrading_with_resume_lists_the_students_whose_mark_changed(
     mended = replace(alice, checks=(*alice.checks[:2], replace(alice.checks[2], points=4.0), *alice.checks[3:]))
     graded(mended, bob, carol)
     command = ("grade", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out"))
-    said = _run(*command, "--resume").output
-    assert said.endswith("changed:\nalice (02_nodes): 4 -> 7\n    turns: 1 -> 4\n")
-    assert "changed:" not in _run(*command).output
+    output = _run(*command, "--resume").output
+    heading = "Marks that changed because of the suite or the submission:\n"
+    assert output.endswith(heading + "alice (02_nodes): 4 -> 7\n    turns: 1 -> 4\n")
+    assert "Marks that changed" not in _run(*command).output
 
 
 @pytest.mark.promise("With `--resume`, it also says which stored results would stay and which would be replaced.")
