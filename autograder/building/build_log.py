@@ -28,7 +28,7 @@ _DEPENDENCY = re.compile(
 )
 # What CMake says breaks lines, too, and names a file of ROS; the student's line is at the end of the call stack.
 _CMAKE_ERROR = re.compile(
-    r"^CMake Error at (?P<place>\S{1,300}) \(\w{1,80}\):\n(?P<text>(?:  .*\n){1,12})(?P<rest>(?s:.{0,3000}))",
+    r"^CMake Error at (?P<place>\S{1,300}?)(?: \(\w{1,80}\))?:\n(?P<text>(?:  .*\n){1,12})(?P<rest>(?s:.{0,3000}))",
     re.MULTILINE,
 )
 _CMAKE_LINE = re.compile(r"^  (CMakeLists\.txt:\d+) \(", re.MULTILINE)

@@ -12,6 +12,7 @@ from __future__ import annotations
 import builtins
 import contextlib
 import importlib
+import inspect
 import io
 import json
 import os
@@ -48,6 +49,7 @@ def _step(module: Any, made: list[Any], step: dict[str, Any]) -> dict[str, Any]:
         target = getattr(owner if step["on"] is None else made[step["on"]], step["name"])
         with contextlib.redirect_stdout(printed):
             value = target(*arguments, **keywords) if step["called"] else target
+            value = _begun(value) if step["begun"] else value
     except Exception as error:
         made.append(None)
         return _exception(error)
@@ -61,6 +63,18 @@ def _step(module: Any, made: list[Any], step: dict[str, Any]) -> dict[str, Any]:
         }
     except (TypeError, ValueError, RecursionError):
         return {**outcome, "type": type(value).__name__}
+
+
+def _begun(value: Any) -> Any:
+    """Return what a call returned; of a coroutine, what it returns if it ends before it waits for anything."""
+    if not inspect.iscoroutine(value):
+        return value
+    try:
+        value.send(None)
+    except StopIteration as end:
+        return end.value
+    value.close()
+    return None
 
 
 def _resolved(made: list[Any], value: Any) -> Any:

@@ -47,6 +47,7 @@ class Step:
     on: int | None = None  # the number of the step whose object has `name`; None for the module
     module: str | None = None  # another module that has `name`, such as `random`; None for the student's
     called: bool = True  # whether it is called, or only read
+    begun: bool = False  # whether a coroutine that it returns is begun
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,11 @@ class StepResult:
 def call(name: str, *args: Any, on: int | None = None, module: str | None = None, **kwargs: Any) -> Step:
     """Return the step that calls a function or a class; the arguments are as in `Step`."""
     return Step(name, args, kwargs, on, module)
+
+
+def callback(name: str, *, on: int) -> Step:
+    """Return the step that calls a callback of a node as an executor does, which begins one that is a coroutine."""
+    return Step(name, on=on, begun=True)
 
 
 def made(number: int) -> dict[str, int]:

@@ -55,6 +55,11 @@ class Workspace:
         path = folder / name
         if path.is_file():
             return path
+        if not (self.install / package).is_dir():
+            sentence = (
+                f"The package {package} was not built, so it has no program {name}: read first what the build says."
+            )
+            raise StudentError(Diagnosis(Kind.MISSING_EXECUTABLE, sentence))
         there = sorted(entry.name for entry in folder.iterdir() if entry.is_file()) if folder.is_dir() else []
         found = f"what it installs is {', '.join(there)}" if there else "it installs none at all"
         raise StudentError(

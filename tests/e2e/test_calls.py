@@ -11,7 +11,7 @@ import pytest
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
-from autograder.probes.calls import StepResult, call, calls, look, made, same, value
+from autograder.probes.calls import StepResult, call, callback, calls, look, made, same, value
 from autograder.ros import environment
 from autograder.suite import CheckFailed
 
@@ -66,6 +66,16 @@ def strange():
 
 def unwritten():
     raise NotImplementedError
+
+class Pause:
+    def __await__(self):
+        yield
+
+class Node:
+    async def breaks(self):
+        raise ValueError('a bug')
+    async def waits(self):
+        await Pause()
 """
 
 
@@ -123,6 +133,13 @@ def test_exceptions_and_strange_values_are_named(workspace: Workspace) -> None:
         value(odd, "strange()")
     with pytest.raises(CheckFailed, match=r"unwritten\(\) is still to be written"):
         value(unwritten, "unwritten()")
+
+
+def test_a_callback_that_is_a_coroutine_is_begun_and_another_function_is_not(workspace: Workspace) -> None:
+    steps = (call("Node"), callback("breaks", on=0), callback("waits", on=0), call("breaks", on=0))
+    _, broken, waiting, called = calls(workspace, "demo", *steps)
+    assert (broken.raised, broken.message, waiting.raised, waiting.type) == ("ValueError", "a bug", "", "")
+    assert (called.raised, called.type) == ("", "coroutine")
 
 
 def test_another_module_can_take_part(workspace: Workspace) -> None:

@@ -11,7 +11,7 @@ from autograder.run.sandbox import Ending, Process
 
 _LINES = 25
 _FRAME = re.compile(r"^  File .*, in (\w+)$", re.MULTILINE)
-
+_GENERATED = re.compile(r'/(?:msg|srv|action)/_\w{1,200}\.py", line \d')  # a module of an interface
 _PHASES = {
     "import": (Kind.CRASHED_AT_IMPORT, "Your module could not be imported"),
     "start": (Kind.CRASHED_AT_START, "Your node crashed while it was being set up, before it started to spin"),
@@ -43,6 +43,12 @@ _LIMITS = {
 def diagnose_crash(crash: Crash) -> Diagnosis:
     """Return the diagnosis of a reported exception; syntax errors and unwritten exercises have their own."""
     trace = tail(own_frames(crash.traceback))
+    if crash.type == "SyntaxError" and _GENERATED.search(crash.traceback):
+        sentence = (
+            f"Python cannot read what rosidl made of one of your definitions: {crash.message}. rosidl writes no empty "
+            "array, [], as a default: leave it out, since an array without a default is empty."
+        )
+        return Diagnosis(Kind.CRASHED_AT_IMPORT, sentence, trace)
     if crash.type in ("SyntaxError", "IndentationError", "TabError"):
         return Diagnosis(
             Kind.SYNTAX_ERROR,

@@ -133,6 +133,11 @@ def test_the_start_and_the_end_of_a_long_log_are_read(part: str) -> None:
             "CMakeLists.txt:6: No package std_msg.",
         ),
         (
+            "CMake Error at CMakeLists.txt:3:\n  Parse error.  Expected a newline, got identifier with text\n"
+            '  "find_package".\n\n\n-- Configuring incomplete, errors occurred!\n',
+            'CMakeLists.txt:3: Parse error. Expected a newline, got identifier with text "find_package".',
+        ),
+        (
             "CMake Error at /opt/ros/lint.cmake:45 (message):\n  no linter there\n"
             "Call Stack (most recent call first):\n  /opt/hook.cmake:9 (lint)\n  CMakeLists.txt:21 (ament_package)\n",
             "CMakeLists.txt:21: no linter there",

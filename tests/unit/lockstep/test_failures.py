@@ -49,6 +49,13 @@ def test_a_syntax_error_has_its_own_diagnosis(kind: str) -> None:
     assert "Python cannot read your file: expected ':' (robot.py, line 7). Fix that line" in diagnosis.sentence
 
 
+def test_a_module_that_rosidl_made_is_not_called_the_student_s_file() -> None:
+    trace = '  File "/ws/install/msgs/lib/python3/site-packages/msgs/msg/_status.py", line 72\n    x = []\n'
+    diagnosis = diagnose_crash(Crash("import", "SyntaxError", "invalid syntax (_status.py, line 72)", trace))
+    assert diagnosis.kind is Kind.CRASHED_AT_IMPORT
+    assert "what rosidl made of one of your definitions: invalid syntax (_status.py, line 72)" in diagnosis.sentence
+
+
 def test_an_exception_without_a_message_is_shown_by_its_type() -> None:
     assert "running: AssertionError. The last" in diagnose_crash(Crash("spin", "AssertionError", "", "")).sentence
 

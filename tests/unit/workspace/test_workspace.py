@@ -35,6 +35,11 @@ def test_a_missing_executable_is_reported_with_the_installed_ones(
     assert "console_scripts in setup.py" in caught.value.diagnosis.sentence
 
 
+def test_a_package_that_was_not_built_is_not_said_to_lack_a_program(workspace: Workspace) -> None:
+    with pytest.raises(StudentError, match="The package torn was not built, so it has no program robot: read"):
+        workspace.executable("torn", "robot")
+
+
 def test_programs_get_a_separate_environment(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SECRET", "of the grader")
     environment = workspace.environment()

@@ -6,7 +6,7 @@ from typing import Any
 
 from autograder.checks.ch07_best_practices.support.contract import ROBUST
 from autograder.harness import Workspace
-from autograder.probes.calls import Plan, StepResult, call, calls, made
+from autograder.probes.calls import Plan, StepResult, call, callback, calls, made
 from autograder.probes.parameters import override_arguments
 
 BUGS = ("AttributeError", "RuntimeError", "OSError", "ValueError")  # OSError is the base class of the given SensorError
@@ -31,9 +31,9 @@ def with_bugs(workspace: Workspace) -> tuple[dict[str, tuple[StepResult, StepRes
             effect: dict[str, Any] = {"random.side_effect": made(add(call(bug, "a bug", module="builtins")))}
             generator = add(call("Mock", module="unittest.mock", **effect))
         node = add(call("RobustNode", generator=made(generator), namespace="hall"))
-        numbers[bug] = node, add(call("timer_callback", on=node)), add(call("get_namespace", on=node))
+        numbers[bug] = node, add(callback("timer_callback", on=node)), add(call("get_namespace", on=node))
     seed = ["--ros-args", *override_arguments({"seed": 5})]
     node = add(call("RobustNode", generator=made(generator), cli_args=seed))
-    add(call("timer_callback", on=node))
+    add(callback("timer_callback", on=node))
     results = calls(workspace, ROBUST, *plan.steps, network=True)
     return {bug: (results[a], results[b], results[c]) for bug, (a, b, c) in numbers.items()}, results[-1]

@@ -6,6 +6,7 @@ import random
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from statistics import fmean
 from typing import Any
 
 import numpy as np
@@ -91,20 +92,23 @@ class Drives:
 
 
 class Pace:
-    """How fast a robot drives and turns where it is fastest, as a share of the contract's speeds."""
+    """How fast a robot drives and turns on average while it does, as a share of the contract's speeds."""
 
     def __init__(self) -> None:
-        self._speed = self._rate = 0.0
+        self._speeds: list[float] = []
+        self._rates: list[float] = []
 
     def see(self, state: State) -> None:
         """Look at one more state of its drive."""
         velocity = state.robots[0].velocity
-        self._speed, self._rate = max(self._speed, velocity.linear), max(self._rate, abs(velocity.angular))
+        for seen, now in ((self._speeds, velocity.linear), (self._rates, abs(velocity.angular))):
+            if now > STILL:
+                seen.append(now)
 
     @property
     def share(self) -> float:
         """The lesser of both shares, from `SLOWEST` to 1; what it has not done yet counts as 1."""
-        shares = (done / most for done, most in ((self._speed, SPEED), (self._rate, TURN)) if done > STILL)
+        shares = (fmean(seen) / most for seen, most in ((self._speeds, SPEED), (self._rates, TURN)) if seen)
         return max(SLOWEST, min(1.0, *shares, 1.0))
 
 

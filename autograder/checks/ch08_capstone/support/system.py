@@ -234,7 +234,7 @@ def expect_driving(
 ) -> None:
     """Fail the check unless the commands drive forward, at most at `fastest` m/s.
 
-    Who stands still now and then has an error that one check sees, which asks whether it drives `always`.
+    Who stands still now and then has an error that few checks see, which ask whether it drives `always`.
     """
     expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should drive.")
     bad = next((c for c in _judged(commands, always) if not 0.0 < c.message.linear.x <= fastest + TOLERANCE), None)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from random import Random
 
@@ -10,7 +10,8 @@ import pytest
 
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import COOL, GUARD, LAUNCH_FILE, PACKAGE, PROGRAMS
-from autograder.checks.ch09_assessment.support.robot import Types
+from autograder.checks.ch09_assessment.support.robot import Types, require_built
+from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
@@ -36,8 +37,9 @@ class Launched:
 
 
 @pytest.fixture(scope="module")
-def launched(workspace: Workspace, types: Types, hot: int) -> Iterator[Launched]:
+def launched(workspace: Workspace, builds: Mapping[str, Diagnosis], types: Types, hot: int) -> Iterator[Launched]:
     """One launch, for all checks of this module; a second one if the guard refuses a whole number."""
+    require_built(builds, PACKAGE)
     there = look(workspace.install, PACKAGE).shared
     expect(f"launch/{LAUNCH_FILE}" in there, f"launch/{LAUNCH_FILE} is not installed: look at data_files in setup.py.")
     listens = {"/decision": types.decision}

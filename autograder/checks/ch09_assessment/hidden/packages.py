@@ -25,6 +25,7 @@ check = group("packages")
 
 @check(points=2, holds=("temperature", "decision"), doc=contract.INTERFACES_DOC)
 @hint("Compare with the table of the messages, letter by letter.", "The order of the fields counts, too.")
+@hint("The table has no default, which is a value behind the name of a field.")
 def test_definitions(workspace: Workspace) -> None:
     """Both messages have the fields of the contract."""
     expect_definitions(workspace)
