@@ -68,7 +68,7 @@ def test_generated_mutants_of_each_chapter_are_killed_or_have_a_reason(assignmen
 def test_a_patched_build_of_the_reference_is_graded_like_a_real_build(workers: WorkerPool) -> None:
     found = [mutant for mutant in generated_mutants("02_nodes").mutants if mutant.operator == "no publish"]
     with prepared_run("02_nodes", workers, 2026) as run:
-        assert run.ways["patched"] == {check.id for check in suites.hidden("02_nodes").checks}
+        assert run.shortcuts["patched"] == {check.id for check in suites.hidden("02_nodes").checks}
         patched = [run.run_mutant(mutant).killer for mutant in found]
-        run.ways = {"patched": frozenset(), "unbuilt": frozenset()}
+        run.shortcuts = {"patched": frozenset(), "unbuilt": frozenset()}
         assert [run.run_mutant(mutant).killer for mutant in found] == patched
