@@ -27,16 +27,13 @@ from autograder.ros import find
 from autograder.ros.environment import LOGS_TO_STDOUT, path_with_scripts, without_wheel_bootstrap
 from autograder.ros.launch_packages import describe_launch
 from autograder.run.sandbox import best_tier
+from autograder.run.sandbox.cell import passed_variables
 from autograder.suite import fingerprint
 
 CACHE = "checks"
 MOST = 100  # stored files, one for each chapter of a workspace
 # These differ between a kernel and a terminal, and a workspace's programs get their own values.
 _IGNORED = frozenset({"ROS_DOMAIN_ID", "ROS_LOG_DIR", "PYTHONDONTWRITEBYTECODE", *LOGS_TO_STDOUT})
-_VARIABLES = (
-    *("PATH", "LANG", "LC_", "TZ", "PYTHON", "LD_LIBRARY_PATH", "AUTOGRADER_", "AMENT_", "CMAKE_PREFIX_PATH"),
-    *("COLCON_", "FASTDDS_", "FASTRTPS_", "RCUTILS_", "RMW_", "ROS_"),
-)
 
 
 @dataclass(frozen=True)
@@ -172,7 +169,7 @@ def _environment() -> Mapping[str, Any]:
     installed = {name for folder in _site_packages() for name in _versions(folder)}
     own = without_wheel_bootstrap(os.environ)
     variables = {**ros.variables(log_dir=Path("/")), **own, "PATH": path_with_scripts()}
-    kept = {n: v for n, v in variables.items() if n.startswith(_VARIABLES) and n not in _IGNORED}
+    kept = {name: value for name, value in passed_variables(variables).items() if name not in _IGNORED}
     return {
         **identity(ros),
         "installed": sorted(installed),

@@ -96,7 +96,7 @@ def in_cell(
                 group = cgroup.make_nested(limits, user)
                 view = view if user is None else _reachable(view, scratch, user)
                 command = group.enter(bubblewrap.cell(command, view, scratch=scratch, user=user, groups=group.folders))
-                environment = {**_passed(environment), **_own(scratch, tier), "HOME": "/tmp", "TMPDIR": "/tmp"}
+                environment = {**passed_variables(environment), **_own(scratch, tier), "HOME": "/tmp", "TMPDIR": "/tmp"}
             elif gives_up_root(tier):
                 user = stack.enter_context(ordinary_user())
                 assert user is not None
@@ -107,7 +107,7 @@ def in_cell(
                 for folder in (scratch, *view.writable):
                     os.chown(folder, user, user)
                 command = [*bubblewrap.becoming(user), *command]
-                environment = {**_passed(environment), **_own(scratch, tier), "HOME": str(scratch)}
+                environment = {**passed_variables(environment), **_own(scratch, tier), "HOME": str(scratch)}
             # `python -m` imports from the folder it is started in, and that may hold submissions.
             place = Path("/")
             process = Process(command, limits, environment=environment, pass_fds=pass_fds, group=group, cwd=place)
@@ -145,7 +145,7 @@ def _own(scratch: Path, tier: Tier) -> dict[str, str]:
     return {TIER_VARIABLE: tier.value, "ROS_LOG_DIR": str(scratch / "ros-log"), **path}
 
 
-def _passed(environment: Mapping[str, str]) -> dict[str, str]:
+def passed_variables(environment: Mapping[str, str]) -> dict[str, str]:
     """Return the variables that a cell gets: a shell's others may hold keys, which are nobody's business in it."""
     return {name: value for name, value in environment.items() if name.startswith(_PASSED)}
 
