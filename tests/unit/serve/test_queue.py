@@ -42,6 +42,13 @@ class Desk:
             self.served.append(turn)
             self.turns[turn.student] = len(self.served)
 
+    def follow(self, events: list[str | None]) -> None:
+        for event in events:
+            if event is None:
+                self.serve()
+            else:
+                self.receive(event)
+
 
 def test_students_take_turns() -> None:
     assert order("aaabbc") == "abcaba"
@@ -101,11 +108,7 @@ def test_nobody_who_waits_is_overtaken_twice_by_the_same_student(events: list[st
 @given(EVENTS)
 def test_whenever_they_come_all_are_served_once(events: list[str | None]) -> None:
     desk = Desk()
-    for event in events:
-        if event is None:
-            desk.serve()
-        else:
-            desk.receive(event)
+    desk.follow(events)
     while desk.waiting:
         desk.serve()
     assert sorted(each.number for each in desk.served) == list(range(1, desk.came + 1))
@@ -114,11 +117,7 @@ def test_whenever_they_come_all_are_served_once(events: list[str | None]) -> Non
 @given(EVENTS)
 def test_the_order_that_is_announced_is_kept_if_nobody_comes(events: list[str | None]) -> None:
     desk = Desk()
-    for event in events:
-        if event is None:
-            desk.serve()
-        else:
-            desk.receive(event)
+    desk.follow(events)
     announced, before = list(in_order(desk.waiting, desk.turns)), len(desk.served)
     while desk.waiting:
         desk.serve()

@@ -51,7 +51,8 @@ def test_touches_nothing(drives: Drives, driving: System, gallery: Gallery) -> N
     metres = float(tracks.path(recording)[-1])
     _keep(gallery, driven, f"{metres:.1f} m in {driven.seconds:.0f} s, nothing touched.", rules)
     speeds = tracks.speeds(recording)
-    pace = min(SPEED, float(speeds[speeds > STANDS].mean())) if (speeds > STANDS).any() else 0.0
+    moving = speeds[speeds > STANDS]
+    pace = min(SPEED, float(moving.mean())) if moving.size else 0.0
     said = f"It touched nothing, but drove only {metres:.1f} m in {driven.seconds:.0f} s, at {pace:.2f} m/s on average."
     expect(pace > 0.0 and metres >= ROOM_SHARE * pace * driven.seconds, said)
     _expect_no_touch(driving)
