@@ -135,12 +135,17 @@ def chapter(assignment: str) -> Path:
     return folder
 
 
-def world(name: str) -> Path:
+def world_path(name: str) -> Path:
     """Return the path of a world of the course or of the simulator; a UsageError lists the existing ones."""
     there = {path.stem: path for folder in (SHARED_WORLDS, _folder("worlds")) for path in sorted(folder.glob("*.yaml"))}
     if name not in there:
         raise UsageError(f"there is no world {name!r}; there are: {', '.join(sorted(there))}")
     return there[name]
+
+
+def solution_path(package: str) -> Path:
+    """Return the folder of a package of the reference."""
+    return _folder("solutions") / package
 
 
 def assignments() -> list[str]:

@@ -11,8 +11,9 @@ The package of a chapter::
         variants/      right answers in another style
         attacks.py     optional: submissions that try to get points that they have not earned
 
-Visible checks and support import nothing hidden, and no conftest imports another. The release and the sandbox hold no
-`hidden` folder. The fixtures that every chapter has are those of `autograder.grade.plugin`.
+All of them import nothing of the autograder except `autograder.checking` and modules of their own or another chapter.
+Visible checks and support import nothing hidden, and no conftest imports another. Releases and sandboxes contain no
+`hidden` folder. Every chapter has the fixtures of `autograder.grade.plugin`.
 """
 
 from autograder import layout

@@ -18,9 +18,10 @@ from autograder.exceptions import DoubtfulError, StudentError
 from autograder.harness.goals import Actions, Goal, ReceivedMessage
 from autograder.harness.grader_node import NAME, GraderNode, OnMessage
 from autograder.harness.message_text import format_message
-from autograder.harness.steps import TICK_NS
+from autograder.harness.steps import FINEST_TICK_NS, TICK_NS
 from autograder.ros.discovery import PROFILES, PROFILES_VARIABLE
 from autograder.ros.domains import Domain
+from autograder.run.lockstep.failures import diagnose_ending
 from autograder.run.sandbox import Mount, Process
 from autograder.run.workspace import Workspace
 from autograder.submission.reading import hold
@@ -68,11 +69,13 @@ class Harness(ExitStack, ABC):
     Attributes:
         node: the grader's node; its graph functions show what the student's programs really offer.
         tick_ns: the step of ROS time that suits the programs' timers.
+        finest_tick_ns: the shortest step of ROS time, which suits any timer.
         optional: executables that may fail: the others run on without them.
         discovery_seconds: for how long the nodes were seen before the grader got their messages; 0 in lockstep.
     """
 
     tick_ns = TICK_NS
+    finest_tick_ns = FINEST_TICK_NS
     optional: frozenset[str] = frozenset()
     discovery_seconds = 0.0
 
@@ -165,6 +168,12 @@ class Harness(ExitStack, ABC):
         """What the programs have printed and logged so far."""
         hold("What your program printed")
         return "".join(process.output for process in self.processes)
+
+    def require_running(self) -> None:
+        """Raise the StudentError of the first program that has ended."""
+        for process in self.processes:
+            if process.ending is not None:
+                raise StudentError(diagnose_ending(process))
 
     def takes(self, topic: str) -> bool:
         """Return whether a program subscribes to a topic that the grader offers, with the right type."""

@@ -24,10 +24,9 @@ from autograder.harness.grader_node import DEPTH, GraderNode, OnMessage
 from autograder.harness.parameter_values import value_of
 from autograder.ros.domains import Domain
 from autograder.run.lockstep.failures import diagnose_ending
-from autograder.run.sandbox import Mount, Process, Sandbox
+from autograder.run.sandbox import Mount, Process, Sandbox, procfs
 from autograder.run.sandbox.launcher import launch
 from autograder.run.sandbox.limits import LAUNCH
-from autograder.run.sandbox.procfs import children, measure, parent
 from autograder.run.workspace import Workspace
 from autograder.submission.reading import hold, reading
 
@@ -47,6 +46,16 @@ class RunningProgram:
     pid: int
     package: str
     name: str
+
+    @property
+    def start_seconds(self) -> float | None:
+        """When it started, in s since the boot, up to `LaunchHarness.start_resolution` early; None if it has ended."""
+        return procfs.start_seconds(self.pid)
+
+    @property
+    def has_children(self) -> bool:
+        """Whether it has started another process."""
+        return bool(procfs.children(self.pid))
 
 
 @dataclass(frozen=True)
@@ -78,7 +87,9 @@ def sandbox(workspace: Workspace) -> Sandbox:
 
 
 class LaunchHarness(contextlib.ExitStack):
-    """A running `ros2 launch` and the grader's node, which talks with its nodes over DDS; a context manager.
+    """A running `ros2 launch` and the grader's node, which talks with its nodes over DDS. A context manager.
+
+    For example::
 
         with LaunchHarness(workspace, "bringup", "robot.launch.py", {"speed": "0.3"},
                        listens={"/cmd_vel": Twist}) as harness:
@@ -99,7 +110,10 @@ class LaunchHarness(contextlib.ExitStack):
 
     Attributes:
         another: makes a new harness for the same launch, not yet entered.
+        start_resolution: s by which `RunningProgram.start_seconds` may be early.
     """
+
+    start_resolution = procfs.TICK
 
     def __init__(
         self,
@@ -221,12 +235,12 @@ class LaunchHarness(contextlib.ExitStack):
         """
         found = self._processes()
         known = {(program.pid, program.package, program.name) for program in found}
-        return [each for each in found if (parent(each.pid), each.package, each.name) not in known]
+        return [each for each in found if (procfs.parent(each.pid), each.package, each.name) not in known]
 
     def _processes(self) -> list[RunningProgram]:
         """Return the processes that run executables of packages, in the order of their process ids."""
         found = []
-        for pid in sorted(measure(self.process.innermost()).pids):
+        for pid in sorted(procfs.measure(self.process.innermost()).pids):
             # A script is the second argument, behind its interpreter; a process that has ended has none.
             matches = (_PROGRAM.search(word) for word in _command_of(pid)[:2])
             found += [RunningProgram(pid, match["package"], match["name"]) for match in matches if match is not None]
@@ -245,14 +259,14 @@ class LaunchHarness(contextlib.ExitStack):
         """Do what Ctrl-C does; wait at most `seconds` of real time for the end."""
         if self.status is None:
             host = self.process.innermost()  # of `ros2`, its first child
-            os.kill(children(host)[0], signal.SIGINT)
+            os.kill(procfs.children(host)[0], signal.SIGINT)
         self.wait_for(lambda: self.status is not None, seconds)
         return Stop(self.status, self.left())
 
     def left(self) -> tuple[str, ...]:
         """Return the commands that are still running now that the launch has ended."""
         host = self.process.innermost()
-        pids = [pid for pid in measure(host).pids if pid != host and _command_of(pid)]
+        pids = [pid for pid in procfs.measure(host).pids if pid != host and _command_of(pid)]
         return tuple(" ".join(_command_of(pid)) for pid in pids) if self.status is not None else ()
 
 

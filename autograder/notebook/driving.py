@@ -130,7 +130,7 @@ def drive(
     if grading():
         return Notice("The robot stays in its dock while the notebook is graded.")
     robot = RobotSpec(radius=RADIUS, faults=_faults(faults))
-    world = world if isinstance(world, World) else load(layout.world(world))
+    world = world if isinstance(world, World) else load(layout.world_path(world))
     simulation = Simulation(world, (robot,), seed=seed)
     with run_in_worker(
         "drive",

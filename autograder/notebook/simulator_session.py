@@ -56,7 +56,7 @@ def simulator(
     Raises:
         UsageError: there is no such world.
     """
-    path = layout.world(world)
+    path = layout.world_path(world)
     session = SimulatorSession()
     if grading():
         yield session

@@ -74,6 +74,11 @@ class Report:
     known: frozenset[str] | None = None  # of a closed report: the tests in the student's source, `module::name`
 
     @property
+    def timed_out(self) -> bool:
+        """Whether the run was stopped because it took too long."""
+        return self.ending is Ending.WALL_TIME
+
+    @property
     def passed(self) -> bool:
         """Whether tests ran and each one passed."""
         return self.status == 0 and bool(self.executed) and not self.failed

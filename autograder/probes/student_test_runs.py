@@ -35,7 +35,7 @@ from autograder.probes.rtps_sniffer import RtpsSniffer
 from autograder.probes.student_test_reports import MAX_BYTES, Claims, Report, Source, TestRun, parse_claims
 from autograder.probes.versions import write_version
 from autograder.ros.domains import Domain
-from autograder.run.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier
+from autograder.run.sandbox import Limits, Mount, Process, Sandbox, Tier
 from autograder.run.sandbox.launcher import current_tier, launch
 from autograder.run.sandbox.limits import TEST_RUN
 from autograder.run.workspace import Workspace
@@ -79,7 +79,7 @@ def run(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun]) ->
     with ThreadPoolExecutor(JOBS) as pool:
         once = partial(_run, workspace, source)
         reports = list(pool.map(once, wanted_runs))
-        stopped = [place for place, report in enumerate(reports) if report.ending is Ending.WALL_TIME]
+        stopped = [place for place, report in enumerate(reports) if report.timed_out]
         files = Counter(wanted_runs[place].files for place in stopped)
         again = [place for place in stopped if files[wanted_runs[place].files] == 1]
         for place, report in zip(again, pool.map(once, [wanted_runs[place] for place in again]), strict=True):

@@ -18,7 +18,7 @@ from autograder.author.verification.cases import attacks
 from autograder.author.verification.claims import Attack, hidden_lines
 from autograder.author.verification.leaks import STOLEN, hidden_text_in, texts_of
 from autograder.author.verification.payloads import CANARY
-from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, all_checks
+from autograder.checks.ch02_nodes.attacks import CHAPTER
 from autograder.grade import grade_submission
 from autograder.grade.job import Job, Scope
 from autograder.grade.store import NOTEBOOK
@@ -64,8 +64,8 @@ def test_an_attack_gains_no_point_and_learns_nothing(
     if attack.id == "fork bomb" and "pids" not in cgroup.bounds():
         pytest.skip("root without control groups: a fork bomb stops the machine")
     monkeypatch.setenv("SECRET_OF_THE_GRADER", CANARY)
-    everything = assignment == ASSIGNMENT and attack.id not in STALLS
-    checks = all_checks() - (DRIVES - attack.loses) if everything else attack.loses
+    everything = assignment == CHAPTER.assignment and attack.id not in STALLS
+    checks = CHAPTER.checks - (DRIVES - attack.loses) if everything else attack.loses
     result = _grade(assignment, attack, checks, tmp_path)
     assert attack.verify(result, checks) == ""
 

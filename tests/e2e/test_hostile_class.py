@@ -15,7 +15,7 @@ from nbformat.v4 import new_code_cell, new_notebook
 
 from autograder.author.verification.cases import cases
 from autograder.author.verification.claims import Attack, CaseKind, first_sentence
-from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, CONTROLLER, PACKAGE, WRITEFILE, attacks, package_writer
+from autograder.checks.ch02_nodes.attacks import CHAPTER, CONTROLLER, PACKAGE, WRITEFILE, attacks, package_writer
 from autograder.grade.store import NOTEBOOK, RESULT
 from autograder.result.model import Result, from_json
 from autograder.run.sandbox import cgroup
@@ -49,7 +49,7 @@ def write_notebook(folder: Path) -> None:
     (folder / "submission").mkdir()
     nbformat.write(
         new_notebook(cells=[new_code_cell(WRITEFILE + text, id="answer")]),
-        folder / "submission" / f"{ASSIGNMENT}.ipynb",
+        folder / "submission" / f"{CHAPTER.assignment}.ipynb",
     )
 
 
@@ -58,7 +58,7 @@ def honest(number: int) -> Writers:
     broken = package_writer(None, files={"setup.py": "print('it begins')\nraise ValueError('no version')\n"})
     own: Writers = [("notebook", write_notebook), ("slow", package_writer("five_hertz")), ("no build", broken)]
     kinds = (CaseKind.REFERENCE, CaseKind.VARIANT, CaseKind.MUTANT)
-    return [*own, *((case.name, case.write) for case in cases(ASSIGNMENT) if case.kind in kinds)][:number]
+    return [*own, *((case.name, case.write) for case in cases(CHAPTER.assignment) if case.kind in kinds)][:number]
 
 
 def hostile(names: Iterable[str]) -> Writers:
@@ -72,7 +72,7 @@ def graded(place: Path, writers: Writers, only: tuple[str, ...]) -> dict[str, Re
     for student, write in writers:
         write(folder := place / "submitted" / student)
         submissions[student] = folder / "submission" if (folder / "submission").is_dir() else folder
-    grade_monitored(place, ASSIGNMENT, submissions, only)
+    grade_monitored(place, CHAPTER.assignment, submissions, only)
     stored = {student: place / "results" / student / RESULT for student, _ in writers}
     return {student: from_json(json.loads(path.read_text())) for student, path in stored.items()}
 
@@ -112,7 +112,7 @@ def require_held(results: dict[str, Result], only: tuple[str, ...]) -> None:
 def test_attackers_do_not_change_the_results_of_other_students(
     tmp_path: Path, size: int, names: tuple[str, ...], checks: tuple[str, ...]
 ) -> None:
-    only = suites.hidden(ASSIGNMENT).with_dependencies(*checks)
+    only = suites.hidden(CHAPTER.assignment).with_dependencies(*checks)
     good, bad = honest(size), hostile(names)
     mixed = [*(one for pair in zip(bad, good, strict=False) for one in pair), *good[len(bad) :]]  # at the same time
     graded(tmp_path / "without", good, only)
@@ -135,7 +135,7 @@ def write_one_of_many(attack: Attack, number: int, folder: Path) -> None:
 @pytest.mark.timeout(7200)
 @pytest.mark.parametrize("size", [200])
 def test_many_attacks_in_a_row_leave_nothing_on_the_machine(tmp_path: Path, size: int) -> None:
-    only = suites.hidden(ASSIGNMENT).with_dependencies(*FEW)
+    only = suites.hidden(CHAPTER.assignment).with_dependencies(*FEW)
     row = [
         (f"{attack.id}, {number}", partial(write_one_of_many, attack, number))
         for number, attack in enumerate(islice(cycle(ATTACKS.values()), size))

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from autograder.author.course.forms import CODE_STUB
-from autograder.building.interfaces import load_from
+from autograder.building.interfaces import load_interfaces
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from tests.e2e.cell_support import in_cell
@@ -61,8 +61,8 @@ def talk(scratch: Path) -> dict[str, Any]:
     (outer / "msg").mkdir(parents=True)
     (outer / "package.xml").write_text(f"<package format='3'><name>{OUTER}</name></package>")
     (outer / "msg" / "Fleet.msg").write_text(f"{PACKAGE}/RobotStatus[] robots\n")
-    fleet = load_from(workspace, OUTER).msg.Fleet
-    module = load_from(workspace, PACKAGE)
+    fleet = load_interfaces(workspace, OUTER).msg.Fleet
+    module = load_interfaces(workspace, PACKAGE)
     kind, heard = module.msg.RobotStatus, []
     rclpy.init()
     node = rclpy.create_node("grader")
@@ -102,18 +102,18 @@ def test_a_wrong_definition_is_a_student_error(tmp_path: Path, line: str, words:
     workspace = _workspace(tmp_path)
     (workspace.root / "src" / PACKAGE / "msg" / "RobotStatus.msg").write_text(f"{line}\n")
     with pytest.raises(StudentError) as caught:
-        load_from(workspace, PACKAGE)
+        load_interfaces(workspace, PACKAGE)
     assert caught.value.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
     assert all(word in caught.value.diagnosis.sentence for word in words), caught.value.diagnosis.sentence
 
 
 def test_a_missing_package_is_named(tmp_path: Path) -> None:
     with pytest.raises(StudentError, match=r"ghost_msgs is missing: src holds my_robot_interfaces\."):
-        load_from(_workspace(tmp_path), "ghost_msgs")
+        load_interfaces(_workspace(tmp_path), "ghost_msgs")
 
 
 def test_an_unwritten_definition_is_reported_as_unwritten(tmp_path: Path) -> None:
     workspace = _workspace(tmp_path)
     (workspace.root / "src" / PACKAGE / "msg" / "RobotStatus.msg").write_text(CODE_STUB)
     with pytest.raises(StudentError, match=r"msg/RobotStatus\.msg is still to be written"):
-        load_from(workspace, PACKAGE)
+        load_interfaces(workspace, PACKAGE)

@@ -38,7 +38,7 @@ def test_a_student_checks_a_chapter_by_the_installed_wheel(tmp_path: Path) -> No
                 shutil.rmtree(part) if part.is_dir() else part.unlink()
     shutil.rmtree(bundle / "assets" / "worlds")
     chapter = bundle / "chapters" / CHAPTER
-    names = "from autograder import layout; print(*(layout.world(name) for name in ('maze', 'office')))"
+    names = "from autograder import layout; print(*(layout.world_path(name) for name in ('maze', 'office')))"
     for world in run(fresh / "bin" / "python", "-c", names, cwd=chapter).split():
         assert Path(world).is_relative_to(fresh)
     shutil.copytree(layout.SOLUTIONS / PACKAGE, chapter / "ws" / "src" / PACKAGE, dirs_exist_ok=True)

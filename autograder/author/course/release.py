@@ -28,7 +28,8 @@ STUDENT_FILES = layout.ROOT / "assets" / "students"  # the README and the Makefi
 STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})
 # The command-line modules that students get: their verbs and the dependencies of these.
 STUDENT_CLI = frozenset({"__init__.py", "options.py", "terminal.py", "check.py", "doctor.py", "ros.py", "update.py"})
-WITHHELD = ("author/course", "author/verification", "grade/cluster", "lms", "report")  # parts for instructors only
+# The folders and modules for instructors only.
+WITHHELD = ("author/course", "author/verification", "checking/attacks.py", "grade/cluster", "lms", "report")
 
 
 def write_bundle(out: Path, names: tuple[str, ...] = (), newest: str = "") -> list[str]:
@@ -84,8 +85,8 @@ def _copy(root: Path, parts: Iterable[str], folder: Path) -> None:
 
 def _withhold(bundle: Path) -> None:
     tool = bundle / "autograder"
-    for name in WITHHELD:
-        shutil.rmtree(tool / name)
+    for path in (tool / name for name in WITHHELD):
+        shutil.rmtree(path) if path.is_dir() else path.unlink()
     for module in (tool / "cli").iterdir():
         if module.name not in STUDENT_CLI:
             module.unlink()

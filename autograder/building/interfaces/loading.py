@@ -21,7 +21,7 @@ Texts = tuple[tuple[str, str], ...]
 """Definitions by their paths in a package, such as `msg/RobotStatus.msg`, sorted."""
 
 
-def load_from(workspace: Workspace, package: str) -> Any:
+def load_interfaces(workspace: Workspace, package: str) -> Any:
     """Return the classes of an interface package of a student's workspace: `.msg.Name`, `.srv.Name`, `.action.Name`.
 
     They are the same objects for the same texts.

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from autograder.author.verification.attack_writer import Chapter
-from autograder.author.verification.claims import Attack
-from autograder.author.verification.payloads import BLOCK_REPORT, FORGE_REPORT, STEAL_SECRETS, TELL_ALL
+from autograder.checking.attacks import BLOCK_REPORT, FORGE_REPORT, STEAL_SECRETS, TELL_ALL, Attack, Chapter
 
 CHAPTER = Chapter("01_package_structure")
 SETUP, TESTS = "square_dance/setup.py", "square_dance/test"

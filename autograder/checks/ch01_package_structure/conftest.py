@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import pytest
 
+from autograder.checking import Workspace
+from autograder.checking.probes import installed
 from autograder.checks.ch01_package_structure.support import contract
-from autograder.harness import Workspace
-from autograder.probes.installed import Installed, look
 
 
 @pytest.fixture(scope="session")
-def installed_dance(workspace: Workspace) -> Installed:
+def installed_dance(workspace: Workspace) -> installed.Installed:
     """What was installed of the package that the student makes."""
-    return look(workspace.install, contract.SQUARE_DANCE)
+    return installed.look(workspace.install, contract.SQUARE_DANCE)
 
 
 @pytest.fixture(scope="session")
-def installed_alarm(workspace: Workspace) -> Installed:
+def installed_alarm(workspace: Workspace) -> installed.Installed:
     """What was installed of the package that the student repairs."""
-    return look(workspace.install, contract.WALL_ALARM)
+    return installed.look(workspace.install, contract.WALL_ALARM)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.author.verification.payloads import FORGE_PASSES, STEAL_SECRETS
+from autograder.checking.attacks import FORGE_PASSES, STEAL_SECRETS
 
 PACKAGE = "my_robot_package"
 

@@ -11,9 +11,8 @@ from pathlib import Path
 import nbformat
 from nbformat.v4 import new_code_cell, new_notebook
 
-from autograder.author.verification.claims import Attack
-from autograder.author.verification.mutants import Mutant, mutants, write_mutant, write_reference
-from autograder.author.verification.payloads import FORGE_PASSES, HOLD_KERNEL, STEAL_SECRETS, STOP_PARENT
+from autograder.checking import Kind
+from autograder.checking.attacks import FORGE_PASSES, HOLD_KERNEL, STEAL_SECRETS, STOP_PARENT, Attack, Chapter
 from autograder.checks.ch02_nodes.attack_payloads import (
     CALL_SPOOF,
     FORGE_PROTOCOL,
@@ -27,23 +26,11 @@ from autograder.checks.ch02_nodes.attack_payloads import (
     PUBLISH_NAN,
     SPOOF_ROS,
 )
-from autograder.diagnosis import Kind
-from autograder.suite import suites
 
-ASSIGNMENT = "02_nodes"
+CHAPTER = Chapter("02_nodes")
 CONTROLLER = f"{PACKAGE}/nodes/robot_controller.py"
 LEAVE_LINK = "import os\nif not os.path.islink('../../install/all'): os.symlink('/', '../../install/all')\n"
 WRITEFILE = f"%%writefile ws/src/{PACKAGE}/{CONTROLLER}\n"
-
-
-def all_checks() -> frozenset[str]:
-    """Return the ids of every check."""
-    return frozenset(check.id for check in suites.hidden(ASSIGNMENT).checks)
-
-
-def mutant(name: str) -> Mutant:
-    """Return a mutant by its name."""
-    return next(found for found in mutants(ASSIGNMENT) if found.id == name)
 
 
 def package_writer(
@@ -65,10 +52,7 @@ def package_writer(
     """
 
     def write(folder: Path) -> None:
-        if base is None:
-            write_reference((PACKAGE,), folder)
-        else:
-            write_mutant(mutant(base), (PACKAGE,), folder)
+        CHAPTER.write(base)(folder)
         home = folder / "src" / PACKAGE
         text = (home / CONTROLLER).read_text()
         for find, put in replace.items():
@@ -96,15 +80,15 @@ def notebook_writer(*cells: str, base: str | None = None) -> Callable[[Path], No
             fake.metadata.nbgrader = {"grade_id": "grade-timing", "grade": True, "points": 0.0, "solution": True}
         book = new_notebook(cells=[*(new_code_cell(cell) for cell in cells), exercise, *fakes])
         (folder / "submission").mkdir()
-        nbformat.write(book, folder / "submission" / f"{ASSIGNMENT}.ipynb")
+        nbformat.write(book, folder / "submission" / f"{CHAPTER.assignment}.ipynb")
 
     return write
 
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks. One submission combines attacks that do not disturb each other."""
-    slow, blind = mutant("five_hertz").fails, mutant("drives_blind").fails
-    everything = all_checks()
+    slow, blind = CHAPTER.mutant("five_hertz").fails, CHAPTER.mutant("drives_blind").fails
+    everything = CHAPTER.checks
     return (
         Attack(
             "thief",

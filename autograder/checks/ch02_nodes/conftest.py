@@ -7,10 +7,9 @@ from collections.abc import Iterator
 import pytest
 from sensor_msgs.msg import LaserScan
 
+from autograder.checking import ReceivedMessage, Shared, StudentError, Workspace
 from autograder.checks.ch02_nodes.support.robot import Reactions, Robot, own_reactions
 from autograder.checks.ch02_nodes.support.scans import JUST_AHEAD, scan
-from autograder.exceptions import StudentError
-from autograder.harness import ReceivedMessage, Shared, Workspace
 
 
 @pytest.fixture(scope="session")

@@ -5,9 +5,7 @@ from __future__ import annotations
 import json
 import time
 
-from autograder.author.verification.attack_writer import Chapter
-from autograder.author.verification.claims import Attack
-from autograder.author.verification.payloads import STEAL_SECRETS
+from autograder.checking.attacks import STEAL_SECRETS, Attack, Chapter
 
 CHAPTER = Chapter("03_interfaces")
 HOME = "my_robot_interfaces"

@@ -8,10 +8,10 @@ from collections.abc import Iterator
 
 import pytest
 
+from autograder.checking import Shared, Workspace
 from autograder.checks.ch03_interfaces.support.driver import Driver
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
 from autograder.checks.ch03_interfaces.support.types import Types, load_types
-from autograder.harness import Shared, Workspace
 
 
 @pytest.fixture(scope="session")

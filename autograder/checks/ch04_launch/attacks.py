@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.author.verification.attack_writer import Chapter
-from autograder.author.verification.claims import Attack
-from autograder.author.verification.payloads import FORGE_PASSES, SEARCH, STOP_PARENT
+from autograder.checking.attacks import FORGE_PASSES, SEARCH, STOP_PARENT, Attack, Chapter
 
 CHAPTER = Chapter("04_launch")
 ROBOT, SAFE = (f"my_robot_bringup/launch/{name}.launch.py" for name in ("robot", "safe_start"))

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.author.verification.attack_writer import Chapter
-from autograder.author.verification.claims import Attack
-from autograder.author.verification.payloads import STEAL_SECRETS
+from autograder.checking.attacks import STEAL_SECRETS, Attack, Chapter
 
 CHAPTER = Chapter("05_parameters")
 PACKAGE = "my_robot_package"

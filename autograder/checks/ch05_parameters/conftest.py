@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import pytest
 
+from autograder.checking import Shared, Workspace
 from autograder.checks.ch05_parameters.support.robot import Robot, restore
-from autograder.harness import Shared, Workspace
 
 
 @pytest.fixture(scope="session")

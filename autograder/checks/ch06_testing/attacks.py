@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from autograder import layout
-from autograder.author.verification.attack_writer import Chapter
-from autograder.author.verification.claims import Attack
-from autograder.author.verification.payloads import FORGE_REPORT, SEARCH, TELL_ALL
+from autograder.checking import solution_path
+from autograder.checking.attacks import FORGE_REPORT, SEARCH, TELL_ALL, Attack, Chapter
 
 CHAPTER = Chapter("06_testing")
 TESTS, MODULE = "speed_guard/test", "speed_guard/speed_guard/limits.py"
@@ -117,7 +115,7 @@ def test_it_is_the_own_one(number):
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
-    released = (layout.SOLUTIONS / "speed_guard/speed_guard/limits.py").read_text(encoding="utf-8")
+    released = (solution_path("speed_guard") / "speed_guard/limits.py").read_text(encoding="utf-8")
     limits, function = f"{TESTS}/test_limits.py", released[released.index("def ") :]
     return (
         Attack(

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import pytest
 
+from autograder.checking import Workspace
 from autograder.checks.ch07_best_practices.support.robot import Processor
-from autograder.harness import Workspace
 
 
 @pytest.fixture(scope="module")

@@ -2,14 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.author.verification.attack_writer import Chapter
-from autograder.author.verification.claims import Attack
-from autograder.author.verification.payloads import (
-    FORGE_PASSES,
-    FORGE_VERDICTS,
-    STEAL_SECRETS,
-    TELL_ALL,
-)
+from autograder.checking.attacks import FORGE_PASSES, FORGE_VERDICTS, STEAL_SECRETS, TELL_ALL, Attack, Chapter
 
 CHAPTER = Chapter("08_capstone")
 PACKAGE = "robot_navigation_tutorial"

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import pytest
 
+from autograder.checking import Workspace
 from autograder.checks.ch08_capstone.support.contract import PROGRAMS
 from autograder.checks.ch08_capstone.support.system import SharedSystem, System
-from autograder.harness import Workspace
 
 
 @pytest.fixture(scope="session")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from autograder.checking import Workspace
 from autograder.checks.ch09_assessment.support.robot import NodeHarness, Start, Types
-from autograder.harness import Workspace
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.building.interfaces.loading import load_from
+from autograder.building.interfaces.loading import load_interfaces
 from autograder.exceptions import StudentError
 from autograder.ros import find
 from autograder.run.workspace import Workspace
@@ -26,6 +26,6 @@ def workspace(tmp_path: Path) -> Workspace:
 
 
 def test_arrays_are_multiplied_through_all_packages_of_a_submission(workspace: Workspace) -> None:
-    assert load_from(workspace, "sample_msgs").msg.M.__name__ == "M"
+    assert load_interfaces(workspace, "sample_msgs").msg.M.__name__ == "M"
     with pytest.raises(StudentError, match=r"src/many_msgs: msg/M\.msg.*arrays of more than 100000 elements"):
-        load_from(workspace, "most_msgs")
+        load_interfaces(workspace, "most_msgs")

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 
+from autograder.checking import Shared, Workspace
 from autograder.checks.chNEW_CHAPTER.support.robot import Robot
-from autograder.harness import Shared, Workspace
 
 
 @pytest.fixture(scope="session")

@@ -6,9 +6,8 @@ import math
 
 from geometry_msgs.msg import Twist
 
-from autograder.harness import SteppedHarness, Workspace
-from autograder.probes.calls import call, calls, value
-from autograder.suite import expect, group, hint
+from autograder.checking import SteppedHarness, Workspace, expect, group, hint
+from autograder.checking.probes import calls
 
 check = group("square")
 MODULE = "first_robot.square"
@@ -58,8 +57,8 @@ def test_robot(workspace: Workspace) -> None:
 
 def _expect(workspace: Workspace, seconds: float, linear: float, angular: float) -> None:
     shown = f"command_at({seconds:g})"
-    (outcome,) = calls(workspace, MODULE, call("command_at", seconds))
-    got = value(outcome, shown)
+    (outcome,) = calls.calls(workspace, MODULE, calls.call("command_at", seconds))
+    got = calls.value(outcome, shown)
     pair = isinstance(got, list) and len(got) == 2 and all(isinstance(x, int | float) for x in got)
     expect(pair, f"{shown} returned {got} instead of two numbers.")
     right = _near(got[0], linear) and _near(got[1], angular)

@@ -6,8 +6,8 @@ import random
 
 import pytest
 
+from autograder.checking import Workspace
 from autograder.checks.ch01_package_structure.support.added_files import ExtendedPackage, extend
-from autograder.harness import Workspace
 
 WORDS = ("waltz", "polka", "samba", "rumba", "tango", "foxtrot")
 

@@ -9,15 +9,9 @@ import random
 from dataclasses import dataclass
 from pathlib import Path
 
-from autograder import layout
+from autograder.checking import Workspace, expect, solution_path
+from autograder.checking.probes import fault_injection, given_files, student_test_reports, student_test_runs, versions
 from autograder.checks.ch01_package_structure.support import contract
-from autograder.harness import Workspace
-from autograder.probes import student_test_runs
-from autograder.probes.fault_injection import UNTIDY, expect_failures
-from autograder.probes.given_files import changed_files
-from autograder.probes.student_test_reports import Source, TestRun, shown_name
-from autograder.probes.versions import planted, read, read_files
-from autograder.suite import expect
 
 HINTS = (
     "The tests were right from the start, the linters' too: take them as they were given.",
@@ -75,15 +69,19 @@ def expect_given_tests(workspace: Workspace, given: Given) -> None:
     absent = [name for name in files if name not in taken.tests]
     expect(not absent, f"test/ of {given.package} has no {' and no '.join(absent)} any more.")
     kept = {name: data for name, data in taken.files.items() if name.removeprefix("test/") in (name, *files)}
-    source = Source(given.package, kept)  # of test/ the given files alone
-    right = planted(read(layout.SOLUTIONS / given.package, {}), random.Random())
-    (report,) = student_test_runs.run(workspace, source, [TestRun(files, right, conftest=False)])
-    failed = " and ".join(dict.fromkeys(map(shown_name, report.failed)))
+    source = student_test_reports.Source(given.package, kept)  # of test/ the given files alone
+    right = versions.planted(versions.read(solution_path(given.package), {}), random.Random())
+    (report,) = student_test_runs.run(workspace, source, [student_test_reports.TestRun(files, right, conftest=False)])
+    failed = " and ".join(dict.fromkeys(map(student_test_reports.shown_name, report.failed)))
     expect(not failed, f"The checks ran your tests on a right {given.package}, and {failed} failed.")
-    expect_failures(workspace, source, given.tests, {given.module: UNTIDY + given.faulty})
+    fault_injection.expect_failures(
+        workspace, source, given.tests, {given.module: fault_injection.UNTIDY + given.faulty}
+    )
     # The linter tests of `ros2 pkg create` may be the student's own, and so may each __init__.py.
     own = {name for name, imported in IMPORTED.items() if given is DANCE and imported in taken.files.get(name, b"")}
-    changed = changed_files(taken.files, read_files(layout.SOLUTIONS / given.package), (given.package, *FOLDERS))
+    changed = given_files.changed_files(
+        taken.files, versions.read_files(solution_path(given.package)), (given.package, *FOLDERS)
+    )
     changed = [name for name in changed if name not in own and Path(name).name != "__init__.py"]
     said = f"In {given.package}, {' and '.join(changed[:3])} should be as given, and was changed or deleted."
     expect(not changed, said, fraction=0.5)

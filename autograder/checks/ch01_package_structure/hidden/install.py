@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from autograder.checking import Diagnosis, Workspace, expect, group, hint
+from autograder.checking.probes import installed, packaging
 from autograder.checks.ch01_package_structure.hidden.given import DANCE, HINTS, expect_given_tests
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.checks.ch01_package_structure.support.added_files import ExtendedPackage
@@ -17,11 +19,6 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     read_manifest,
     source_of,
 )
-from autograder.diagnosis import Diagnosis
-from autograder.harness import Workspace
-from autograder.probes.installed import Installed
-from autograder.probes.packaging import expect_installs_itself, expect_pytest, expect_same_facts
-from autograder.suite import expect, group, hint
 
 check = group("install")
 
@@ -37,20 +34,20 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
 @check(points=1, holds=("files", "empty-files"), needs=("builds",), doc=contract.DEVELOP)
 @hint("ros2 finds a package by an empty file of its name in share/ament_index/resource_index/packages.")
 @hint("data_files: that folder with ['resource/' + package_name], 'share/' + package_name with ['package.xml'].")
-def test_marker(workspace: Workspace, installed_dance: Installed) -> None:
+def test_marker(workspace: Workspace, installed_dance: installed.Installed) -> None:
     """setup.py installs the marker by which ROS finds the package, and package.xml; what should be empty is."""
     expect(
         installed_dance.marker,
         "The ament index does not know square_dance: ros2 run would say that the package is not found.",
     )
-    expect_installs_itself(installed_dance)
+    packaging.expect_installs_itself(installed_dance)
     expect_empty(source_of(workspace, contract.SQUARE_DANCE), contract.EMPTY_FILES)
 
 
 @check(points=1, holds="program", needs=("builds",), doc=contract.DEVELOP)
 @hint("console_scripts in setup.py says which programs there are, setup.cfg says where they go.")
 @hint("dancer = square_dance.nodes.dancer:main, and install_scripts=$base/lib/square_dance under [install].")
-def test_executable(workspace: Workspace, installed_dance: Installed) -> None:
+def test_executable(workspace: Workspace, installed_dance: installed.Installed) -> None:
     """The program dancer lies where `ros2 run` looks for it, also with --symlink-install."""
     expect_executable(installed_dance, contract.DANCER)
     expect_develop(source_of(workspace, contract.SQUARE_DANCE), contract.SQUARE_DANCE)
@@ -59,21 +56,21 @@ def test_executable(workspace: Workspace, installed_dance: Installed) -> None:
 @check(points=2, holds=("modules", "empty-files"), needs=("builds",), doc=contract.SUBPACKAGES)
 @hint("packages=[package_name] means one folder, not those in it.")
 @hint("find_packages takes a folder for a package when there is an __init__.py in it.")
-def test_subpackages(workspace: Workspace, installed_dance: Installed) -> None:
+def test_subpackages(workspace: Workspace, installed_dance: installed.Installed) -> None:
     """All of its modules are installed, those in nodes and utils, too."""
     expect_modules(installed_dance, source_of(workspace, contract.SQUARE_DANCE))
 
 
 @check(points=1, holds="files", needs=("builds",), doc=contract.DEVELOP)
 @hint("Launch files are data to setuptools: data_files.", "glob('launch/*.launch.py') gives the list of files.")
-def test_launch_file(workspace: Workspace, installed_dance: Installed) -> None:
+def test_launch_file(workspace: Workspace, installed_dance: installed.Installed) -> None:
     """Its launch file is installed in share/square_dance/launch."""
     expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), contract.DANCE_LAUNCH)
 
 
 @check(points=1, holds="files", needs=("builds",), doc=contract.DEVELOP)
 @hint("Configuration is data to setuptools: data_files.", "glob('config/*.yaml') gives the list of files.")
-def test_config(workspace: Workspace, installed_dance: Installed) -> None:
+def test_config(workspace: Workspace, installed_dance: installed.Installed) -> None:
     """Its configuration is installed in share/square_dance/config."""
     expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), contract.DANCE_CONFIG)
 
@@ -81,17 +78,17 @@ def test_config(workspace: Workspace, installed_dance: Installed) -> None:
 @check(points=1, holds="same-facts", needs=("builds",), after=("manifest",), doc=contract.DEVELOP)
 @hint("package.xml and setup.py each say the version, the licence and the maintainer.")
 @hint("license='Apache-2.0' in setup.py is the licence in the form of package.xml.")
-def test_same_facts(workspace: Workspace, installed_dance: Installed) -> None:
+def test_same_facts(workspace: Workspace, installed_dance: installed.Installed) -> None:
     """setup.py names the version, the licence and the maintainer that package.xml names."""
-    expect_same_facts(installed_dance, read_manifest(workspace, contract.SQUARE_DANCE))
+    packaging.expect_same_facts(installed_dance, read_manifest(workspace, contract.SQUARE_DANCE))
 
 
 @check(points=1, holds="pytest", needs=("builds",), doc=contract.COLCON)
 @hint("colcon test runs pytest only for a package that says that it uses it.")
 @hint("extras_require={'test': ['pytest']} says so to every setuptools.")
-def test_names_pytest(workspace: Workspace, installed_dance: Installed) -> None:
+def test_names_pytest(workspace: Workspace, installed_dance: installed.Installed) -> None:
     """setup.py says, in a way that colcon understands, that its tests are run by pytest."""
-    expect_pytest(workspace, installed_dance)
+    packaging.expect_pytest(workspace, installed_dance)
 
 
 @check(
@@ -114,12 +111,12 @@ def test_grows(extended: ExtendedPackage) -> None:
 @hint("A setup.py copied from another package still names its programs: remove the lines of those that are not yours.")
 def test_tests_stay(extended: ExtendedPackage) -> None:
     """Nothing is installed beside its module: no module called test, also with an __init__.py beside the tests."""
-    modules = extended.installed.modules
+    modules = extended.installation.modules
     strays = sorted(name for name in modules if name.split(".")[0] == "test")
     expect(not strays, f"{', '.join(strays[:2])} was installed: it would hide Python's own module test.")
     strays = sorted(name for name in modules if name.split(".")[0] != contract.SQUARE_DANCE)
     expect(not strays, f"{', '.join(strays[:2])} was installed, a module beside {contract.SQUARE_DANCE}.", fraction=0.5)
-    for name, module in extended.installed.programs.items():
+    for name, module in extended.installation.programs.items():
         if name != contract.DANCER:  # the dancer's own module is for other checks
             said = f"The program {name} is installed, and its module {module} is not: remove it from console_scripts."
             expect(module in modules, said, fraction=0.5)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from autograder.checking import Workspace, expect, group, hint
+from autograder.checking.probes import imports, manifest
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.checks.ch01_package_structure.support.assertions import (
     expect_declared,
@@ -10,10 +12,6 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     read_manifest,
     source_of,
 )
-from autograder.harness import Workspace
-from autograder.probes import imports
-from autograder.probes.manifest import PLACEHOLDER
-from autograder.suite import expect, group, hint
 
 check = group("manifest")
 DECLARE = (
@@ -42,7 +40,7 @@ def test_licence(workspace: Workspace) -> None:
 def test_description(workspace: Workspace) -> None:
     """package.xml describes the package."""
     said = read_manifest(workspace, contract.SQUARE_DANCE).description
-    expect(len(said.split()) >= 3 and PLACEHOLDER not in said, f"The description is {said!r}.")
+    expect(len(said.split()) >= 3 and manifest.PLACEHOLDER not in said, f"The description is {said!r}.")
 
 
 @check(points=2, holds="dependencies", after=("manifest",), doc=contract.ROSDEP)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping
 
+from autograder.checking import Diagnosis, Workspace, expect, group, hint
+from autograder.checking.probes import imports, installed, packaging
 from autograder.checks.ch01_package_structure.hidden.given import ALARM, HINTS, expect_given_tests
 from autograder.checks.ch01_package_structure.support import contract, robots
 from autograder.checks.ch01_package_structure.support.assertions import (
@@ -16,12 +18,6 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     read_manifest,
     source_of,
 )
-from autograder.diagnosis import Diagnosis
-from autograder.harness import Workspace
-from autograder.probes import imports
-from autograder.probes.installed import Installed
-from autograder.probes.packaging import expect_pytest, licence
-from autograder.suite import expect, group, hint
 
 check = group("repair")
 MISSING_AT_FIRST = 4  # numpy and the three packages of the launch file
@@ -38,7 +34,7 @@ def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
 @check(points=1, holds="alarm-runs", needs=("alarm_builds",), doc=contract.DEVELOP)
 @hint("No executable found: look for the program in install/wall_alarm, and see where it is.")
 @hint("setup.cfg: install_scripts=$base/lib/wall_alarm under [install].")
-def test_alarm_executable(installed_alarm: Installed) -> None:
+def test_alarm_executable(installed_alarm: installed.Installed) -> None:
     """The program alarm lies where `ros2 run` looks for it."""
     expect_executable(installed_alarm, contract.ALARM)
 
@@ -46,14 +42,14 @@ def test_alarm_executable(installed_alarm: Installed) -> None:
 @check(points=2, holds="alarm-runs", needs=("alarm_builds",), doc=contract.SUBPACKAGES)
 @hint("ModuleNotFoundError: No module named 'wall_alarm.nodes': was it installed?")
 @hint("packages=find_packages(exclude=['test']) in setup.py.")
-def test_alarm_subpackages(workspace: Workspace, installed_alarm: Installed) -> None:
+def test_alarm_subpackages(workspace: Workspace, installed_alarm: installed.Installed) -> None:
     """All of its modules are installed."""
     expect_modules(installed_alarm, source_of(workspace, contract.WALL_ALARM))
 
 
 @check(points=1, holds="alarm-config", needs=("alarm_builds",), doc=contract.DEVELOP)
 @hint("Look into install/wall_alarm/share/wall_alarm.", "The pattern says yml, the file is called yaml.")
-def test_alarm_config(workspace: Workspace, installed_alarm: Installed) -> None:
+def test_alarm_config(workspace: Workspace, installed_alarm: installed.Installed) -> None:
     """Its configuration is installed."""
     expect_shared(installed_alarm, source_of(workspace, contract.WALL_ALARM), contract.ALARM_CONFIG)
 
@@ -72,10 +68,10 @@ def test_alarm_dependencies(workspace: Workspace) -> None:
 
 @check(points=1, holds="alarm-licence", needs=("alarm_builds",), doc=contract.REP_149)
 @hint("Two files name the licence. Do they agree?", "license='Apache-2.0' in setup.py.")
-def test_alarm_licence(workspace: Workspace, installed_alarm: Installed) -> None:
+def test_alarm_licence(workspace: Workspace, installed_alarm: installed.Installed) -> None:
     """Both files name the licence Apache-2.0."""
     licences = read_manifest(workspace, contract.WALL_ALARM).licences
-    said = licence(installed_alarm)
+    said = packaging.licence(installed_alarm)
     expect(
         licences == (contract.LICENCE,) and said == contract.LICENCE,
         f"The licence is {', '.join(licences)} in package.xml and {said or 'missing'} in setup.py; it should be "
@@ -90,9 +86,9 @@ def test_alarm_licence(workspace: Workspace, installed_alarm: Installed) -> None
 @check(points=1, holds="alarm-pytest", needs=("alarm_builds",), doc=contract.COLCON)
 @hint("colcon test runs pytest only for a package that says that it uses it.")
 @hint("extras_require={'test': ['pytest']} says so to every setuptools.")
-def test_alarm_names_pytest(workspace: Workspace, installed_alarm: Installed) -> None:
+def test_alarm_names_pytest(workspace: Workspace, installed_alarm: installed.Installed) -> None:
     """setup.py says, in a way that colcon understands, that its tests are run by pytest."""
-    expect_pytest(workspace, installed_alarm)
+    packaging.expect_pytest(workspace, installed_alarm)
 
 
 @check(
@@ -119,7 +115,7 @@ def test_alarm_sounds(workspace: Workspace, draw: random.Random) -> None:
     doc=contract.DEVELOP,
 )
 @hint("The configuration was right from the start: install it as it was given.", "distance: 0.8 is in metres.")
-def test_alarm_configured(workspace: Workspace, installed_alarm: Installed, draw: random.Random) -> None:
+def test_alarm_configured(workspace: Workspace, installed_alarm: installed.Installed, draw: random.Random) -> None:
     """With the installed configuration it goes off from 0.8 m on."""
     path = installed_alarm.prefix / "share" / installed_alarm.package / contract.ALARM_CONFIG
     with robots.alarm(workspace, "--params-file", str(path)) as harness:

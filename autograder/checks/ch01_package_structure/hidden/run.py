@@ -9,12 +9,9 @@ from dataclasses import dataclass
 import pytest
 import yaml
 
+from autograder.checking import SteppedHarness, Workspace, expect, group, hint, reading
+from autograder.checking.probes import installed, student_yaml
 from autograder.checks.ch01_package_structure.support import contract, robots
-from autograder.harness import SteppedHarness, Workspace
-from autograder.probes import student_yaml
-from autograder.probes.installed import Installed
-from autograder.submission.reading import reading
-from autograder.suite import expect, group, hint
 
 check = group("run")
 HINTS = (
@@ -58,7 +55,7 @@ def test_dances(workspace: Workspace, running_dancer: RunningDancer) -> None:
 
 @check(points=1, holds="given", needs=("executable", "config"), after=("starts",), doc=contract.DEVELOP)
 @hint("The configuration is given: install it as it is.", "It belongs to the node dancer, and sets side.")
-def test_configured(workspace: Workspace, installed_dance: Installed) -> None:
+def test_configured(workspace: Workspace, installed_dance: installed.Installed) -> None:
     """With the installed configuration it dances a square of the size that is written there."""
     path = installed_dance.prefix / "share" / installed_dance.package / contract.DANCE_CONFIG
     side = _side(installed_dance.read(contract.DANCE_CONFIG) or b"")

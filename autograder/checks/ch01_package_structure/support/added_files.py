@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from autograder.checking import Workspace
+from autograder.checking.probes import added_files, installed
 from autograder.checks.ch01_package_structure.support import contract
-from autograder.harness import Workspace
-from autograder.probes.added_files import install_with
-from autograder.probes.installed import Installed
 
 
 @dataclass(frozen=True)
@@ -15,20 +14,20 @@ class ExtendedPackage:
     """What was installed of the copy, and which of its files are new.
 
     Attributes:
-        installed: what colcon installed of it.
+        installation: what colcon installed of it.
         shared: the new launch file and the new configuration.
         modules: the new modules, each in a subpackage of its own; one is deeper, and has "test" within its name.
     """
 
-    installed: Installed
+    installation: installed.Installed
     shared: tuple[str, ...]
     modules: tuple[str, ...]
 
     @property
     def missing(self) -> list[str]:
         """The new files and modules that were not installed."""
-        files = [name for name in self.shared if self.installed.read(name) is None]
-        return files + [name for name in self.modules if name not in self.installed.modules]
+        files = [name for name in self.shared if self.installation.read(name) is None]
+        return files + [name for name in self.modules if name not in self.installation.modules]
 
 
 def extend(workspace: Workspace, word: str) -> ExtendedPackage:
@@ -46,7 +45,7 @@ def extend(workspace: Workspace, word: str) -> ExtendedPackage:
     folders = f"{name}/{word}", f"{name}/utils/contest_{word}"
     code = [f"{folder}/{file}.py" for folder in folders for file in ("__init__", "steps")]
     return ExtendedPackage(
-        install_with(workspace, name, (*shared, *tests, *code)),
+        added_files.install_with(workspace, name, (*shared, *tests, *code)),
         shared,
         tuple(f"{folder.replace('/', '.')}.steps" for folder in folders),
     )

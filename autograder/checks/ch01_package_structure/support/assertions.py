@@ -8,16 +8,9 @@ import difflib
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
+from autograder.checking import OK, CheckFailed, Diagnosis, StudentError, Workspace, expect, find_packages
+from autograder.checking.probes import files, imports, installed, manifest
 from autograder.checks.ch01_package_structure.support import contract
-from autograder.diagnosis import OK, Diagnosis
-from autograder.exceptions import StudentError
-from autograder.harness import Workspace
-from autograder.probes import imports, manifest
-from autograder.probes.files import read_plain
-from autograder.probes.installed import Installed
-from autograder.probes.manifest import Manifest
-from autograder.submission.packages import find_packages
-from autograder.suite import CheckFailed, expect
 
 MAX_BYTES = 1024 * 1024  # of a file that is read
 
@@ -34,7 +27,7 @@ def expect_built(builds: Mapping[str, Diagnosis], name: str) -> None:
         raise StudentError(builds[name])
 
 
-def expect_manifest(workspace: Workspace, name: str) -> Manifest:
+def expect_manifest(workspace: Workspace, name: str) -> manifest.Manifest:
     """Return a package's manifest; fail the check unless ROS takes it for a Python package of this name."""
     found = manifest.read(source_of(workspace, name))
     expect(found.format == 3, f'package.xml says format="{found.format}"; the format of ROS 2 today is 3.')
@@ -47,7 +40,7 @@ def expect_manifest(workspace: Workspace, name: str) -> Manifest:
     return found
 
 
-def read_manifest(workspace: Workspace, name: str) -> Manifest:
+def read_manifest(workspace: Workspace, name: str) -> manifest.Manifest:
     """Return what a package's manifest says; fail the check if it is no XML. Whether ROS takes it is another check."""
     return manifest.read_leniently(source_of(workspace, name))
 
@@ -72,27 +65,27 @@ def expect_declared(needed: Collection[imports.Import], declared: Collection[str
     expect(not missing, f"package.xml does not declare everything: {imports.describe(missing)}.", fraction=fraction)
 
 
-def expect_executable(installed: Installed, name: str) -> None:
+def expect_executable(installation: installed.Installed, name: str) -> None:
     """Fail the check unless a program lies where `ros2 run` looks."""
-    if name in installed.executables:
+    if name in installation.executables:
         return
-    where = f"lib/{installed.package}"
-    if name in installed.misplaced:
+    where = f"lib/{installation.package}"
+    if name in installation.misplaced:
         raise CheckFailed(
             f"{name} was installed in bin/; ros2 run and launch files look in {where}/. That is setup.cfg's."
         )
-    there = ", ".join((*installed.executables, *installed.misplaced))
+    there = ", ".join((*installation.executables, *installation.misplaced))
     raise CheckFailed(
         f"{where}/ has no {name}: {f'what was installed is {there}' if there else 'no program was installed'}."
     )
 
 
-def expect_modules(installed: Installed, source: Path) -> None:
+def expect_modules(installation: installed.Installed, source: Path) -> None:
     """Fail the check unless each Python file of the module was installed; part of the points for part of them."""
-    name = installed.package
-    files = sorted(path.relative_to(source) for path in (source / name).rglob("*.py"))
-    missing = [module for file in files if (module := _module(file)) not in installed.modules]
-    deeper = sum(len(file.parts) > 2 for file in files)  # what lies in the module itself is installed most easily
+    name = installation.package
+    sources = sorted(path.relative_to(source) for path in (source / name).rglob("*.py"))
+    missing = [module for file in sources if (module := _module(file)) not in installation.modules]
+    deeper = sum(len(file.parts) > 2 for file in sources)  # what lies in the module itself is installed most easily
     fraction = max(0.0, 1.0 - len(missing) / deeper) if deeper else 0.0
     them = "it" if len(missing) == 1 else "them"
     expect(
@@ -106,22 +99,22 @@ def _module(file: Path) -> str:
     return file.with_suffix("").as_posix().replace("/", ".").removesuffix(".__init__")
 
 
-def expect_shared(installed: Installed, source: Path, name: str) -> None:
+def expect_shared(installation: installed.Installed, source: Path, name: str) -> None:
     """Fail the check unless a file was installed under the same path in share, unchanged."""
-    data = installed.read(name)
+    data = installation.read(name)
     if data is None:
-        there = [shared for shared in installed.shared if Path(shared).name == Path(name).name]
-        there = there or difflib.get_close_matches(name, installed.shared)
+        there = [shared for shared in installation.shared if Path(shared).name == Path(name).name]
+        there = there or difflib.get_close_matches(name, installation.shared)
         seen = f" ({there[0]} is)" if there else ""
         raise CheckFailed(
-            f"share/{installed.package}/{name} was not installed{seen}: data_files in setup.py says what is."
+            f"share/{installation.package}/{name} was not installed{seen}: data_files in setup.py says what is."
         )
-    expect(read_plain(source / name, MAX_BYTES) == data, f"The installed {name} is not the one in src.")
+    expect(files.read_plain(source / name, MAX_BYTES) == data, f"The installed {name} is not the one in src.")
 
 
 def expect_empty(source: Path, names: Collection[str]) -> None:
     """Fail the check if one of these files holds text; a file that is not there is for other checks."""
-    full = [name for name in names if (read_plain(source / name, MAX_BYTES) or b"").strip()]
+    full = [name for name in names if (files.read_plain(source / name, MAX_BYTES) or b"").strip()]
     said = f"There is text in {' and '.join(full)}: the marker and each __init__.py should be empty."
     expect(not full, said, fraction=0.5)
 

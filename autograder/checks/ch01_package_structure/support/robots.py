@@ -9,9 +9,8 @@ from geometry_msgs.msg import Twist
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Bool
 
+from autograder.checking import ReceivedMessage, SteppedHarness, Workspace, expect
 from autograder.checks.ch01_package_structure.support import contract
-from autograder.harness import ReceivedMessage, SteppedHarness, Workspace
-from autograder.suite import expect
 
 CMD_VEL, SCAN, ALARM = "/cmd_vel", "/scan", "/alarm"
 TOLERANCE = 1e-3  # m/s and rad/s: the node is given, and its numbers go through unchanged

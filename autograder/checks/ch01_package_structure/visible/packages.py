@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from autograder.checking import Diagnosis, Workspace, expect, group, hint
+from autograder.checking.probes import imports, installed, packaging
 from autograder.checks.ch01_package_structure.support import contract, robots
 from autograder.checks.ch01_package_structure.support.added_files import extend
 from autograder.checks.ch01_package_structure.support.assertions import (
@@ -16,12 +18,6 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     expect_shared,
     source_of,
 )
-from autograder.diagnosis import Diagnosis
-from autograder.harness import Workspace
-from autograder.probes import imports
-from autograder.probes.installed import Installed
-from autograder.probes.packaging import expect_pytest, expect_same_facts, licence
-from autograder.suite import expect, group, hint
 
 check = group("packages")
 
@@ -62,7 +58,7 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
 @check(points=1, holds=("program", "given"), needs=("builds",), doc=contract.DEVELOP)
 @hint("Was a module left behind, or the program not found? packages= in setup.py says which, or the entry points.")
 @hint("find_packages finds folders that have an __init__.py; setup.cfg says where programs go.")
-def test_dancer(workspace: Workspace, installed_dance: Installed) -> None:
+def test_dancer(workspace: Workspace, installed_dance: installed.Installed) -> None:
     """`ros2 run square_dance dancer` would find the program, with all of its modules, and it dances."""
     expect_executable(installed_dance, contract.DANCER)
     expect_modules(installed_dance, source_of(workspace, contract.SQUARE_DANCE))
@@ -73,7 +69,7 @@ def test_dancer(workspace: Workspace, installed_dance: Installed) -> None:
 @check(points=1, holds="files", needs=("builds",), doc=contract.DEVELOP)
 @hint("Each entry of data_files is a pair: a folder below the install prefix, and a list of files.")
 @hint("('share/' + package_name + '/launch', glob('launch/*.launch.py')); config goes the same way.")
-def test_shared(workspace: Workspace, installed_dance: Installed) -> None:
+def test_shared(workspace: Workspace, installed_dance: installed.Installed) -> None:
     """The launch file and the configuration of square_dance are installed."""
     for name in (contract.DANCE_LAUNCH, contract.DANCE_CONFIG):
         expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), name)
@@ -82,10 +78,10 @@ def test_shared(workspace: Workspace, installed_dance: Installed) -> None:
 @check(points=1, holds=("same-facts", "pytest"), needs=("builds",), after=("manifest",), doc=contract.DEVELOP)
 @hint("Compare version, license and maintainer_email in setup.py with package.xml, letter by letter.")
 @hint("extras_require={'test': ['pytest']} tells colcon that pytest runs the tests.")
-def test_facts(workspace: Workspace, installed_dance: Installed) -> None:
+def test_facts(workspace: Workspace, installed_dance: installed.Installed) -> None:
     """setup.py of square_dance says version, licence and e-mail as package.xml does, and names pytest."""
-    expect_same_facts(installed_dance, expect_manifest(workspace, contract.SQUARE_DANCE))
-    expect_pytest(workspace, installed_dance)
+    packaging.expect_same_facts(installed_dance, expect_manifest(workspace, contract.SQUARE_DANCE))
+    packaging.expect_pytest(workspace, installed_dance)
 
 
 @check(points=1, holds=("modules", "files"), needs=("builds",), after=("dancer", "shared"), doc=contract.SUBPACKAGES)
@@ -108,7 +104,7 @@ def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
 @check(points=1, holds="alarm-runs", needs=("alarm_builds",), doc=contract.DEVELOP)
 @hint("Mend one error, then build again: what does ros2 run wall_alarm alarm say now?")
 @hint("No executable found: setup.cfg. No module named ...: packages= in setup.py.")
-def test_alarm_runs(workspace: Workspace, installed_alarm: Installed) -> None:
+def test_alarm_runs(workspace: Workspace, installed_alarm: installed.Installed) -> None:
     """`ros2 run wall_alarm alarm` would find the program, and its alarm goes off."""
     expect_executable(installed_alarm, contract.ALARM)
     expect_modules(installed_alarm, source_of(workspace, contract.WALL_ALARM))
@@ -136,10 +132,10 @@ def test_alarm_dependencies(workspace: Workspace) -> None:
 )
 @hint("<license> in package.xml and license= in setup.py both say Apache-2.0.")
 @hint("data_files sends config/*.yaml to share/wall_alarm/config; extras_require names pytest.")
-def test_alarm_facts(workspace: Workspace, installed_alarm: Installed) -> None:
+def test_alarm_facts(workspace: Workspace, installed_alarm: installed.Installed) -> None:
     """wall_alarm has the licence Apache-2.0 in both files, installs its configuration, and names pytest."""
     expect_licence(workspace, contract.WALL_ALARM)
-    said = licence(installed_alarm)
+    said = packaging.licence(installed_alarm)
     expect(said == contract.LICENCE, f"The licence is {said or 'missing'} in setup.py.")
     expect_shared(installed_alarm, source_of(workspace, contract.WALL_ALARM), contract.ALARM_CONFIG)
-    expect_pytest(workspace, installed_alarm)
+    packaging.expect_pytest(workspace, installed_alarm)

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
+from autograder.checking import CheckFailed, Workspace, expect, group, hint
+from autograder.checking.probes import namespaces, qos
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import Robot, qos_mismatch
-from autograder.exceptions import StudentError
-from autograder.harness import Workspace
-from autograder.probes.namespaces import missing_in_namespace
-from autograder.probes.qos import non_default_qos
-from autograder.run.lockstep.failures import diagnose_ending
-from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("graph")
 
@@ -19,8 +15,7 @@ check = group("graph")
 @hint("setup.py must name robot_controller = my_robot_package.nodes.robot_controller:main in console_scripts.")
 def test_starts(robot: Robot) -> None:
     """The executable robot_controller starts and its node spins."""
-    if robot.processes[0].ending is not None:
-        raise StudentError(diagnose_ending(robot.processes[0]))
+    robot.require_running()
 
 
 @check(points=1, holds="node-name", needs=("starts",))
@@ -45,7 +40,7 @@ def test_scan_qos(robot: Robot) -> None:
     """Its scan subscription matches a lidar that publishes best-effort; commands and status have plain queues."""
     reason = qos_mismatch(robot)
     expect(not reason, f"The subscription would never get a scan from a best-effort lidar: {reason}.")
-    differs = non_default_qos(robot.node, "/cmd_vel", "/status")
+    differs = qos.non_default_qos(robot.node, "/cmd_vel", "/status")
     expect(not differs, differs, fraction=0.5)
 
 
@@ -77,7 +72,7 @@ def test_relative(workspace: Workspace, robot: Robot) -> None:
     there = [topic for topic in ("scan", "status") if node.get_subscriptions_info_by_topic(f"/{topic}")]
     there += ["cmd_vel"] if node.get_publishers_info_by_topic("/cmd_vel") else []
     expect(bool(there), "It has none of the topics scan, status and cmd_vel, in no namespace.")
-    left = missing_in_namespace(workspace, contract.PACKAGE, contract.EXECUTABLE, tuple(there))
+    left = namespaces.missing_in_namespace(workspace, contract.PACKAGE, contract.EXECUTABLE, tuple(there))
     expect(not left, left)
 
 

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import signal
-import sys
 
+from autograder.checking import Workspace, expect, group, hint
+from autograder.checking.probes import programs
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, PACKAGE
-from autograder.checks.ch02_nodes.support.shutdown import HINTS, START_SECONDS, expect_clean_end
-from autograder.harness import Workspace
-from autograder.run.lockstep.failures import tail
-from autograder.run.sandbox.launcher import launch
-from autograder.suite import expect, group, hint
+from autograder.checks.ch02_nodes.support.shutdown import HINTS, START_SECONDS, expect_clean_end, last_line
 
 check = group("lifecycle")
 LONG_NAME = "a" * 300  # ROS refuses names of 256 letters and more
@@ -35,14 +32,12 @@ def test_sigterm(workspace: Workspace) -> None:
 @hint("`finally` runs also where the node was never made: node = None before `try` says so.")
 def test_fails(workspace: Workspace) -> None:
     """Where its node cannot be made, it ends with that error and another exit status than 0."""
-    path = workspace.executable(PACKAGE, EXECUTABLE)
-    command = [sys.executable, str(path), "--ros-args", "-r", f"__node:={LONG_NAME}"]
-    with launch(command, workspace.sandbox()) as process:
-        process.wait(START_SECONDS)
-        status, output = process.returncode, process.output
+    arguments = ("--ros-args", "-r", f"__node:={LONG_NAME}")
+    ran = programs.run_program(workspace, PACKAGE, EXECUTABLE, arguments, START_SECONDS)
+    status, output = ran.status, ran.output
     case = f"Started with a node name of {len(LONG_NAME)} letters, which ROS refuses,"
     expect(status is not None, f"{case} it did not end within {START_SECONDS:.0f} s.")
     expect(status != 0, f"{case} it ended with exit status 0, as if it had been asked to: the error was swallowed.")
     said = "error" in output.lower()  # an exception's class or text has the word; what rclpy warns of here has not
     expect(said, f"{case} it ended with exit status {status}, and did not say which error it was.", fraction=0.5)
-    expect("another exception" not in output, f"{case} its clean-up failed, too: {tail(output, 1)}", fraction=0.5)
+    expect("another exception" not in output, f"{case} its clean-up failed, too: {last_line(output)}", fraction=0.5)

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 import random
 
+from autograder.checking import LOCKSTEP, group, hint
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import SETTLED, Reactions, Robot, expect_forward, expect_turn
 from autograder.checks.ch02_nodes.support.scans import Part, scan
-from autograder.run.time_record import LOCKSTEP
-from autograder.suite import group, hint
 
 check = group("reaction")
 TALKS = ("subscribes_scan", "publishes_cmd_vel")

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 import random
 
+from autograder.checking import group, hint
 from autograder.checks.ch02_nodes.hidden.reaction import NEAR, REACTS, TALKS
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import Reactions, Robot, expect_stop
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN, Part, scan
-from autograder.suite import group, hint
 
 check = group("readings")
 # range_min, range_max, what all other beams read, a reading that counts, one that does not; in metres, and exact in a

@@ -7,6 +7,7 @@ import statistics
 
 from sensor_msgs.msg import LaserScan
 
+from autograder.checking import LOCKSTEP, SCAN_SECONDS, Workspace, expect, group, hint
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import (
     SETTLED,
@@ -16,10 +17,6 @@ from autograder.checks.ch02_nodes.support.robot import (
     is_stop,
 )
 from autograder.checks.ch02_nodes.support.scans import Part, scan
-from autograder.harness import Workspace
-from autograder.harness.drive import SCAN_SECONDS
-from autograder.run.time_record import LOCKSTEP
-from autograder.suite import expect, group, hint
 
 check = group("safety")
 TALKS = ("subscribes_scan", "publishes_cmd_vel")

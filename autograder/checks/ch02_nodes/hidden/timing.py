@@ -8,12 +8,11 @@ import re
 
 from std_msgs.msg import String
 
+from autograder.checking import LOCKSTEP, expect, group, hint
+from autograder.checking.probes import message_period
 from autograder.checks.ch02_nodes.support.contract import BLOCKED_SECONDS, MIN_WARNINGS, PERIOD, SILENT_SECONDS
 from autograder.checks.ch02_nodes.support.robot import SETTLED, WRITTEN_SECONDS, Reactions, Robot
 from autograder.checks.ch02_nodes.support.scans import JUST_AHEAD, Part, scan
-from autograder.probes.message_period import describe_pace, is_paced
-from autograder.run.time_record import LOCKSTEP
-from autograder.suite import expect, group, hint
 
 check = group("timing")
 SECONDS = 20.0
@@ -43,8 +42,10 @@ def test_ten_hertz(robot: Robot) -> None:
         else:
             robot.see(shown, RATE_SECONDS)
         commands = robot.messages("/cmd_vel", since=began)
-        said = f"It published a command {describe_pace(commands)} {situation}, instead of every {PERIOD} s."
-        expect(is_paced(commands, PERIOD, robot.time), said, fraction=fraction)
+        said = (
+            f"It published a command {message_period.describe_pace(commands)} {situation}, instead of every {PERIOD} s."
+        )
+        expect(message_period.is_paced(commands, PERIOD, robot.time), said, fraction=fraction)
 
 
 @check(points=1, holds="warns", needs=("subscribes_scan",))

@@ -5,12 +5,21 @@ from __future__ import annotations
 import math
 import random
 
+from autograder.checking import (
+    LISTENS,
+    OFFERS,
+    AutoHarness,
+    CheckFailed,
+    Gallery,
+    Workspace,
+    drive,
+    expect,
+    group,
+    hint,
+    temporal,
+)
 from autograder.checks.ch02_nodes.hidden import world_generation
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, PACKAGE
-from autograder.harness import AutoHarness, Workspace, drive
-from autograder.harness.drive import LISTENS, OFFERS
-from autograder.result.artifacts import Gallery
-from autograder.suite import CheckFailed, expect, group, hint, temporal
 from sim import Recording, RobotSpec, Simulation, World, clearance
 from sim.rows import row_at, state_at
 

@@ -12,10 +12,8 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
 
+from autograder.checking import SCAN_SECONDS, AutoHarness, ReceivedMessage, Workspace, expect
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, FORWARD, PACKAGE, TOLERANCE, TURN
-from autograder.harness import AutoHarness, ReceivedMessage, Workspace
-from autograder.harness.drive import SCAN_SECONDS
-from autograder.suite import expect
 
 OFFERS = {"/scan": LaserScan, "/status": String}
 LISTENS = {"/cmd_vel": Twist}

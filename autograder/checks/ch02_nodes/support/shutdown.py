@@ -9,11 +9,9 @@ import time
 from geometry_msgs.msg import Twist
 from rcl_interfaces.srv import GetParameters
 
+from autograder.checking import RealTimeHarness, Workspace, expect
+from autograder.checking.probes import rclpy_races
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, NODE, PACKAGE
-from autograder.harness import RealTimeHarness, Workspace
-from autograder.probes.rclpy_races import crashed, lost_a_race
-from autograder.run.lockstep.failures import tail
-from autograder.suite import expect
 
 START_SECONDS = 30.0  # of real time
 COMMAND = "geometry_msgs/msg/Twist"
@@ -33,12 +31,17 @@ def expect_clean_end(workspace: Workspace, number: signal.Signals) -> None:
     """Fail the check unless the node, sent this signal while it spins, ends with exit status 0."""
     for _ in range(TRIALS):
         status, output, late = _end(workspace, number)
-        if not crashed(status) and (status != 1 or not lost_a_race(output)):
+        if not rclpy_races.crashed(status) and (status != 1 or not rclpy_races.lost_a_race(output)):
             break
     expect(status is not None, f"{STOP_SECONDS:.0f} s after {number.name} it was still running, and had to be killed.")
-    expect(status == 0, f"After {number.name} it ended with exit status {status}: {tail(output, 1)}")
+    expect(status == 0, f"After {number.name} it ended with exit status {status}: {last_line(output)}")
     said = f"After {number.name}, when its context was gone, it still logged: {''.join(late[:1])}"
     expect(not late, said, fraction=0.5)
+
+
+def last_line(output: str) -> str:
+    """Return the last line of an output, or an empty string."""
+    return "".join(output.strip().splitlines()[-1:])
 
 
 def _commands(harness: RealTimeHarness) -> bool:

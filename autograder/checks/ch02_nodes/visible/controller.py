@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import signal
 
+from autograder.checking import Workspace, expect, group, hint
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.contract import BLOCKED_SECONDS, MIN_WARNINGS
 from autograder.checks.ch02_nodes.support.robot import (
@@ -17,8 +18,6 @@ from autograder.checks.ch02_nodes.support.robot import (
 )
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch02_nodes.support.shutdown import HINTS, expect_clean_end
-from autograder.harness import Workspace
-from autograder.suite import expect, group, hint
 
 check = group("controller")
 

@@ -10,13 +10,12 @@ from geometry_msgs.msg import Twist
 from rclpy.action import get_action_names_and_types
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
+from autograder.checking import LOCKSTEP, expect, group, hint
+from autograder.checking.probes import message_period
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import MAX_DISTANCE, MAX_SPEED
 from autograder.checks.ch03_interfaces.support.driver import ACTION, COMMANDS, ODOMETRY, Driver, is_left, stopped
 from autograder.checks.ch03_interfaces.support.driver_qos import expect_heard
-from autograder.probes.message_period import describe_pace, is_paced
-from autograder.run.time_record import LOCKSTEP
-from autograder.suite import expect, group, hint
 
 check = group("action")
 SERVES, MOVES = ("drive_serves",), ("drive_moves",)
@@ -190,8 +189,8 @@ def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
     grows = driven == sorted(driven) and driven[-1] > driven[0] >= 0.0
     expect(grows, "driven did not grow on the way, from 0.")
     for what, told in (("feedback", goal.feedback), ("command", placed_driver.commands())):
-        paced = is_paced(told, contract.PERIOD, placed_driver.time)
-        said = f"A {what} came {describe_pace(told)}, instead of every {contract.PERIOD} s."
+        paced = message_period.is_paced(told, contract.PERIOD, placed_driver.time)
+        said = f"A {what} came {message_period.describe_pace(told)}, instead of every {contract.PERIOD} s."
         expect(paced, said, fraction=0.5)
     placed_driver.stuck = True
     goal = placed_driver.start(distance, 0.5)

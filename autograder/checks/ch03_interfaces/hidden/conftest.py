@@ -7,12 +7,12 @@ from collections.abc import Iterator
 
 import pytest
 
+from autograder.checking import Shared, Workspace
+from autograder.checking.probes import parameters
 from autograder.checks.ch03_interfaces.hidden.status import TUNED_PERIOD
 from autograder.checks.ch03_interfaces.support.driver import Driver
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
 from autograder.checks.ch03_interfaces.support.types import Types
-from autograder.harness import Shared, Workspace
-from autograder.probes.parameters import override_arguments
 
 ODD_PERIOD = 0.7  # s; most statuses come between two whole seconds
 FAST, SLOW = 4.0, 0.02  # s that a machine's clocks count in 1 s of ROS time
@@ -27,7 +27,10 @@ def tuned_name(seed: int) -> str:
 @pytest.fixture(scope="session")
 def shared_tuned_reporter(workspace: Workspace, types: Types, tuned_name: str) -> Iterator[Shared[Reporter]]:
     """Keeps the status publisher that is given other parameters."""
-    arguments = ("--ros-args", *override_arguments({"status_period": TUNED_PERIOD, "robot_name": tuned_name}))
+    arguments = (
+        "--ros-args",
+        *parameters.override_arguments({"status_period": TUNED_PERIOD, "robot_name": tuned_name}),
+    )
     with Shared(lambda: Reporter(workspace, types, arguments)) as shared:
         yield shared
 
@@ -41,7 +44,7 @@ def tuned_reporter(shared_tuned_reporter: Shared[Reporter]) -> Reporter:
 @pytest.fixture
 def hasty_reporter(workspace: Workspace, types: Types) -> Iterator[Reporter]:
     """A status publisher with an odd period, on a machine whose clocks are faster than ROS time."""
-    arguments = ("--ros-args", *override_arguments({"status_period": ODD_PERIOD}))
+    arguments = ("--ros-args", *parameters.override_arguments({"status_period": ODD_PERIOD}))
     with Reporter(workspace, types, arguments, clock_rate=FAST) as reporter:
         yield reporter
 

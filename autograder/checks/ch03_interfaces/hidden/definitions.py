@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
+from autograder.checking import CheckFailed, Workspace, group, hint
+from autograder.checking.probes import interfaces
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.reading import expect_like, read
-from autograder.harness import Workspace
-from autograder.probes.interfaces import Aspect, compare, elements
-from autograder.suite import CheckFailed, group, hint
 
 check = group("definitions")
 AFTER = ("readable",)
-FIELDS = (Aspect.FIELDS, Aspect.TYPES)
+FIELDS = (interfaces.Aspect.FIELDS, interfaces.Aspect.TYPES)
 TABLES = (
     "Compare your file with the exercise's table, line by line: name, type, order.",
     "`ros2 interface show` shows what ROS has understood; show your own and read it aloud.",
@@ -90,7 +89,7 @@ def test_drive_distance(workspace: Workspace) -> None:
 @hint("A constant is written `type NAME = value`, with an equals sign and in capitals; it is never sent.")
 def test_constants(workspace: Workspace) -> None:
     """The four constants of the definitions have the contract's names, types and values."""
-    _expect_all(workspace, Aspect.CONSTANTS, 4)
+    _expect_all(workspace, interfaces.Aspect.CONSTANTS, 4)
 
 
 @check(
@@ -102,7 +101,7 @@ def test_constants(workspace: Workspace) -> None:
 @hint("A default stands behind the field's name, without an equals sign: `int32 reserve 20`.")
 def test_defaults(workspace: Workspace) -> None:
     """The four defaults of the definitions have the contract's values."""
-    _expect_all(workspace, Aspect.DEFAULTS, 4)
+    _expect_all(workspace, interfaces.Aspect.DEFAULTS, 4)
 
 
 @check(
@@ -114,18 +113,18 @@ def test_defaults(workspace: Workspace) -> None:
 @hint("`float64[<=8] legs` holds at most eight, `float64[8] legs` exactly eight; `string<=80` at most 80 characters.")
 def test_bounds(workspace: Workspace) -> None:
     """The array and the strings that have a bound in the contract have that bound, and the other array has none."""
-    _expect_all(workspace, Aspect.BOUNDS, 4)
+    _expect_all(workspace, interfaces.Aspect.BOUNDS, 4)
 
 
-def _expect_all(workspace: Workspace, aspect: Aspect, count: int) -> None:
+def _expect_all(workspace: Workspace, aspect: interfaces.Aspect, count: int) -> None:
     """Fail the check unless every definition is right in one aspect, which `count` elements have."""
     wrong = []
     for wanted in contract.DEFINITIONS:
         try:
             found = read(workspace, wanted)
         except CheckFailed as unreadable:  # it has none of them; the others count
-            wrong += [unreadable.message] * sum(1 for _ in elements(wanted, aspect))
+            wrong += [unreadable.message] * sum(1 for _ in interfaces.elements(wanted, aspect))
         else:
-            wrong += [found.sentence for found in compare(wanted, found) if found.aspect is aspect]
+            wrong += [found.sentence for found in interfaces.compare(wanted, found) if found.aspect is aspect]
     if wrong:
         raise CheckFailed(" ".join([*dict.fromkeys(wrong)][:3]), fraction=round(max(0.0, 1.0 - len(wrong) / count), 2))

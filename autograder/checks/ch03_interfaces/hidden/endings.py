@@ -9,13 +9,11 @@ from dataclasses import dataclass
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Twist
 
+from autograder.checking import LOCKSTEP, REAL, Goal, ReceivedMessage, expect, group, hint
 from autograder.checks.ch03_interfaces.hidden.action import LONG, MOVES, NAMES, SERVES, straight
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import MAX_REASON, PATIENCE
 from autograder.checks.ch03_interfaces.support.driver import COMMANDS, LOOK, Driver, stopped
-from autograder.harness import Goal, ReceivedMessage
-from autograder.run.time_record import LOCKSTEP, REAL
-from autograder.suite import expect, group, hint
 
 check = group("action", doc=contract.ACTION)
 LATE = {LOCKSTEP: 0.4, REAL: 2.0}  # s beyond the patience: two commands, and the harness's looks at the result

@@ -4,16 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from autograder.checking import OK, CheckFailed, Diagnosis, StudentError, Workspace, expect, find_packages, group, hint
+from autograder.checking.probes import installed, manifest, packaging
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import INTERFACES
-from autograder.diagnosis import OK, Diagnosis
-from autograder.exceptions import StudentError
-from autograder.harness import Workspace
-from autograder.probes import manifest
-from autograder.probes.installed import look
-from autograder.probes.packaging import wrong_for_interfaces
-from autograder.submission.packages import find_packages
-from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("package", doc=contract.DEFINE)
 USES = {"std_msgs": "RobotStatus", "action_msgs": "DriveDistance"}
@@ -29,7 +23,7 @@ def test_manifest(workspace: Workspace) -> None:
     """package.xml says that the package is built by CMake and what the generators and the users need."""
     packages, _ = find_packages(workspace.root / "src")
     found = manifest.read(packages.get(INTERFACES, workspace.root / "src" / INTERFACES))
-    wrong = wrong_for_interfaces(found, USES)
+    wrong = packaging.wrong_for_interfaces(found, USES)
     expect(not wrong, f"In package.xml {'; '.join(wrong)}.", fraction=round(max(0.0, 1.0 - len(wrong) / 7), 2))
 
 
@@ -47,14 +41,14 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
 @hint("rosidl_generate_interfaces(${PROJECT_NAME} …) names every definition, with its folder.")
 def test_generated(workspace: Workspace) -> None:
     """The build generates Python classes from all three definitions."""
-    installed = look(workspace.install, INTERFACES)
+    installation = installed.look(workspace.install, INTERFACES)
     absent = []
     for wanted in contract.DEFINITIONS:
         kind, name = wanted.path.split(".")[0].split("/")
-        if f"{INTERFACES}.{kind}._{_snake(name)}" not in installed.modules:
+        if f"{INTERFACES}.{kind}._{_snake(name)}" not in installation.modules:
             absent.append(wanted.path)
     if absent:
-        copied = [path for path in absent if path in installed.shared]
+        copied = [path for path in absent if path in installation.shared]
         why = (
             "the text was installed, but nothing was generated from it" if copied else "CMakeLists.txt does not name it"
         )
@@ -66,11 +60,12 @@ def test_generated(workspace: Workspace) -> None:
 @hint("ament_package() is the last line of CMakeLists.txt, after everything that it has to know.")
 def test_indexed(workspace: Workspace) -> None:
     """The ament index knows the package, so that ros2 and other packages find it."""
-    installed = look(workspace.install, INTERFACES)
+    installation = installed.look(workspace.install, INTERFACES)
     expect(
-        installed.marker, "share/ament_index has no my_robot_interfaces: CMakeLists.txt does not call ament_package()."
+        installation.marker,
+        "share/ament_index has no my_robot_interfaces: CMakeLists.txt does not call ament_package().",
     )
-    expect("package.xml" in installed.shared, "package.xml was not installed, which ament_package() does.")
+    expect("package.xml" in installation.shared, "package.xml was not installed, which ament_package() does.")
 
 
 def _snake(name: str) -> str:

@@ -5,12 +5,11 @@ from __future__ import annotations
 import random
 from typing import Any
 
+from autograder.checking import LOCKSTEP, REAL, expect, group, hint
 from autograder.checks.ch03_interfaces.hidden.trips import draw_bad_legs, draw_reserves, draw_too_far, draw_trips
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import MAX_REASON, METRES_PER_PERCENT, UNKNOWN
 from autograder.checks.ch03_interfaces.support.reporter import PERIOD, SERVICE, Reporter
-from autograder.run.time_record import LOCKSTEP, REAL
-from autograder.suite import expect, group, hint
 
 check = group("service", doc=contract.SERVICE)
 MIN_REASON = 3  # characters: less gives no reason

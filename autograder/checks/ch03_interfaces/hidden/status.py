@@ -8,15 +8,12 @@ import random
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import BatteryState
 
+from autograder.checking import LOCKSTEP, ReceivedMessage, expect, group, hint
+from autograder.checking.probes import late_joiner, message_period
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import UNKNOWN
 from autograder.checks.ch03_interfaces.support.driver_qos import expect_heard
 from autograder.checks.ch03_interfaces.support.reporter import BATTERY, JOINTS, PERIOD, TOPIC, Reporter, same
-from autograder.harness import ReceivedMessage
-from autograder.probes.late_joiner import kept_messages
-from autograder.probes.message_period import describe_pace, is_paced
-from autograder.run.time_record import LOCKSTEP
-from autograder.suite import expect, group, hint
 
 check = group("status")
 NEEDS = ("status_starts", "robot_status")
@@ -69,7 +66,7 @@ def test_status_for_late_joiners(reporter: Reporter) -> None:
         expect(reliable, "The publisher sends best effort; a status should arrive.")
     if reporter.time == LOCKSTEP:  # elsewhere it publishes while one joins
         reporter.run(2.2)  # so that there are several that it could keep
-        kept = kept_messages(reporter.node, TOPIC, reporter.types.robot_status)
+        kept = late_joiner.kept_messages(reporter.node, TOPIC, reporter.types.robot_status)
         expect(kept == 1, f"A watcher that joins late got {kept} messages, not the last one alone.", fraction=0.5)
 
 
@@ -84,8 +81,8 @@ def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
         reporter.run(0.1)
     spoken = reporter.seconds
     seen = _messages(reporter, SILENCE)
-    paced = is_paced(seen, PERIOD, reporter.time)
-    expect(paced, f"Statuses came {describe_pace(seen)}, instead of every second.")
+    paced = message_period.is_paced(seen, PERIOD, reporter.time)
+    expect(paced, f"Statuses came {message_period.describe_pace(seen)}, instead of every second.")
     count = len(reporter.messages(TOPIC, since=began, until=spoken))
     said = f"While the sensors spoke ten times a second, {count} statuses came in a second, instead of 1."
     expect(count <= 3, said, fraction=0.5)
@@ -94,8 +91,10 @@ def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
     said = f"Within {SILENCE} s after the last message of each sensor, level and joints went from {first} to {last}."
     expect(first == last, f"{said} The newest message counts, however old it is.", fraction=0.5)
     seen = _messages(tuned_reporter, TUNED_SECONDS)
-    paced = is_paced(seen, TUNED_PERIOD, tuned_reporter.time)
-    expect(paced, f"With status_period {TUNED_PERIOD} s, statuses came {describe_pace(seen)}.", fraction=0.5)
+    paced = message_period.is_paced(seen, TUNED_PERIOD, tuned_reporter.time)
+    expect(
+        paced, f"With status_period {TUNED_PERIOD} s, statuses came {message_period.describe_pace(seen)}.", fraction=0.5
+    )
 
 
 @check(

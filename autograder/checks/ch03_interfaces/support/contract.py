@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.probes.interfaces import Constant, Field, Interface, Part
+from autograder.checking.probes import interfaces
 
 INTERFACES = "my_robot_interfaces"
 PACKAGE = "my_robot_package"
@@ -10,40 +10,46 @@ STATUS = "status_publisher"
 DRIVER = "distance_driver"
 MAX_LEGS = 8  # of a trip
 
-ROBOT_STATUS = Interface(
+ROBOT_STATUS = interfaces.Interface(
     "msg/RobotStatus.msg",
     (
-        Part(
+        interfaces.Part(
             (
-                Field("std_msgs/Header", "header"),
-                Field("string", "robot_name"),
-                Field("int32", "battery_level", -1),
-                Field("bool", "is_charging"),
-                Field("float32[]", "joint_positions"),
+                interfaces.Field("std_msgs/Header", "header"),
+                interfaces.Field("string", "robot_name"),
+                interfaces.Field("int32", "battery_level", -1),
+                interfaces.Field("bool", "is_charging"),
+                interfaces.Field("float32[]", "joint_positions"),
             ),
-            (Constant("int32", "BATTERY_UNKNOWN", -1),),
+            (interfaces.Constant("int32", "BATTERY_UNKNOWN", -1),),
         ),
     ),
 )
-CHECK_TRIP = Interface(
+CHECK_TRIP = interfaces.Interface(
     "srv/CheckTrip.srv",
     (
-        Part(
-            (Field(f"float64[<={MAX_LEGS}]", "legs"), Field("int32", "reserve", 20)),
-            (Constant("float64", "METRES_PER_PERCENT", 5.0),),
+        interfaces.Part(
+            (interfaces.Field(f"float64[<={MAX_LEGS}]", "legs"), interfaces.Field("int32", "reserve", 20)),
+            (interfaces.Constant("float64", "METRES_PER_PERCENT", 5.0),),
         ),
-        Part((Field("bool", "possible"), Field("int32", "battery_at_end", -1), Field("string<=80", "reason"))),
+        interfaces.Part(
+            (
+                interfaces.Field("bool", "possible"),
+                interfaces.Field("int32", "battery_at_end", -1),
+                interfaces.Field("string<=80", "reason"),
+            )
+        ),
     ),
 )
-DRIVE_DISTANCE = Interface(
+DRIVE_DISTANCE = interfaces.Interface(
     "action/DriveDistance.action",
     (
-        Part(
-            (Field("float64", "distance"), Field("float64", "speed", 0.2)),
-            (Constant("float64", "MAX_DISTANCE", 5.0), Constant("float64", "MAX_SPEED", 0.5)),
+        interfaces.Part(
+            (interfaces.Field("float64", "distance"), interfaces.Field("float64", "speed", 0.2)),
+            (interfaces.Constant("float64", "MAX_DISTANCE", 5.0), interfaces.Constant("float64", "MAX_SPEED", 0.5)),
         ),
-        Part((Field("float64", "driven"), Field("string<=80", "reason"))),
-        Part((Field("float64", "driven"), Field("float64", "remaining"))),
+        interfaces.Part((interfaces.Field("float64", "driven"), interfaces.Field("string<=80", "reason"))),
+        interfaces.Part((interfaces.Field("float64", "driven"), interfaces.Field("float64", "remaining"))),
     ),
 )
 DEFINITIONS = (ROBOT_STATUS, CHECK_TRIP, DRIVE_DISTANCE)

@@ -9,10 +9,9 @@ from typing import Any
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 
+from autograder.checking import AutoHarness, Goal, ReceivedMessage, Workspace, expect
 from autograder.checks.ch03_interfaces.support.contract import DRIVER, PACKAGE, PERIOD
 from autograder.checks.ch03_interfaces.support.types import Types
-from autograder.harness import AutoHarness, Goal, ReceivedMessage, Workspace
-from autograder.suite import expect
 
 COMMANDS, ODOMETRY, ACTION = "/cmd_vel", "/odom", "/drive_distance"
 _RAISED = re.compile(r"Error raised in execute callback: (.{1,200})")  # of rclpy, in its log

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy
 
-from autograder.suite import expect
+from autograder.checking import expect
 
 
 def expect_heard(node: Node, topic: str) -> None:

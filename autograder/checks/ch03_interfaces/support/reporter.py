@@ -10,10 +10,9 @@ from rclpy.time import Time
 from sensor_msgs.msg import BatteryState, JointState
 from std_msgs.msg import Header
 
+from autograder.checking import AutoHarness, Workspace, expect
 from autograder.checks.ch03_interfaces.support.contract import PACKAGE, RESERVE, STATUS, UNKNOWN
 from autograder.checks.ch03_interfaces.support.types import Types
-from autograder.harness import AutoHarness, Workspace
-from autograder.suite import expect
 
 BATTERY, JOINTS, TOPIC, SERVICE = "/battery_state", "/joint_states", "/robot_status", "/check_trip"
 OFFERS = {BATTERY: BatteryState, JOINTS: JointState}

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from autograder.building.interfaces import load_from
+from autograder.checking import Workspace, load_interfaces
 from autograder.checks.ch03_interfaces.support.contract import INTERFACES
-from autograder.harness import Workspace
 
 
 @dataclass(frozen=True)
@@ -25,5 +24,5 @@ def load_types(workspace: Workspace) -> Types:
     Raises:
         StudentError: a definition is missing or wrong.
     """
-    found = load_from(workspace, INTERFACES)
+    found = load_interfaces(workspace, INTERFACES)
     return Types(found.msg.RobotStatus, found.srv.CheckTrip, found.action.DriveDistance)

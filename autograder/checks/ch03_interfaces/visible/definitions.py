@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from autograder.checking import OK, Diagnosis, StudentError, Workspace, group, hint
+from autograder.checking.probes import interfaces
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.reading import expect_like
-from autograder.diagnosis import OK, Diagnosis
-from autograder.exceptions import StudentError
-from autograder.harness import Workspace
-from autograder.probes.interfaces import Aspect
-from autograder.suite import group, hint
 
 check = group("definitions")
-ALL = tuple(Aspect)
+ALL = tuple(interfaces.Aspect)
 TABLES = (
     "Compare your file with the exercise's table, line by line.",
     "A field is `type name`, a default stands behind it, a constant is `type NAME = value`.",

@@ -7,10 +7,10 @@ import math
 from action_msgs.msg import GoalStatus
 from sensor_msgs.msg import BatteryState
 
+from autograder.checking import check, expect, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.driver import Driver, is_left, stopped
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
-from autograder.suite import check, expect, hint
 
 STATUS, TRIP, DRIVE = (("builds", definition) for definition in ("robot_status", "check_trip", "drive_distance"))
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 import pytest
 
+from autograder.checking import Workspace
 from autograder.checks.ch04_launch.hidden.inputs import Inputs, draw_inputs
 from autograder.checks.ch04_launch.hidden.launches import Launches
-from autograder.harness import Workspace
 
 
 @pytest.fixture(scope="session")

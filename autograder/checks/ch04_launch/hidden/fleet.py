@@ -5,6 +5,8 @@ from __future__ import annotations
 from contextlib import suppress
 from functools import partial
 
+from autograder.checking import CheckFailed, LaunchHarness, StudentError, expect, group, hint
+from autograder.checking.probes import launch_probe, parameters
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
 from autograder.checks.ch04_launch.hidden.launches import Launches
 from autograder.checks.ch04_launch.support import contract
@@ -19,11 +21,6 @@ from autograder.checks.ch04_launch.support.contract import (
     in_spaces,
 )
 from autograder.checks.ch04_launch.support.status import HEAR_SECONDS
-from autograder.exceptions import StudentError
-from autograder.harness.launch import LaunchHarness
-from autograder.probes import launch_probe
-from autograder.probes.parameters import Value, same
-from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("fleet")
 MATCH_SECONDS = 5.0  # real time for a node's topics to be seen, once the node is
@@ -97,7 +94,7 @@ def test_fleet_speed(launches: Launches, inputs: Inputs) -> None:
     own = launches.own_fleet()
     for node in (f"/{FIRST}{DRIVER}", f"/{SECOND}{DRIVER}") if _starts(own, FIRST, SECOND) else ():
         found = _speed(own, node)
-        if not same(found, inputs.speed) and same(_speed(launches.alone(), DRIVER), inputs.speed):
+        if not parameters.same(found, inputs.speed) and parameters.same(_speed(launches.alone(), DRIVER), inputs.speed):
             said = f"With your robot.launch.py and speed:={inputs.speed}, {node} has speed = {found!r}"
             raise CheckFailed(f"{said}; alone, in no namespace, it has {inputs.speed!r}.", fraction=0.5)
 
@@ -170,7 +167,7 @@ def _starts(harness: LaunchHarness, *names: str) -> bool:
     return False
 
 
-def _speed(harness: LaunchHarness, node: str) -> Value | None:
+def _speed(harness: LaunchHarness, node: str) -> parameters.Value | None:
     return (harness.parameters(node, ["speed"]) or {}).get("speed")
 
 

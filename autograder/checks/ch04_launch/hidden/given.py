@@ -9,15 +9,12 @@ import sys
 from collections.abc import Mapping
 from functools import cache
 
-from autograder import layout
+from autograder.checking import Workspace, solution_path
+from autograder.checking.probes import given_files, student_test_runs, versions
 from autograder.checks.ch04_launch.support.contract import CONFIG, PACKAGE
-from autograder.harness import Workspace
-from autograder.probes import student_test_runs
-from autograder.probes.given_files import changed_files
-from autograder.probes.versions import read_files
 
 NAMES = ("driver", "reporter", "self_test")
-_HOME = layout.SOLUTIONS / PACKAGE
+_HOME = solution_path(PACKAGE)
 
 
 @cache
@@ -35,4 +32,6 @@ def given_parameters() -> str:
 
 def changed(workspace: Workspace) -> list[str]:
     """Return the paths of the modules and parameters that are missing or not as they were given."""
-    return changed_files(student_test_runs.take(workspace, PACKAGE).files, read_files(_HOME), (PACKAGE, "config"))
+    return given_files.changed_files(
+        student_test_runs.take(workspace, PACKAGE).files, versions.read_files(_HOME), (PACKAGE, "config")
+    )

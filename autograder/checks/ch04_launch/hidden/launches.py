@@ -7,6 +7,8 @@ from contextlib import ExitStack
 
 from std_msgs.msg import String
 
+from autograder.checking import LaunchHarness, Workspace
+from autograder.checking.probes import launch_arguments, launch_probe, short_lived
 from autograder.checks.ch04_launch.hidden import included
 from autograder.checks.ch04_launch.hidden.given import given_parameters, given_programs
 from autograder.checks.ch04_launch.hidden.inputs import Inputs, with_sim_time, with_values
@@ -21,11 +23,6 @@ from autograder.checks.ch04_launch.support.contract import (
     SHARED,
     SPEED,
 )
-from autograder.harness import Workspace
-from autograder.harness.launch import LaunchHarness
-from autograder.probes.launch_arguments import Argument
-from autograder.probes.launch_probe import shown_arguments, with_files
-from autograder.probes.short_lived import hangs, run_together
 
 # launch shows standard error in any case, and standard output where it is told to.
 ON_STDOUT = {"RCUTILS_LOGGING_USE_STDOUT": "1", "RCUTILS_LOGGING_BUFFERED_STREAM": "0"}
@@ -59,7 +56,7 @@ class Launches:
         self._harnesses: dict[str, LaunchHarness] = {}
         self._copies: dict[str, Workspace] = {}
         self._early: set[LaunchHarness] = set()
-        self._arguments: dict[str, dict[str, Argument]] = {}
+        self._arguments: dict[str, dict[str, launch_arguments.Argument]] = {}
 
     def robot(self, **arguments: object) -> LaunchHarness:
         """Return robot.launch.py as it runs with these arguments; with `report`, its nodes log on standard error."""
@@ -69,7 +66,7 @@ class Launches:
         """Return robot.launch.py as it runs with quotation marks in the robot's name, above a driver that sleeps."""
         return self._harness(ROBOT, {"robot_name": self._inputs.quoted_name}, {}, programs="still")
 
-    def robot_arguments(self) -> dict[str, Argument]:
+    def robot_arguments(self) -> dict[str, launch_arguments.Argument]:
         """Return the arguments that the student's robot.launch.py declares; raises as `shown_arguments` does."""
         return self._shown(ROBOT)
 
@@ -95,7 +92,7 @@ class Launches:
 
     def safe(self, **arguments: object) -> LaunchHarness:
         """Return safe_start.launch.py as it runs with these arguments."""
-        return self._harness(SAFE, arguments, {}, short_lived="self_test")
+        return self._harness(SAFE, arguments, {}, finishes="self_test")
 
     def unusual(self, ending: str) -> LaunchHarness:
         """Return safe_start.launch.py above a self-test of `UNUSUAL`; its battery is given, and good enough."""
@@ -103,13 +100,13 @@ class Launches:
 
     def scripted(self) -> LaunchHarness:
         """Return safe_start.launch.py above `SCRIPTS`."""
-        return self._harness(SAFE, {"battery": self._inputs.enough}, {}, programs="scripts", short_lived="self_test")
+        return self._harness(SAFE, {"battery": self._inputs.enough}, {}, programs="scripts", finishes="self_test")
 
     def is_early(self, harness: LaunchHarness) -> bool:
         """Return whether in a launch of `safe` or `scripted` the driver ran beside the self-test."""
         return harness in self._early
 
-    def safe_arguments(self) -> dict[str, Argument]:
+    def safe_arguments(self) -> dict[str, launch_arguments.Argument]:
         """Return the arguments that safe_start.launch.py declares; raises as `shown_arguments` does."""
         return self._shown(SAFE)
 
@@ -117,9 +114,9 @@ class Launches:
         """End what still runs."""
         self._stack.close()
 
-    def _shown(self, file: str) -> dict[str, Argument]:
+    def _shown(self, file: str) -> dict[str, launch_arguments.Argument]:
         if file not in self._arguments:
-            self._arguments[file] = shown_arguments(self._workspace, PACKAGE, file)
+            self._arguments[file] = launch_probe.shown_arguments(self._workspace, PACKAGE, file)
         return self._arguments[file]
 
     def _harness(
@@ -130,10 +127,10 @@ class Launches:
         robot: str | None = None,
         programs: str | None = None,
         environment: Mapping[str, str] = ON_STDOUT,
-        short_lived: str = "",
+        finishes: str = "",
         beside: str = "",
     ) -> LaunchHarness:
-        """Return a running launch; if its program `short_lived` hangs, a second launch of the same.
+        """Return a running launch; if its program `finishes` hangs, a second launch of the same.
 
         It has the files of the launch file `beside`, or its own if there is none.
         """
@@ -143,9 +140,9 @@ class Launches:
             copy = self._copy(beside or file, robot, programs)
             harness = LaunchHarness(copy, PACKAGE, file, words, listens=listens, environment=environment)
             self._harnesses[key] = self._stack.enter_context(harness)
-            if short_lived and run_together(harness, short_lived, "driver"):
+            if finishes and short_lived.run_together(harness, finishes, "driver"):
                 self._early.add(harness)
-            if short_lived and hangs(harness, short_lived):
+            if finishes and short_lived.hangs(harness, finishes):
                 self._harnesses[key] = self._stack.enter_context(harness.another())
         return self._harnesses[key]
 
@@ -158,5 +155,5 @@ class Launches:
                 text = with_values(given_parameters(), self._inputs.file)
                 files[CONFIG] = with_sim_time(text) if file == ROBOT else text
             texts = {**given_programs(), **(PROGRAMS[programs] if programs else {})}
-            self._copies[name] = with_files(self._workspace, name, PACKAGE, files, texts)
+            self._copies[name] = launch_probe.with_files(self._workspace, name, PACKAGE, files, texts)
         return self._copies[name]

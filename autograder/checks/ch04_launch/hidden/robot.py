@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
+from autograder.checking import LaunchHarness, Workspace, expect, group, hint
+from autograder.checking.probes import launch_probe
 from autograder.checks.ch04_launch.hidden.given import changed
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
 from autograder.checks.ch04_launch.hidden.launches import Launches
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import DRIVER, PACKAGE, REPORTER, ROBOT
-from autograder.harness import Workspace
-from autograder.harness.launch import LaunchHarness
-from autograder.probes import launch_probe
-from autograder.suite import expect, group, hint
 
 check = group("robot")
 SHOWN_SECONDS = 5.0  # real time until a line of a node that runs is shown

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import signal
 
+from autograder.checking import LaunchHarness, expect, group, hint
+from autograder.checking.probes import launch_probe
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
 from autograder.checks.ch04_launch.hidden.launches import UNUSUAL, Launches
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import DRIVER, REPORTER
 from autograder.checks.ch04_launch.support.respawn import expect_respawn
-from autograder.harness.launch import LaunchHarness
-from autograder.probes import launch_probe
-from autograder.run.sandbox.procfs import children
-from autograder.suite import expect, group, hint
 
 check = group("safe_start")
 END_SECONDS = 12.0  # real time; a node that is asked while it starts may need SIGTERM after 5 s
@@ -160,4 +158,4 @@ def _reporters(output: str) -> int:
 
 def _driver_listens(harness: LaunchHarness) -> bool:
     """Return whether the scripted driver has come to its loop, where it heeds SIGTERM."""
-    return any(children(program.pid) for program in harness.programs() if program.name == "driver")
+    return any(program.has_children for program in harness.programs() if program.name == "driver")

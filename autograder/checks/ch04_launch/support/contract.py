@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.probes.parameters import Value
+from autograder.checking.probes import parameters
 
 PACKAGE = "my_robot_bringup"
 ROBOT = "robot.launch.py"
@@ -13,7 +13,7 @@ CONFIG = "config/robot.yaml"
 DRIVER, REPORTER = "/driver", "/reporter"
 SHARED = "/fleet/status"
 ROBOT_NAME, SPEED = "robot1", 0.2  # the defaults of robot.launch.py
-NO_FILE: dict[str, dict[str, Value]] = {  # the defaults of the nodes themselves
+NO_FILE: dict[str, dict[str, parameters.Value]] = {  # the defaults of the nodes themselves
     DRIVER: {"speed": 0.1, "turn_rate": 0.0},
     REPORTER: {"robot_name": "nobody", "report_period": 1.0},
 }

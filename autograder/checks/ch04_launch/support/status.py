@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from autograder.checking import LaunchHarness
 from autograder.checks.ch04_launch.support.contract import SHARED
-from autograder.harness.launch import LaunchHarness
 
 HEAR_SECONDS = 10.0  # real time for two robots to report; they do so twice a second
 

@@ -10,14 +10,12 @@ from dataclasses import dataclass
 import pytest
 from std_msgs.msg import String
 
+from autograder.checking import LaunchHarness, Workspace, check, expect, hint
+from autograder.checking.probes import launch_probe
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import DRIVER, FLEET, PACKAGE, REPORTER, ROBOT, SAFE, SHARED
 from autograder.checks.ch04_launch.support.respawn import expect_respawn
 from autograder.checks.ch04_launch.support.status import HEAR_SECONDS, reporting_robots
-from autograder.harness import Workspace
-from autograder.harness.launch import LaunchHarness
-from autograder.probes import launch_probe
-from autograder.suite import check, expect, hint
 
 NAMES = ("tram", "lorry")  # of the two robots
 

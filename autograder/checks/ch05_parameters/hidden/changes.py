@@ -6,14 +6,11 @@ import math
 import random
 from collections.abc import Mapping
 
+from autograder.checking import LOCKSTEP, Workspace, expect, group, hint
+from autograder.checking.probes import calls, parameters
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, EXECUTABLE, PACKAGE
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, scan
-from autograder.harness import Workspace
-from autograder.probes.calls import Plan, call, calls, look, made
-from autograder.probes.parameters import Value, as_declared, differences, shortened
-from autograder.run.time_record import LOCKSTEP
-from autograder.suite import expect, group, hint
 
 check = group("changes")
 DISTANCES = ("safety_distance", "slow_distance")
@@ -35,17 +32,17 @@ def test_contradiction(robot: Robot, draw: random.Random) -> None:
     """A safety distance that would not be below the slow distance is refused, whichever of the two is set."""
     above, below = draw_beyond(draw)
     above, below = robot.allowed("safety_distance", above), robot.allowed("slow_distance", below)
-    requests: list[tuple[dict[str, Value], float]] = [
+    requests: list[tuple[dict[str, parameters.Value], float]] = [
         ({"safety_distance": above}, 0.0),
         ({"slow_distance": below}, 0.0),
         ({"safety_distance": above, "slow_distance": robot.allowed("slow_distance", above - 0.2)}, 0.0),
         ({"safety_distance": 1.0}, 0.5),  # equal ones
     ]
-    present = as_declared({name: DEFAULTS[name] for name in DISTANCES}, robot.initial)
+    present = parameters.as_declared({name: DEFAULTS[name] for name in DISTANCES}, robot.initial)
     for request, fraction in requests:
         answer = robot.change(request)
         expect(not answer.accepted, f"With 0.5 m and 1.0 m, it took {_values_text(request)}.", fraction=fraction)
-        wrong = differences(robot.parameters.values(*DISTANCES), present)
+        wrong = parameters.differences(robot.parameters.values(*DISTANCES), present)
         expect(not wrong, f"It refused {_values_text(request)}, and yet {'; '.join(wrong)}.")
 
 
@@ -61,10 +58,12 @@ def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None
     for name in reversed(DISTANCES):  # each fits the default of the other, too
         _change(robot, {name: present[name]})
     pairs = present | {"safety_distance": far}, present | {"slow_distance": near}
-    outcomes = calls(workspace, f"{PACKAGE}.configuration", *(call("contradiction", *pair.values()) for pair in pairs))
+    outcomes = calls.calls(
+        workspace, f"{PACKAGE}.configuration", *(calls.call("contradiction", *pair.values()) for pair in pairs)
+    )
     for name, pair, outcome in zip(DISTANCES, pairs, outcomes, strict=True):
         answer = robot.change({name: pair[name]})
-        reason, sentence = answer.reason, shortened(str(outcome.value))
+        reason, sentence = answer.reason, parameters.shortened(str(outcome.value))
         expect(not answer.accepted, f"With {_values_text(present)}, it took {name} = {pair[name]}.", fraction=0.5)
         missing = missing_from(reason, pair)
         said = f"With {_values_text(present)}, its reason to refuse {name} = {pair[name]} is “{reason}”"
@@ -78,13 +77,16 @@ def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None
 def test_together(robot: Robot, draw: random.Random) -> None:
     """Two distances that fit each other are taken in one request, in either order and far from the present ones."""
     far = robot.allowed("safety_distance", round(draw.uniform(1.4, 1.8), 2))
-    up: dict[str, Value] = {"safety_distance": far, "slow_distance": robot.allowed("slow_distance", far + 0.5, up=True)}
-    down: dict[str, Value] = {"slow_distance": 0.6, "safety_distance": 0.3}
-    close: dict[str, Value] = {"safety_distance": robot.allowed("safety_distance", 0.59)}
+    up: dict[str, parameters.Value] = {
+        "safety_distance": far,
+        "slow_distance": robot.allowed("slow_distance", far + 0.5, up=True),
+    }
+    down: dict[str, parameters.Value] = {"slow_distance": 0.6, "safety_distance": 0.3}
+    close: dict[str, parameters.Value] = {"safety_distance": robot.allowed("safety_distance", 0.59)}
     for request in (up, down, close):
         answer = robot.change(request)
         expect(answer.accepted, f"It refused {_values_text(request)}, which fit: “{answer.reason}”.")
-        wrong = differences(robot.parameters.values(*request), request)
+        wrong = parameters.differences(robot.parameters.values(*request), request)
         expect(not wrong, f"It took {_values_text(request)}, and yet {'; '.join(wrong)}.")
 
 
@@ -94,7 +96,11 @@ def test_together(robot: Robot, draw: random.Random) -> None:
 def test_no_side_effects(fresh_robot: Robot, workspace: Workspace) -> None:
     """A refused request changes nothing: no value, no speed, no rate."""
     robot = fresh_robot
-    request: dict[str, Value] = {"control_frequency": 25.0, "max_linear_velocity": 0.8, "safety_distance": 2.0}
+    request: dict[str, parameters.Value] = {
+        "control_frequency": 25.0,
+        "max_linear_velocity": 0.8,
+        "safety_distance": 2.0,
+    }
     for name in reversed(DISTANCES):
         if robot.initial.get(name) != DEFAULTS[name]:
             _change(robot, {name: DEFAULTS[name]})
@@ -106,7 +112,7 @@ def test_no_side_effects(fresh_robot: Robot, workspace: Workspace) -> None:
         commands = robot.messages("/cmd_vel", since=began)
         present_speed = commands[-1].message.linear.x if commands else math.nan
         expect_speed(present_speed, speed, "Right after a refused request, with a wall 2.5 m ahead")
-        wrong = differences(robot.parameters.values(*request), present)
+        wrong = parameters.differences(robot.parameters.values(*request), present)
         expect(not wrong, f"It refused the request, and yet {'; '.join(wrong)}.")
         expect_speed(robot.speed_at(2.5), speed, "After a refused request for 0.8 m/s, with a wall 2.5 m ahead")
         expect_rate(robot.command_rate(), rate, "After a refused request for 25 Hz")
@@ -139,7 +145,7 @@ def test_distance_change(robot: Robot, draw: random.Random) -> None:
     """New distances decide immediately where it slows down and where it stops."""
     safety = robot.allowed("safety_distance", draw.randrange(110, 150) / 100)
     slow = robot.allowed("slow_distance", round(safety + 0.6, 2), up=True)
-    both: dict[str, Value] = {"slow_distance": slow, "safety_distance": safety}
+    both: dict[str, parameters.Value] = {"slow_distance": slow, "safety_distance": safety}
     if not robot.change(both).accepted:  # whether it takes both in one request, others judge
         for name, value in both.items():
             _change(robot, {name: value})
@@ -208,11 +214,13 @@ def test_undisturbed(robot: Robot) -> None:
 def test_passes(robot: Robot) -> None:
     """Requests that have nothing to do with the distances pass."""
     _change(robot, robot.parameters.values("use_sim_time"))  # what it is: the harness's time goes by it
-    request: dict[str, Value] = {"battery_threshold": 30, "max_linear_velocity": 0.4}
+    request: dict[str, parameters.Value] = {"battery_threshold": 30, "max_linear_velocity": 0.4}
     for asked in ({name: value} for name, value in request.items()):
         _change(robot, robot.unfixed(asked))
     _change(robot, robot.unfixed(request), fraction=0.5)
-    wrong = differences(robot.parameters.values(*request), as_declared(robot.unfixed(request), robot.initial))
+    wrong = parameters.differences(
+        robot.parameters.values(*request), parameters.as_declared(robot.unfixed(request), robot.initial)
+    )
     expect(not wrong, f"After these requests {'; '.join(wrong)}.", fraction=0.5)
 
 
@@ -226,12 +234,14 @@ def test_passes(robot: Robot) -> None:
 def test_beside_others(robot: Robot, draw: random.Random) -> None:
     """In a request that also names use_sim_time, the rest is judged and carried out as usual, in any order."""
     other = robot.parameters.values("use_sim_time")
-    bad: dict[str, Value] = {"safety_distance": robot.allowed("safety_distance", round(draw.uniform(1.1, 2.5), 2))}
+    bad: dict[str, parameters.Value] = {
+        "safety_distance": robot.allowed("safety_distance", round(draw.uniform(1.1, 2.5), 2))
+    }
     for request in ({**other, **bad}, {**bad, **other}):
         taken = robot.change(request).accepted
         expect(not taken, f"With 0.5 m and 1.0 m, it took {_values_text(request)}.", fraction=0.5)
     for frequency in (draw.choice((20.0, 25.0)), draw.choice((4.0, 5.0))):
-        rate: dict[str, Value] = {"control_frequency": frequency}
+        rate: dict[str, parameters.Value] = {"control_frequency": frequency}
         request = {**other, **rate} if frequency > 10.0 else {**rate, **other}
         _change(robot, request)
         expect_rate(robot.command_rate(), frequency, f"After {_values_text(request)}", fraction=0.5)
@@ -248,43 +258,43 @@ def draw_four(draw: random.Random) -> tuple[float, float, float, float]:
     return safety, slow, far, near
 
 
-def _judged(workspace: Workspace) -> tuple[Value, Value, Value]:
+def _judged(workspace: Workspace) -> tuple[parameters.Value, parameters.Value, parameters.Value]:
     """Ask validate alone, so that nothing is stored.
 
     Returns:
         The timer's period in ns before and after it judges 25 Hz; whether it takes a safety distance of 1.5 m after it
         has judged a slow distance of 2.0 m. None from a node with other names.
     """
-    plan = Plan()
+    plan = calls.Plan()
     add = plan.add
-    add(call("init", module="rclpy"))
+    add(calls.call("init", module="rclpy"))
 
     def parameter(name: str, value: float) -> int:
-        return add(call("Parameter", name, value=value, module="rclpy.parameter"))
+        return add(calls.call("Parameter", name, value=value, module="rclpy.parameter"))
 
     def validate(parameter: int) -> int:
-        add(call("clear", on=request))
-        add(call("append", made(parameter), on=request))
-        return add(call("validate", made(request), on=node))
+        add(calls.call("clear", on=request))
+        add(calls.call("append", calls.made(parameter), on=request))
+        return add(calls.call("validate", calls.made(request), on=node))
 
     def period() -> int:
-        return add(look("timer_period_ns", on=add(look("timer", on=node))))
+        return add(calls.look("timer_period_ns", on=add(calls.look("timer", on=node))))
 
-    node = add(call("ConfiguredNode"))
-    request = add(call("list", module="builtins"))
+    node = add(calls.call("ConfiguredNode"))
+    request = add(calls.call("list", module="builtins"))
     before = period()
     validate(parameter("control_frequency", 25.0))
     after = period()
     validate(parameter("slow_distance", 2.0))
-    accepted = add(look("successful", on=validate(parameter("safety_distance", 1.5))))
-    outcomes = calls(workspace, f"{PACKAGE}.nodes.{EXECUTABLE}", *plan.steps, network=True)
+    accepted = add(calls.look("successful", on=validate(parameter("safety_distance", 1.5))))
+    outcomes = calls.calls(workspace, f"{PACKAGE}.nodes.{EXECUTABLE}", *plan.steps, network=True)
     return outcomes[before].value, outcomes[after].value, outcomes[accepted].value
 
 
-def _change(robot: Robot, request: Mapping[str, Value], fraction: float = 0.0) -> None:
+def _change(robot: Robot, request: Mapping[str, parameters.Value], fraction: float = 0.0) -> None:
     answer = robot.change(request)
     expect(answer.accepted, f"It refused {_values_text(request)}: “{answer.reason}”.", fraction=fraction)
 
 
-def _values_text(request: Mapping[str, Value]) -> str:
+def _values_text(request: Mapping[str, parameters.Value]) -> str:
     return " and ".join(f"{name} = {value}" for name, value in request.items())

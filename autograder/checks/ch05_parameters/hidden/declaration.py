@@ -6,20 +6,11 @@ import random
 
 from rcl_interfaces.msg import ParameterDescriptor
 
+from autograder.checking import expect, group, hint
+from autograder.checking.probes import parameters
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, NODE, WANTED, Wanted
 from autograder.checks.ch05_parameters.support.robot import Robot
-from autograder.probes.parameters import (
-    TYPES,
-    Value,
-    as_declared,
-    differences,
-    missing_sentence,
-    near_misses,
-    shortened,
-    value_text,
-)
-from autograder.suite import expect, group, hint
 
 check = group("declaration")
 SPELT = {
@@ -56,8 +47,8 @@ def test_starts(robot: Robot) -> None:
 def test_names(robot: Robot) -> None:
     """It declares the six parameters of the table."""
     found = robot.parameters.names()
-    missing = near_misses(WANTED, found)
-    expect(not missing, missing_sentence(WANTED, found), fraction=_share(len(missing)))
+    missing = parameters.near_misses(WANTED, found)
+    expect(not missing, parameters.missing_sentence(WANTED, found), fraction=_share(len(missing)))
 
 
 @check(
@@ -72,7 +63,7 @@ def test_names(robot: Robot) -> None:
 def test_types(robot: Robot) -> None:
     """Each has the type of the table."""
     wrong = [
-        f"{name} is {_type_text(robot.descriptors.get(name))} instead of {TYPES[wanted.type]}"
+        f"{name} is {_type_text(robot.descriptors.get(name))} instead of {parameters.TYPES[wanted.type]}"
         for name, wanted in WANTED.items()
         if name not in robot.descriptors or robot.descriptors[name].type != wanted.type
     ]
@@ -88,7 +79,9 @@ def test_types(robot: Robot) -> None:
 @hint("The default is declare_parameter's second argument.")
 def test_defaults(robot: Robot) -> None:
     """Started without any values, it has the defaults of the table."""
-    wrong = differences(as_declared(robot.initial, DEFAULTS), DEFAULTS)  # another check judges the types
+    wrong = parameters.differences(
+        parameters.as_declared(robot.initial, DEFAULTS), DEFAULTS
+    )  # another check judges the types
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=_share(len(wrong)))
 
 
@@ -98,7 +91,7 @@ def test_descriptions(robot: Robot) -> None:
     """Each has a description, which names the unit where there is one."""
     described = {name: found.description for name, found in robot.descriptors.items()}
     poor = [name for name, wanted in WANTED.items() if not _is_description(described.get(name, ""), wanted.unit)]
-    named = [f"{name} ({value_text(described.get(name))})" for name in poor]
+    named = [f"{name} ({parameters.value_text(described.get(name))})" for name in poor]
     expect(not poor, f"The description is missing, or names no unit: {', '.join(named)}.", fraction=_share(len(poor)))
 
 
@@ -128,7 +121,7 @@ def test_ranges(robot: Robot, draw: random.Random) -> None:
         for value in _outside(wanted, draw):
             answer = robot.change({name: value})
             if answer.accepted or (not answer.reason and name not in wrong):
-                shown = value_text(value)
+                shown = parameters.value_text(value)
                 wrong[name] = f"it took {shown}" if answer.accepted else f"it refused {shown} without a reason"
     told = "; ".join(f"{name}: {why}" for name, why in wrong.items())
     expect(not wrong, f"{told}.", fraction=round(0.8 * (1 - len(wrong) / len(limited)), 2))
@@ -156,7 +149,7 @@ def test_read_only(robot: Robot) -> None:
 def test_typed(robot: Robot) -> None:
     """A value of another type is refused."""
     taken = [
-        f"{value_text(value)} for {name}"
+        f"{parameters.value_text(value)} for {name}"
         for name, value in (
             ("slow_distance", 2),
             ("safety_distance", 0),  # fits any slow distance: the type alone is wrong
@@ -167,8 +160,8 @@ def test_typed(robot: Robot) -> None:
         if name in robot.initial and robot.parameters.change({name: value}).accepted
     ]
     expect(not taken, f"It took {', '.join(taken)}.", fraction=_share(len(taken)))
-    absent = near_misses(WANTED, robot.initial)
-    expect(not absent, missing_sentence(WANTED, robot.initial), fraction=_share(len(absent)))
+    absent = parameters.near_misses(WANTED, robot.initial)
+    expect(not absent, parameters.missing_sentence(WANTED, robot.initial), fraction=_share(len(absent)))
 
 
 @check(points=1, holds="no-others", needs=("starts",), after=("names",))
@@ -179,7 +172,7 @@ def test_no_others(robot: Robot, draw: random.Random) -> None:
     found = robot.parameters.names()
     expect(bool(found & set(WANTED)), "It declares none of the parameters of the table.")
     others = sorted(found - set(WANTED))
-    expect(not others, f"It also declares {shortened(', '.join(others))}.")
+    expect(not others, f"It also declares {parameters.shortened(', '.join(others))}.")
     name = draw.choice(("safty_distance", "max_linear_velocty", "control_freqency"))
     expect(not robot.parameters.change({name: 1.0}).accepted, f"It took 1.0 for {name}, a name that nobody declared.")
 
@@ -200,7 +193,7 @@ def _is_description(text: str, unit: str) -> bool:
 
 
 def _type_text(found: ParameterDescriptor | None) -> str:
-    return "not declared" if found is None else TYPES.get(found.type, "an array")
+    return "not declared" if found is None else parameters.TYPES.get(found.type, "an array")
 
 
 def _range_fault(wanted: Wanted, found: ParameterDescriptor | None) -> str:
@@ -216,7 +209,7 @@ def _range_fault(wanted: Wanted, found: ParameterDescriptor | None) -> str:
     return f"its range has steps of {ranges[0].step:g}" if ranges[0].step > finest else ""
 
 
-def _outside(wanted: Wanted, draw: random.Random) -> tuple[Value, Value]:
+def _outside(wanted: Wanted, draw: random.Random) -> tuple[parameters.Value, parameters.Value]:
     assert wanted.low is not None, "only what has limits is asked"
     assert wanted.high is not None, "only what has limits is asked"
     if isinstance(wanted.default, int):

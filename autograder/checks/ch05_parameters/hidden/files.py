@@ -7,32 +7,30 @@ from typing import Any
 
 import pytest
 
+from autograder.checking import CheckFailed, Workspace, expect, group, hint
+from autograder.checking.probes import calls, parameters
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, OWN, SHARED, WANTED, fleet_values
 from autograder.checks.ch05_parameters.support.robot import fleet_path
-from autograder.harness import Workspace
-from autograder.probes.calls import Plan, call, calls, look
-from autograder.probes.parameters import Value, differences, near_misses, read_file, shortened
-from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("files", needs=("file",))
 JOINER = "joiner"  # a robot that no file names
-Entries = dict[str, dict[str, Value]]
-Values = Callable[[str], dict[str, Value]]
+Entries = dict[str, dict[str, parameters.Value]]
+Values = Callable[[str], dict[str, parameters.Value]]
 
 
 @pytest.fixture(scope="session")
 def fleet(workspace: Workspace) -> Callable[[], Entries]:
     """Read the installed file; a fixture may not fail, so the check that asks does."""
-    return lambda: read_file(fleet_path(workspace))
+    return lambda: parameters.read_file(fleet_path(workspace))
 
 
 @pytest.fixture(scope="session")
 def start_values(workspace: Workspace) -> Values:
     """Return what ROS reads from the file for a robot of this name, over the defaults of the table."""
-    found: dict[str, dict[str, Value]] = {}
+    found: dict[str, dict[str, parameters.Value]] = {}
 
-    def values(name: str) -> dict[str, Value]:
+    def values(name: str) -> dict[str, parameters.Value]:
         found.update(found or _start_values(workspace, (JOINER, *OWN)))
         return found[name]
 
@@ -53,8 +51,11 @@ def test_file_names(fleet: Callable[[], Entries]) -> None:
     """The file sets declared names only."""
     names = {name for values in fleet().values() for name in values}
     unknown = sorted(names - set(WANTED))
-    meant = {near: name for name, near in near_misses(WANTED, names).items() if near}
-    told = [f"{shortened(name)} (you mean {meant[name]})" if name in meant else shortened(name) for name in unknown]
+    meant = {near: name for name, near in parameters.near_misses(WANTED, names).items() if near}
+    told = [
+        f"{parameters.shortened(name)} (you mean {meant[name]})" if name in meant else parameters.shortened(name)
+        for name in unknown
+    ]
     expect(not unknown, f"No node declares {', '.join(told)}: it would have no effect.")
 
 
@@ -62,7 +63,7 @@ def test_file_names(fleet: Callable[[], Entries]) -> None:
 @hint("What every robot has stands under /**, which fits every name.")
 def test_any_robot(start_values: Values) -> None:
     """A robot that the file does not name gets what every robot has."""
-    wrong = differences(start_values(JOINER), {**DEFAULTS, **SHARED})
+    wrong = parameters.differences(start_values(JOINER), {**DEFAULTS, **SHARED})
     expect(not wrong, f"For a robot of another name, {'; '.join(wrong)}.")
 
 
@@ -93,38 +94,40 @@ def test_stands_once(fleet: Callable[[], Entries]) -> None:
     for key, values in entries.items():
         own = set(OWN.get(key.rpartition("/")[2], anybodys))
         again = sorted(set(values) & set(SHARED) - own) if key != "/**" else []
-        expect(not again, f"{', '.join(again)}, which every robot has, stands under {shortened(key)}.")
+        expect(not again, f"{', '.join(again)}, which every robot has, stands under {parameters.shortened(key)}.")
 
 
 def _expect_own(start_values: Values, name: str) -> None:
     """Fail the check unless a robot has its own values, and for the rest those of the table or of any other robot."""
     found = start_values(name)
-    wrong = differences(found, fleet_values(name)) and differences(found, {**start_values(JOINER), **OWN[name]})
+    wrong = parameters.differences(found, fleet_values(name)) and parameters.differences(
+        found, {**start_values(JOINER), **OWN[name]}
+    )
     expect(not wrong, f"For the robot {name}, {'; '.join(wrong)}.")
 
 
-def _start_values(workspace: Workspace, names: tuple[str, ...]) -> dict[str, dict[str, Value]]:
+def _start_values(workspace: Workspace, names: tuple[str, ...]) -> dict[str, dict[str, parameters.Value]]:
     """Ask ROS what nodes of these names would start with, were they to declare the table of exercise 1.
 
     Raises:
         CheckFailed: ROS does not read the file.
     """
-    plan = Plan()
-    plan.add(call("init"))
+    plan = calls.Plan()
+    plan.add(calls.call("init"))
     path = str(fleet_path(workspace))
     options: dict[str, Any] = {
         "cli_args": ["--ros-args", "--params-file", path],
         "automatically_declare_parameters_from_overrides": True,
     }
-    nodes = {name: plan.add(call("Node", name, module="rclpy.node", **options)) for name in names}
+    nodes = {name: plan.add(calls.call("Node", name, module="rclpy.node", **options)) for name in names}
     asked: dict[str, dict[str, int]] = {}
     for name, node in nodes.items():
-        set_there = {parameter: plan.add(call("get_parameter", parameter, on=node)) for parameter in WANTED}
-        asked[name] = {parameter: plan.add(look("value", on=number)) for parameter, number in set_there.items()}
-    outcomes = calls(workspace, "rclpy", *plan.steps, network=True)
+        set_there = {parameter: plan.add(calls.call("get_parameter", parameter, on=node)) for parameter in WANTED}
+        asked[name] = {parameter: plan.add(calls.look("value", on=number)) for parameter, number in set_there.items()}
+    outcomes = calls.calls(workspace, "rclpy", *plan.steps, network=True)
     for name, node in nodes.items():
         if outcomes[node].raised:
-            said = shortened(outcomes[node].message)
+            said = parameters.shortened(outcomes[node].message)
             raise CheckFailed(f"With config/{contract.FLEET}, no node of the name {name} starts: {said}")
     return {
         name: DEFAULTS | {key: outcomes[number].value for key, number in own.items() if not outcomes[number].raised}

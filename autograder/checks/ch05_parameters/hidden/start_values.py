@@ -8,13 +8,10 @@ from random import Random
 
 import pytest
 
+from autograder.checking import CheckFailed, Gallery, Shared, Workspace, drive, expect, group, hint, temporal
+from autograder.checking.probes import calls, parameters
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, refusal
-from autograder.harness import Shared, Workspace, drive
-from autograder.probes.calls import StepResult, call, calls, made
-from autograder.probes.parameters import Value, as_declared, differences, override_arguments, shortened
-from autograder.result.artifacts import Gallery
-from autograder.suite import CheckFailed, expect, group, hint, temporal
 from sim import Pose, RobotSpec, Simulation, World, box
 
 check = group("start")
@@ -29,7 +26,7 @@ class Configured:
     """A node that was started with values of its own, and those values."""
 
     robot: Robot
-    values: dict[str, Value]
+    values: dict[str, parameters.Value]
     velocity: float
     safety: float
     slow: float
@@ -57,8 +54,8 @@ def configured(workspace: Workspace, shared_robot: Shared[Robot], seed: int) -> 
     numbers = start_numbers(seed)
     drawn = {name: present.allowed(name, number, up=name == "slow_distance") for name, number in numbers.items()}
     velocity, safety, slow, frequency, threshold = drawn.values()
-    values: dict[str, Value] = {"robot_name": f"Robot{Random(f'{seed}:name').randrange(100, 999)}", **drawn}
-    values = as_declared({**values, "battery_threshold": int(threshold)}, present.initial)
+    values: dict[str, parameters.Value] = {"robot_name": f"Robot{Random(f'{seed}:name').randrange(100, 999)}", **drawn}
+    values = parameters.as_declared({**values, "battery_threshold": int(threshold)}, present.initial)
     with Robot(workspace, values) as robot:
         yield Configured(robot, values, velocity, safety, slow, frequency, int(threshold))
 
@@ -74,7 +71,7 @@ def configured(workspace: Workspace, shared_robot: Shared[Robot], seed: int) -> 
 @hint("ignore_override=True lets the default win over a file: leave it out.")
 def test_overrides(configured: Configured) -> None:
     """Started with values from the command line, it has these values."""
-    wrong = differences(configured.robot.parameters.values(*configured.values), configured.values)
+    wrong = parameters.differences(configured.robot.parameters.values(*configured.values), configured.values)
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=round(0.8 * (1 - len(wrong) / len(configured.values)), 2))
 
 
@@ -137,14 +134,18 @@ def test_contradictory_start(robot: Robot, workspace: Workspace, draw: Random) -
     distance = robot.allowed("slow_distance", robot.allowed("safety_distance", draw.randrange(40, 90) / 100))
     for safety, slow in ((robot.allowed("safety_distance", distance + 0.4), distance), (distance, distance)):
         values = {"safety_distance": safety, "slow_distance": slow}
-        words = refusal(workspace, as_declared(values, robot.initial))
+        words = refusal(workspace, parameters.as_declared(values, robot.initial))
         told = f"safety_distance {safety} and slow_distance {slow}"
         fraction = 0.75 if safety == slow else 0.0
         expect(words is not None, f"Started with {told}, the node runs.", fraction=fraction)
         expect(not missing_from(words or "", values), f"It ends, but does not name {told}.", fraction=0.5)
     frequency = draw.randrange(55, 90) + 0.5  # above the limits
     fits, equal, start, beyond = _called(workspace, distance, frequency)
-    raised, message, sentence = start.raised, shortened(start.message), shortened(str(equal.value))
+    raised, message, sentence = (
+        start.raised,
+        parameters.shortened(start.message),
+        parameters.shortened(str(equal.value)),
+    )
     said = f"contradiction(0.5, 1.0) {f'raised {fits.raised}' if fits.raised else f'returned {fits.value!r}'}"
     expect(fits.value == "", f"{said}, instead of returning ''.", fraction=0.5)
     said = f"declare_configuration raised {raised or 'nothing'}, which is no ValueError"
@@ -155,20 +156,20 @@ def test_contradictory_start(robot: Robot, workspace: Workspace, draw: Random) -
     expect(bool(beyond.raised), f"{said}: ROS refuses what is not in 1.0 to 50.0, and so should it.", fraction=0.75)
 
 
-def _called(workspace: Workspace, distance: float, frequency: float) -> tuple[StepResult, ...]:
+def _called(workspace: Workspace, distance: float, frequency: float) -> tuple[calls.StepResult, ...]:
     """Ask contradiction about distances that fit and equal ones; declare at equal ones and at a frequency."""
-    equal = override_arguments({"safety_distance": distance, "slow_distance": distance})
-    beyond = override_arguments({"control_frequency": frequency})
-    outcomes = calls(
+    equal = parameters.override_arguments({"safety_distance": distance, "slow_distance": distance})
+    beyond = parameters.override_arguments({"control_frequency": frequency})
+    outcomes = calls.calls(
         workspace,
         CONFIGURATION,
-        call("contradiction", 0.5, 1.0),
-        call("contradiction", distance, distance),
-        call("init", module="rclpy"),
-        call("Node", "bench", module="rclpy.node", cli_args=["--ros-args", *equal]),
-        call("declare_configuration", made(3)),
-        call("Node", "other_bench", module="rclpy.node", cli_args=["--ros-args", *beyond]),
-        call("declare_configuration", made(5)),
+        calls.call("contradiction", 0.5, 1.0),
+        calls.call("contradiction", distance, distance),
+        calls.call("init", module="rclpy"),
+        calls.call("Node", "bench", module="rclpy.node", cli_args=["--ros-args", *equal]),
+        calls.call("declare_configuration", calls.made(3)),
+        calls.call("Node", "other_bench", module="rclpy.node", cli_args=["--ros-args", *beyond]),
+        calls.call("declare_configuration", calls.made(5)),
         network=True,
     )
     return outcomes[0], outcomes[1], outcomes[4], outcomes[6]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from rcl_interfaces.msg import ParameterType
 
-from autograder.probes.parameters import Value
+from autograder.checking.probes import parameters
 
 PACKAGE = "my_robot_package"
 EXECUTABLE = "configured_node"
@@ -27,7 +27,7 @@ class Wanted:
     """
 
     type: int
-    default: Value
+    default: parameters.Value
     low: float | None = None
     high: float | None = None
     unit: str = ""
@@ -47,13 +47,13 @@ FLEET_ROWS = tuple(f"fleet-{name.replace('_', '-')}" for name in WANTED)  # the 
 DEFAULTS = {name: wanted.default for name, wanted in WANTED.items()}
 CHANGEABLE = {name: value for name, value in DEFAULTS.items() if name != "robot_name"}
 
-SHARED: dict[str, Value] = {
+SHARED: dict[str, parameters.Value] = {
     "max_linear_velocity": 0.3,
     "safety_distance": 0.6,
     "slow_distance": 1.5,
     "battery_threshold": 25,
 }
-OWN: dict[str, dict[str, Value]] = {
+OWN: dict[str, dict[str, parameters.Value]] = {
     "scout": {"robot_name": "Scout", "max_linear_velocity": 0.6},
     "porter": {"robot_name": "Porter", "safety_distance": 1.0, "control_frequency": 20.0},
 }
@@ -63,6 +63,6 @@ IN_A_CLASS = "https://docs.ros.org/en/jazzy/Tutorials/Beginner-Client-Libraries/
 ARGUMENTS = "https://docs.ros.org/en/jazzy/How-To-Guides/Node-arguments.html"
 
 
-def fleet_values(name: str) -> dict[str, Value]:
+def fleet_values(name: str) -> dict[str, parameters.Value]:
     """Return every value that a robot of this name has with the fleet's file."""
     return {**DEFAULTS, **SHARED, **OWN.get(name, {})}

@@ -11,22 +11,19 @@ from pathlib import Path
 from rcl_interfaces.msg import ParameterDescriptor, ParameterType
 from sensor_msgs.msg import BatteryState, LaserScan
 
-from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, EXECUTABLE, FLEET, NODE, PACKAGE, WANTED
-from autograder.diagnosis import Kind
-from autograder.exceptions import StudentError
-from autograder.harness import AutoHarness, ReceivedMessage, Workspace
-from autograder.harness.drive import LISTENS, OFFERS, SCAN_SECONDS
-from autograder.harness.steps import FINEST_TICK_NS
-from autograder.probes.message_period import mean_period
-from autograder.probes.parameters import (
-    NodeParameters,
-    SetParametersReply,
-    Value,
-    as_declared,
-    differences,
-    override_arguments,
+from autograder.checking import (
+    LISTENS,
+    OFFERS,
+    SCAN_SECONDS,
+    AutoHarness,
+    Kind,
+    ReceivedMessage,
+    StudentError,
+    Workspace,
+    expect,
 )
-from autograder.suite import expect
+from autograder.checking.probes import message_period, parameters
+from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, EXECUTABLE, FLEET, NODE, PACKAGE, WANTED
 
 BEAMS = 360
 SETTLED = 0.2  # s: a node at 10 Hz has answered a scan by then
@@ -46,7 +43,7 @@ class Robot(AutoHarness):
     def __init__(
         self,
         workspace: Workspace,
-        values: Mapping[str, Value] | None = None,
+        values: Mapping[str, parameters.Value] | None = None,
         *,
         arguments: Sequence[str] = (),
         name: str = NODE,
@@ -58,9 +55,9 @@ class Robot(AutoHarness):
             EXECUTABLE,
             offers=offers,
             listens=LISTENS,
-            arguments=("--ros-args", *override_arguments(values or {}), *arguments),
+            arguments=("--ros-args", *parameters.override_arguments(values or {}), *arguments),
         )
-        self.parameters = NodeParameters(self, name)
+        self.parameters = parameters.NodeParameters(self, name)
 
     @classmethod
     def of_fleet(cls, workspace: Workspace, name: str) -> Robot:
@@ -69,7 +66,7 @@ class Robot(AutoHarness):
         return cls(workspace, arguments=arguments, name=f"/{name}")
 
     @cached_property
-    def initial(self) -> dict[str, Value]:
+    def initial(self) -> dict[str, parameters.Value]:
         """The values with which it started; to be read before anything is changed."""
         return self.parameters.values(*WANTED)
 
@@ -92,14 +89,14 @@ class Robot(AutoHarness):
         steps = (number - low) / step
         return round(low + (math.ceil(steps - 1e-6) if up else math.floor(steps + 1e-6)) * step, 9)
 
-    def unfixed(self, values: Mapping[str, Value]) -> dict[str, Value]:
+    def unfixed(self, values: Mapping[str, parameters.Value]) -> dict[str, parameters.Value]:
         """Return those of these values whose parameters are not read-only; one check judges which are."""
         described = self.descriptors
         return {name: value for name, value in values.items() if name not in described or not described[name].read_only}
 
-    def change(self, values: Mapping[str, Value]) -> SetParametersReply:
+    def change(self, values: Mapping[str, parameters.Value]) -> parameters.SetParametersReply:
         """Ask for a change of several parameters in one request, numbers in the types that the node declares."""
-        return self.parameters.change(as_declared(values, self.initial))
+        return self.parameters.change(parameters.as_declared(values, self.initial))
 
     def see(self, distance: float, seconds: float = 0.5) -> list[ReceivedMessage]:
         """Show a wall at `distance` metres straight ahead, ten times a second; return the commands once settled."""
@@ -111,8 +108,8 @@ class Robot(AutoHarness):
 
     def live(self, seconds: float) -> None:
         """Let time pass in steps that hit each period that a change may bring; `run` hits those of the start."""
-        for _ in range(round(seconds * 1e9) // FINEST_TICK_NS):
-            self.step(FINEST_TICK_NS)
+        for _ in range(round(seconds * 1e9) // self.finest_tick_ns):
+            self.step(self.finest_tick_ns)
 
     def speed_at(self, distance: float) -> float:
         """Return the speed in m/s that the node settles on, nan without a command."""
@@ -128,7 +125,7 @@ class Robot(AutoHarness):
 
     def rate_since(self, began: float) -> float:
         """Return how many commands a second came after `began`, by the mean time between them."""
-        period = mean_period(self.messages("/cmd_vel", since=began))
+        period = message_period.mean_period(self.messages("/cmd_vel", since=began))
         return 1.0 / period if period else math.inf
 
     def charge(self, percent: float) -> None:
@@ -138,12 +135,14 @@ class Robot(AutoHarness):
 
 def restore(robot: Robot) -> bool:
     """Set the parameters that can be changed to the values of the contract; return whether the node has them."""
-    wanted = as_declared({name: CHANGEABLE[name] for name in CHANGEABLE if name in robot.initial}, robot.initial)
+    wanted = parameters.as_declared(
+        {name: CHANGEABLE[name] for name in CHANGEABLE if name in robot.initial}, robot.initial
+    )
     found = robot.parameters.values(*wanted)
-    return not differences(found, wanted) or robot.parameters.change(wanted).accepted
+    return not parameters.differences(found, wanted) or robot.parameters.change(wanted).accepted
 
 
-def refusal(workspace: Workspace, values: Mapping[str, Value]) -> str | None:
+def refusal(workspace: Workspace, values: Mapping[str, parameters.Value]) -> str | None:
     """Return what a program said when it refused to start with these values, None if it did not refuse.
 
     Raises:

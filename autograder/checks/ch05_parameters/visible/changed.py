@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from autograder.checking import expect, group, hint
+from autograder.checking.probes import parameters
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed
-from autograder.probes.parameters import Value
-from autograder.suite import expect, group, hint
 
 check = group("changes")
-PAIR: dict[str, Value] = {"safety_distance": 1.5, "slow_distance": 2.0}
+PAIR: dict[str, parameters.Value] = {"safety_distance": 1.5, "slow_distance": 2.0}
 
 
 @check(points=1, holds=("contradiction", "reason"), needs=("starts",), after=("table",), doc=contract.PARAMETERS)

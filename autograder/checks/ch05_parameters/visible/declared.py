@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+from autograder.checking import Workspace, expect, group, hint
+from autograder.checking.probes import parameters
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, NODE, WANTED
 from autograder.checks.ch05_parameters.support.robot import Robot, refusal
-from autograder.harness import Workspace
-from autograder.probes.parameters import TYPES, Value, differences, missing_sentence, value_text
-from autograder.suite import expect, group, hint
 
 check = group("declaration")
 
@@ -36,14 +35,14 @@ def test_starts(robot: Robot) -> None:
 def test_table(robot: Robot) -> None:
     """It declares the six parameters with the types and defaults of the table, and no others."""
     names = robot.parameters.names()
-    expect(not (sentence := missing_sentence(WANTED, names)), sentence)
+    expect(not (sentence := parameters.missing_sentence(WANTED, names)), sentence)
     expect(not (others := sorted(names - set(WANTED))), f"It also declares {', '.join(others)}.")
     wrong = [
-        f"{name} is {TYPES.get(found.type, 'an array')} instead of {TYPES[WANTED[name].type]}"
+        f"{name} is {parameters.TYPES.get(found.type, 'an array')} instead of {parameters.TYPES[WANTED[name].type]}"
         for name, found in robot.parameters.descriptors(*WANTED).items()
         if found.type != WANTED[name].type
     ]
-    wrong = wrong or differences(robot.parameters.values(*DEFAULTS), DEFAULTS)
+    wrong = wrong or parameters.differences(robot.parameters.values(*DEFAULTS), DEFAULTS)
     expect(not wrong, f"{'; '.join(wrong)}.")
 
 
@@ -52,7 +51,7 @@ def test_table(robot: Robot) -> None:
 @hint("An integer has integer_range=[IntegerRange(...)], a name that is fixed has read_only=True.")
 def test_refuses(robot: Robot) -> None:
     """It refuses -1 m/s, 0.5 Hz, 51 Hz, 5 m, 101 percent and another robot_name, each with a reason."""
-    requests: list[tuple[str, Value]] = [
+    requests: list[tuple[str, parameters.Value]] = [
         ("max_linear_velocity", -1.0),
         ("control_frequency", 0.5),
         ("control_frequency", 51.0),
@@ -65,8 +64,8 @@ def test_refuses(robot: Robot) -> None:
     for name, value in requests:
         expect(name in declared, f"It does not declare {name}.")
         answer = robot.parameters.change({name: value})
-        expect(not answer.accepted, f"It took {value_text(value)} for {name}.")
-        expect(bool(answer.reason), f"It refused {value_text(value)} for {name}, but gave no reason.")
+        expect(not answer.accepted, f"It took {parameters.value_text(value)} for {name}.")
+        expect(bool(answer.reason), f"It refused {parameters.value_text(value)} for {name}, but gave no reason.")
 
 
 @check(points=1, holds="described", needs=("starts",), after=("table",))

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+from autograder.checking import Workspace, expect, group, hint
+from autograder.checking.probes import parameters
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import OWN, fleet_values
 from autograder.checks.ch05_parameters.support.robot import Robot, fleet_path
-from autograder.harness import Workspace
-from autograder.probes.parameters import differences, read_file
-from autograder.suite import expect, group, hint
 
 check = group("files")
 
@@ -17,7 +16,7 @@ check = group("files")
 @hint("config/configured_node.yaml is an example for one node.")
 def test_file(workspace: Workspace) -> None:
     """config/fleet_params.yaml is nested as ROS reads it."""
-    expect(bool(read_file(fleet_path(workspace))), "It names no node.")
+    expect(bool(parameters.read_file(fleet_path(workspace))), "It names no node.")
 
 
 @check(
@@ -35,7 +34,7 @@ def test_robots(workspace: Workspace) -> None:
     for name in OWN:
         wanted = fleet_values(name)
         with Robot.of_fleet(workspace, name) as robot:
-            wrong = differences(robot.parameters.values(*wanted), wanted)
+            wrong = parameters.differences(robot.parameters.values(*wanted), wanted)
         expect(not wrong, f"For the robot {name}, {'; '.join(wrong)}.")
 
 
@@ -43,6 +42,6 @@ def test_robots(workspace: Workspace) -> None:
 @hint("Under scout and porter stands only what the table gives to them alone.")
 def test_once(workspace: Workspace) -> None:
     """What every robot has stands once: no entry of one robot sets slow_distance again."""
-    file = read_file(fleet_path(workspace))
+    file = parameters.read_file(fleet_path(workspace))
     again = [name for name, values in file.items() if name != "/**" and "slow_distance" in values]
     expect(not again, f"Under {', '.join(again)}, slow_distance stands again.")

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from autograder.checking import Workspace, check_of
 from autograder.checks.ch06_testing.hidden.examination import Examination
-from autograder.harness import Workspace
-from autograder.suite import check_of
 
 
 @pytest.fixture(scope="session")

@@ -14,6 +14,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from autograder.checking import CheckFailed, CheckRow, Workspace, expect
+from autograder.checking.probes import colcon_test, student_test_reports, student_test_runs
 from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, reworded, right
 from autograder.checks.ch06_testing.support.assertions import describe_failure, is_usable
 from autograder.checks.ch06_testing.support.contract import (
@@ -25,12 +27,6 @@ from autograder.checks.ch06_testing.support.contract import (
     PACKAGE,
     PYTEST,
 )
-from autograder.harness import Workspace
-from autograder.probes import student_test_runs
-from autograder.probes.colcon_test import colcon_test
-from autograder.probes.student_test_reports import Report, Source, TestRun
-from autograder.run.sandbox import Ending
-from autograder.suite import CheckFailed, CheckRow, expect
 
 RIGHT = {LIMITS: "limits_right", GUARD: "guard_right", LAUNCH: "launch_right"}
 FILES = {
@@ -75,28 +71,30 @@ class Examination:
         self._workspace = workspace
         self._seed = seed
         self._checks = checks
-        self._again: dict[str, dict[str, Report]] = {}
+        self._again: dict[str, dict[str, student_test_reports.Report]] = {}
 
     @cached_property
-    def source(self) -> Source:
+    def source(self) -> student_test_reports.Source:
         """The student's package, read once: later, `colcon test` lets its code write there."""
         return student_test_runs.take(self._workspace, PACKAGE)
 
     @cached_property
-    def trial(self) -> dict[str, Report]:
+    def trial(self) -> dict[str, student_test_reports.Report]:
         """What the tests of each file say of a right version; those of the node are overheard."""
         asked = {FILES[check] for check in self._checks if check in FILES}
         wanted = {
-            name: TestRun((name,), right(STYLES[0], self._draw(name)), sniffed=name == GUARD, shown=True)
+            name: student_test_reports.TestRun(
+                (name,), right(STYLES[0], self._draw(name)), sniffed=name == GUARD, shown=True
+            )
             for name in MIN_TESTS
             if (name in asked or self._checks & ALL_FILES) and name in self.source.tests
         }
         return dict(zip(wanted, self._run(list(wanted.values())), strict=True))
 
     @cached_property
-    def runs(self) -> dict[tuple[str, str], Report]:
+    def runs(self) -> dict[tuple[str, str], student_test_reports.Report]:
         """The other runs: by file, and what is special about the version or the run."""
-        wanted: dict[tuple[str, str], TestRun] = {}
+        wanted: dict[tuple[str, str], student_test_reports.TestRun] = {}
         # What takes long comes first. Which file it is, a test knows anyway.
         for name in (name for name in reversed(MIN_TESTS) if is_usable(name, self.trial.get(name))):
             mine = self._wanted(name, self.trial[name].failed)
@@ -109,9 +107,9 @@ class Examination:
             return dict(zip(wanted, self._run(list(wanted.values())), strict=True))
 
     @cached_property
-    def colcon(self) -> Report:
+    def colcon(self) -> student_test_reports.Report:
         """What `colcon test` does with the student's own package."""
-        return colcon_test(self._workspace, PACKAGE)
+        return colcon_test.colcon_test(self._workspace, PACKAGE)
 
     def expect_right(self, name: str, *whats: str) -> None:
         """Fail the check unless a file's tests pass on right versions in other words, and, if asked, backwards."""
@@ -149,7 +147,7 @@ class Examination:
     def endless(self) -> list[str]:
         """Return the files whose tests had to be stopped on a faulty version."""
         ids = {fault.id for fault in faults()}
-        return sorted({n for (n, what), r in self.runs.items() if what in ids and r.ending is Ending.WALL_TIME})
+        return sorted({n for (n, what), r in self.runs.items() if what in ids and r.timed_out})
 
     def _detects(self, name: str, fault: Fault) -> bool:
         if self._reports(name, self._judging(name)[fault.id]):
@@ -158,7 +156,7 @@ class Examination:
             self._reports(name, r) for r in self._run([self._wanted(name, self.trial[name].failed)[fault.id]])
         )
 
-    def _judging(self, name: str) -> dict[str, Report]:
+    def _judging(self, name: str) -> dict[str, student_test_reports.Report]:
         """Return the runs of a file by which its tests are judged: those of all tests, or of those that are right.
 
         Raises:
@@ -171,7 +169,7 @@ class Examination:
         expect(not _objects_to_right(runs), said)
         return runs
 
-    def _run_again(self, name: str) -> dict[str, Report]:
+    def _run_again(self, name: str) -> dict[str, student_test_reports.Report]:
         """Run a file once more without the tests that object to right versions, on other versions than before."""
         trial = self.trial[name]
         failed = trial.failed
@@ -187,10 +185,10 @@ class Examination:
         self._draw(name, "order", "again").shuffle(whats)
         return dict(zip(whats, self._run([wanted[what] for what in whats]), strict=True))
 
-    def _reports(self, name: str, report: Report) -> bool:
-        return report.ending is Ending.WALL_TIME or report.detects_fault(self.trial[name])
+    def _reports(self, name: str, report: student_test_reports.Report) -> bool:
+        return report.timed_out or report.detects_fault(self.trial[name])
 
-    def _wanted(self, name: str, without: tuple[str, ...], *salt: str) -> dict[str, TestRun]:
+    def _wanted(self, name: str, without: tuple[str, ...], *salt: str) -> dict[str, student_test_reports.TestRun]:
         """Return the runs of a file that are asked for, by what is special about each.
 
         Args:
@@ -198,29 +196,35 @@ class Examination:
             without: tests that do not run.
             salt: another one makes other versions.
         """
-        wanted: dict[str, TestRun] = {}
+        wanted: dict[str, student_test_reports.TestRun] = {}
         asked = [f for f in faults() if FILES[f.check] == name and self._checks & {f.check, ENDS}]
         if asked or RIGHT[name] in self._checks:  # who objects to right versions says nothing of a faulty one
-            wanted[SECOND] = TestRun((name,), right(STYLES[1], self._draw(name, SECOND, *salt)), first_failure=True)
+            wanted[SECOND] = student_test_reports.TestRun(
+                (name,), right(STYLES[1], self._draw(name, SECOND, *salt)), first_failure=True
+            )
             # As much like the first version as faulty ones are: who objects to any other text is found out.
-            wanted[REWORDED] = TestRun((name,), reworded(self._draw(name, REWORDED, *salt)), first_failure=True)
+            wanted[REWORDED] = student_test_reports.TestRun(
+                (name,), reworded(self._draw(name, REWORDED, *salt)), first_failure=True
+            )
             if name in ORDERED:
                 version = right(STYLES[0], self._draw(name, BACKWARDS, *salt))
-                wanted[BACKWARDS] = TestRun((name,), version, backwards=True, first_failure=True)
+                wanted[BACKWARDS] = student_test_reports.TestRun((name,), version, backwards=True, first_failure=True)
         for fault in asked:
             draw = self._draw(name, fault.id, *salt)
-            wanted[fault.id] = TestRun((name,), broken(fault, draw.choice(STYLES), draw), first_failure=True)
+            wanted[fault.id] = student_test_reports.TestRun(
+                (name,), broken(fault, draw.choice(STYLES), draw), first_failure=True
+            )
         return {what: replace(run, without=without) for what, run in wanted.items()}
 
     def _draw(self, *what: str) -> random.Random:
         """Return what is drawn from for one purpose: the same, whatever else is run."""
         return random.Random(":".join((str(self._seed), *what)))
 
-    def _run(self, wanted: Sequence[TestRun]) -> list[Report]:
+    def _run(self, wanted: Sequence[student_test_reports.TestRun]) -> list[student_test_reports.Report]:
         return student_test_runs.run(self._workspace, self.source, wanted)
 
 
-def _objects_to_right(runs: Mapping[str, Report]) -> bool:
+def _objects_to_right(runs: Mapping[str, student_test_reports.Report]) -> bool:
     return any(not runs[what].passed for what in RIGHTS if what in runs)
 
 

@@ -10,10 +10,9 @@ from typing import Any
 
 import yaml
 
-from autograder import layout
+from autograder.checking import GraderError, solution_path
+from autograder.checking.probes import versions
 from autograder.checks.ch06_testing.support.contract import PACKAGE, SCRIPTS
-from autograder.exceptions import GraderError
-from autograder.probes.versions import Version, obfuscate, read
 
 STYLES = ("first", "second")
 FOLDER = Path(__file__).parent / "versions"
@@ -45,25 +44,25 @@ def faults() -> tuple[Fault, ...]:
 
 
 @cache
-def style(name: str) -> Version:
+def style(name: str) -> versions.Version:
     """Return the right version in a style."""
-    first = read(layout.SOLUTIONS / PACKAGE, SCRIPTS)
+    first = versions.read(solution_path(PACKAGE), SCRIPTS)
     if name == STYLES[0]:
         return first
-    return Version({**first.files, **read(FOLDER / name, SCRIPTS).files}, SCRIPTS)
+    return versions.Version({**first.files, **versions.read(FOLDER / name, SCRIPTS).files}, SCRIPTS)
 
 
-def right(name: str, draw: random.Random) -> Version:
+def right(name: str, draw: random.Random) -> versions.Version:
     """Return a right version in a style, obfuscated."""
-    return obfuscate(style(name), draw.getrandbits(32))
+    return versions.obfuscate(style(name), draw.getrandbits(32))
 
 
-def reworded(draw: random.Random) -> Version:
+def reworded(draw: random.Random) -> versions.Version:
     """Return a right version of the first style in which one thing in each file is said otherwise, obfuscated."""
     files = dict(style(STYLES[0]).files)
     for name, edits in yaml.safe_load((FOLDER / "reworded.yaml").read_text()).items():
         files[name] = _edited(files[name], draw.choice(edits), f"{name} in other words")
-    return obfuscate(Version(files, SCRIPTS), draw.getrandbits(32))
+    return versions.obfuscate(versions.Version(files, SCRIPTS), draw.getrandbits(32))
 
 
 def _edited(text: str, edit: dict[str, str], what: str) -> str:
@@ -72,7 +71,7 @@ def _edited(text: str, edit: dict[str, str], what: str) -> str:
     return text.replace(edit["find"], edit["replace"])
 
 
-def broken(fault: Fault, name: str, draw: random.Random) -> Version:
+def broken(fault: Fault, name: str, draw: random.Random) -> versions.Version:
     """Return a faulty version in a style, obfuscated.
 
     Raises:
@@ -85,7 +84,7 @@ def broken(fault: Fault, name: str, draw: random.Random) -> Version:
         raise GraderError(f"fault {fault.id}: {find!r} stands {count} times in {fault.file} of style {name}")
     head, _, tail = text.rpartition(find)
     files = {**version.files, fault.file: head + replace + tail}
-    return obfuscate(Version(files, version.scripts), draw.getrandbits(32))
+    return versions.obfuscate(versions.Version(files, version.scripts), draw.getrandbits(32))
 
 
 def _fault(entry: dict[str, Any]) -> Fault:

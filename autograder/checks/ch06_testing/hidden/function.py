@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from autograder.checking import check_each_row, group, hint
 from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, Examination, Line
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_passed
 from autograder.checks.ch06_testing.support.contract import LIMITS
-from autograder.suite import check_each_row, group, hint
 
 check = group("function")
 RIGHT = ("limits_right",)

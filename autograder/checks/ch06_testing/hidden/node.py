@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from autograder.checking import check_each_row, expect, group, hint
 from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, Examination, Line
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_passed
 from autograder.checks.ch06_testing.support.contract import GUARD
-from autograder.suite import check_each_row, expect, group, hint
 
 check = group("node")
 RIGHT = ("guard_right",)

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
+from autograder.checking import Workspace, expect, group, hint
+from autograder.checking.probes import colcon_test, given_files, installed, linters, student_test_reports
 from autograder.checks.ch06_testing.hidden.examination import Examination
 from autograder.checks.ch06_testing.hidden.faults import STYLES, style
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_no_sleep
 from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, MIN_TESTS, PACKAGE
-from autograder.harness import Workspace
-from autograder.probes import linters
-from autograder.probes.colcon_test import expect_ended
-from autograder.probes.given_files import changed_files
-from autograder.probes.installed import look
-from autograder.probes.student_test_reports import ClaimedOutcome
-from autograder.suite import expect, group, hint
 
 check = group("craft")
 SHARED = ("launch", "config")  # folders of which setup.py installs the files
@@ -30,11 +25,11 @@ def test_as_given(workspace: Workspace, examination: Examination) -> None:
     examination.expect_begun()
     given = style(STYLES[0]).files
     texts = {name: text.encode() for name, text in given.items()}
-    changed = changed_files(examination.source.files, texts, GIVEN)
+    changed = given_files.changed_files(examination.source.files, texts, GIVEN)
     expect(not changed, f"{' and '.join(changed)} of your package is not as it was given.")
     # The runs install each version themselves, so only this sees what the student's own setup.py leaves out.
-    installed = look(workspace.install, PACKAGE)
-    missing = [name for name in given if name.split("/")[0] in SHARED and installed.read(name) is None]
+    installation = installed.look(workspace.install, PACKAGE)
+    missing = [name for name in given if name.split("/")[0] in SHARED and installation.read(name) is None]
     expect(
         not missing,
         f"{' and '.join(missing)} of your package is not installed in share/{PACKAGE}: the given setup.py names it "
@@ -71,7 +66,7 @@ def test_colcon(examination: Examination) -> None:
     examination.expect_begun()
     report = examination.colcon
     verdicts = report.claims.verdicts
-    expect_ended(report)
+    colcon_test.expect_ended(report)
     expect(bool(verdicts), "`colcon test` ran 0 tests.")
     files = {name.partition("::")[0] + ".py" for name in verdicts}
     missing = [name for name in MIN_TESTS if name not in files]
@@ -87,9 +82,17 @@ def test_linters(workspace: Workspace, examination: Examination) -> None:
     examination.expect_begun()
     verdicts = examination.colcon.claims.verdicts
     ran = {name: verdict for name, verdict in verdicts.items() if name.partition("::")[2] in LINTERS}
-    names = {name.partition("::")[2] for name, verdict in ran.items() if verdict is not ClaimedOutcome.SKIPPED}
+    names = {
+        name.partition("::")[2]
+        for name, verdict in ran.items()
+        if verdict is not student_test_reports.ClaimedOutcome.SKIPPED
+    }
     missing = [name for name in LINTERS if name not in names]
     expect(not missing, f"`colcon test` did not run {' and '.join(missing)}.")
-    bad = [name.partition("::")[2] for name, verdict in ran.items() if verdict is not ClaimedOutcome.PASSED]
+    bad = [
+        name.partition("::")[2]
+        for name, verdict in ran.items()
+        if verdict is not student_test_reports.ClaimedOutcome.PASSED
+    ]
     expect(not bad, f"{' and '.join(bad)} found something in the package.", fraction=0.5)
     linters.expect_tidy(workspace, examination.source, ran, fraction=0.5)

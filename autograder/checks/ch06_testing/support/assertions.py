@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from autograder.checking import CheckFailed, expect
+from autograder.checking.probes import student_test_reports
 from autograder.checks.ch06_testing.support.contract import GIVEN_TESTS, MIN_TESTS, PACKAGE
 from autograder.checks.ch06_testing.support.sleeping import sleeps
-from autograder.probes.student_test_reports import UNNAMED, Report, Source, shown_name
-from autograder.run.sandbox import Ending
-from autograder.suite import CheckFailed, expect
 
 UNFINISHED = "still to be written"
 
@@ -14,14 +13,14 @@ UNFINISHED = "still to be written"
 MAX_FAILED = 50  # tests: who has more that fail has nothing to judge others by
 
 
-def is_usable(name: str, report: Report | None) -> bool:
+def is_usable(name: str, report: student_test_reports.Report | None) -> bool:
     """Whether more tests of a file than the given ones pass on a right version, so that they tell others apart."""
     if report is None or report.status not in (0, 1) or len(report.failed) > MAX_FAILED:
         return False
     return len(set(report.executed) - set(report.failed)) > GIVEN_TESTS[name]
 
 
-def expect_passed(name: str, report: Report | None) -> None:
+def expect_passed(name: str, report: student_test_reports.Report | None) -> None:
     """Fail the check unless a file's tests pass on the package as it is, and are enough."""
     if report is None:
         raise CheckFailed(f"There is no test/{name} in the package {PACKAGE}.")
@@ -35,14 +34,14 @@ def expect_passed(name: str, report: Report | None) -> None:
     )
 
 
-def expect_no_sleep(source: Source) -> None:
+def expect_no_sleep(source: student_test_reports.Source) -> None:
     """Fail the check if a test file sleeps."""
     python = {name: data for name, data in sorted(source.tests.items()) if name.endswith(".py")}
     found = [f"{name}, line {line}" for name, data in python.items() for line in sleeps(data)]
     expect(not found, f"There is a sleep in {'; '.join(found[:3])}.")
 
 
-def describe_failure(name: str, report: Report, where: str) -> str:
+def describe_failure(name: str, report: student_test_reports.Report, where: str) -> str:
     """Say why a run that should have passed did not.
 
     Args:
@@ -50,12 +49,12 @@ def describe_failure(name: str, report: Report, where: str) -> str:
         report: its run. What a test said is quoted only if the report is not closed.
         where: the version, or the circumstances.
     """
-    if report.ending is Ending.WALL_TIME:
+    if report.timed_out:
         return f"The tests in {name} do not end {where}."
     if report.failed:
-        test = shown_name(report.failed[0])
+        test = student_test_reports.shown_name(report.failed[0])
         if report.known is not None:
-            return f"{test if test != UNNAMED else 'One test'} in {name} fails {where}."
+            return f"{test if test != student_test_reports.UNNAMED else 'One test'} in {name} fails {where}."
         message = report.claims.messages[report.failed[0]]
         if UNFINISHED in message:
             return f"{name} is still to be written: {test} raises NotImplementedError."

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from autograder.checking import Workspace, check, expect, hint
+from autograder.checking.probes import linters, student_test_reports, student_test_runs, versions
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_no_sleep, expect_passed
 from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMITS, MIN_TESTS, PACKAGE, SCRIPTS
-from autograder.harness import Workspace
-from autograder.probes import linters
-from autograder.probes.student_test_reports import Report, Source, TestRun
-from autograder.probes.student_test_runs import run, take
-from autograder.probes.versions import Version
-from autograder.suite import check, expect, hint
 
-Reports = dict[tuple[str, str], Report]
+Reports = dict[tuple[str, str], student_test_reports.Report]
 GUARD_FILE = "speed_guard/guard.py"
 
 # Mutants that differ much from what is right. The hidden ones differ by a line.
@@ -85,13 +81,13 @@ TURNED, TRUSTING, UNCONFIGURED = "turned", "trusting", "unconfigured"
 
 
 @pytest.fixture(scope="module")
-def source(workspace: Workspace) -> Source:
+def source(workspace: Workspace) -> student_test_reports.Source:
     """The student's package."""
-    return take(workspace, PACKAGE)
+    return student_test_runs.take(workspace, PACKAGE)
 
 
 @pytest.fixture(scope="module")
-def reports(workspace: Workspace, source: Source) -> Reports:
+def reports(workspace: Workspace, source: student_test_reports.Source) -> Reports:
     """What the tests of each file say of the package as it is, and of its mutants."""
     files = {name: data.decode(errors="replace") for name, data in source.files.items() if not name.startswith("test/")}
     mutants: dict[tuple[str, str], dict[str, str]] = {
@@ -104,13 +100,17 @@ def reports(workspace: Workspace, source: Source) -> Reports:
         (LIMITS, HALF): HALF_IN_BETWEEN,
     }
     wanted = {
-        (name, RIGHT): TestRun((name,), Version(files, SCRIPTS), sniffed=name == GUARD, shown=True)
+        (name, RIGHT): student_test_reports.TestRun(
+            (name,), versions.Version(files, SCRIPTS), sniffed=name == GUARD, shown=True
+        )
         for name in MIN_TESTS
     }
     for (name, what), changed in mutants.items():
-        wanted[name, what] = TestRun((name,), Version({**files, **changed}, SCRIPTS), first_failure=True, shown=True)
+        wanted[name, what] = student_test_reports.TestRun(
+            (name,), versions.Version({**files, **changed}, SCRIPTS), first_failure=True, shown=True
+        )
     wanted = {key: one for key, one in wanted.items() if key[0] in source.tests}
-    return dict(zip(wanted, run(workspace, source, list(wanted.values())), strict=True))
+    return dict(zip(wanted, student_test_runs.run(workspace, source, list(wanted.values())), strict=True))
 
 
 @check(points=1, holds="limits-pass", group="function", doc=contract.PYTEST)
@@ -179,7 +179,7 @@ def test_alone(reports: Reports) -> None:
 
 @check(points=1, holds="no-sleep", group="node", needs=("guard_pass",), doc=contract.PYTEST)
 @hint(*contract.NO_SLEEP)
-def test_no_sleep(source: Source) -> None:
+def test_no_sleep(source: student_test_reports.Source) -> None:
     """No test waits with time.sleep."""
     expect_no_sleep(source)
 
@@ -201,7 +201,7 @@ def test_launch_notice(reports: Reports) -> None:
 
 @check(points=1, holds="linters", group="craft", doc=contract.CLI)
 @hint("Run `ament_flake8` and `ament_pep257` in ws/src/speed_guard: they name file and line.")
-def test_linters(workspace: Workspace, source: Source) -> None:
+def test_linters(workspace: Workspace, source: student_test_reports.Source) -> None:
     """The linters flake8 and pep257 find nothing in the package and in your tests."""
     found = linters.objections(workspace, source)
     expect(not found, "; ".join(f"{name}: {finding}" for name, finding in found.items()))

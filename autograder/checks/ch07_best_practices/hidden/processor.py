@@ -9,6 +9,8 @@ from statistics import fmean
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import LaserScan
 
+from autograder.checking import SCAN_SECONDS, Workspace, expect, group, hint
+from autograder.checking.probes import calls, namespaces, qos
 from autograder.checks.ch07_best_practices.support.contract import (
     HISTORY,
     LOGGING,
@@ -19,12 +21,6 @@ from autograder.checks.ch07_best_practices.support.contract import (
     UTILS,
 )
 from autograder.checks.ch07_best_practices.support.robot import Processor, logged, scan
-from autograder.harness import Workspace
-from autograder.harness.drive import SCAN_SECONDS
-from autograder.probes.calls import Plan, call, calls, made
-from autograder.probes.namespaces import missing_in_namespace
-from autograder.probes.qos import non_default_qos
-from autograder.suite import expect, group, hint
 
 check = group("processor")
 SECONDS = 20.0
@@ -59,7 +55,7 @@ def test_sensor_qos(processor: Processor) -> None:
     expect(not reliable, "scan_filtered is offered reliably: a slow listener would hold the node up.", fraction=0.5)
     durable = any(peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in (*taken, *offered))
     expect(not durable, "scan or scan_filtered is transient local, and qos_profile_sensor_data is not.", fraction=0.5)
-    differs = non_default_qos(processor.node, "/mean_distance")
+    differs = qos.non_default_qos(processor.node, "/mean_distance")
     expect(not differs, differs, fraction=0.75)
 
 
@@ -68,7 +64,9 @@ def test_sensor_qos(processor: Processor) -> None:
 @hint("'scan' is relative, '/scan' is not.")
 def test_relative(workspace: Workspace) -> None:
     """The topic names of sensor_processor are relative: in the namespace /a, scan is /a/scan."""
-    left = missing_in_namespace(workspace, PACKAGE, "sensor_processor", ("scan", "scan_filtered", "mean_distance"))
+    left = namespaces.missing_in_namespace(
+        workspace, PACKAGE, "sensor_processor", ("scan", "scan_filtered", "mean_distance")
+    )
     expect(not left, left)
 
 
@@ -186,7 +184,7 @@ def _warnings(processor: Processor, scans: list[LaserScan], apart: float = SCAN_
 
 def _masked(workspace: Workspace, readings: list[float], low: float, high: float) -> list[float]:
     """Return what the student's own mask_invalid makes of readings, right or wrong: its own checks judge it."""
-    (outcome,) = calls(workspace, UTILS, call("mask_invalid", readings, low, high))
+    (outcome,) = calls.calls(workspace, UTILS, calls.call("mask_invalid", readings, low, high))
     return (
         [reading for reading in outcome.value if isinstance(reading, float)] if isinstance(outcome.value, list) else []
     )
@@ -194,13 +192,15 @@ def _masked(workspace: Workspace, readings: list[float], low: float, high: float
 
 def _means(workspace: Workspace, scans: list[list[float]]) -> list[float]:
     """Return the averages of the student's own DataProcessor, one for each scan that has a mean by their function."""
-    plan = Plan()
-    processor = plan.add(call("DataProcessor", HISTORY))
+    plan = calls.Plan()
+    processor = plan.add(calls.call("DataProcessor", HISTORY))
     asked = []
     for readings in scans:
-        masked = plan.add(call("process", readings, 0.12, 3.5, on=processor))
-        asked.append((plan.add(call("mean_distance", made(masked))), plan.add(call("average", on=processor))))
-    outcomes = calls(workspace, UTILS, *plan.steps)
+        masked = plan.add(calls.call("process", readings, 0.12, 3.5, on=processor))
+        asked.append(
+            (plan.add(calls.call("mean_distance", calls.made(masked))), plan.add(calls.call("average", on=processor)))
+        )
+    outcomes = calls.calls(workspace, UTILS, *plan.steps)
     averages = [outcomes[average].value for mean, average in asked if outcomes[mean].value is not None]
     return [average for average in averages if isinstance(average, float)]
 

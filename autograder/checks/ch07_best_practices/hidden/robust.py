@@ -9,6 +9,8 @@ from typing import Any
 from rclpy.qos import DurabilityPolicy
 from std_msgs.msg import String
 
+from autograder.checking import LOCKSTEP, Kind, StudentError, Workspace, expect, group, hint
+from autograder.checking.probes import calls, late_joiner, namespaces, parameters
 from autograder.checks.ch07_best_practices.hidden.bugs import BUGS, with_bugs
 from autograder.checks.ch07_best_practices.support.contract import (
     ERRORS,
@@ -20,18 +22,9 @@ from autograder.checks.ch07_best_practices.support.contract import (
     RULE_STATUS,
 )
 from autograder.checks.ch07_best_practices.support.robot import STATUS, Robust, expected, logged
-from autograder.diagnosis import Kind
-from autograder.exceptions import StudentError
-from autograder.harness import Workspace
-from autograder.probes.calls import call, calls, made
-from autograder.probes.late_joiner import kept_messages
-from autograder.probes.namespaces import missing_in_namespace
-from autograder.probes.parameters import NodeParameters, Value, differences, missing_sentence, override_arguments
-from autograder.run.time_record import LOCKSTEP
-from autograder.suite import expect, group, hint
 
 check = group("robust")
-DEFAULTS: dict[str, Value] = {"failure_probability": 0.1, "seed": 0, "max_errors": 10}
+DEFAULTS: dict[str, parameters.Value] = {"failure_probability": 0.1, "seed": 0, "max_errors": 10}
 READINGS = 20
 BY_TURNS = 10  # readings, of which each second one fails
 LIMITS = {"failure_probability": (0.0, 1.0), "seed": (0, 2**31 - 1), "max_errors": (1, 1000)}
@@ -58,11 +51,11 @@ def test_late_joiners(workspace: Workspace) -> None:
         harness.receive(3)
         offered = harness.node.get_publishers_info_by_topic(STATUS)
         # In real time it publishes while one joins.
-        kept = kept_messages(harness.node, STATUS, String) if harness.time == LOCKSTEP else 1
+        kept = late_joiner.kept_messages(harness.node, STATUS, String) if harness.time == LOCKSTEP else 1
     durable = [peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in offered]
     expect(bool(durable) and all(durable), "status is offered volatile: a display that joins late shows nothing.")
     expect(kept == 1, f"A display that joins late got {kept} messages, not the last one alone.", fraction=0.5)
-    left = missing_in_namespace(workspace, PACKAGE, "robust_node", ("status",))
+    left = namespaces.missing_in_namespace(workspace, PACKAGE, "robust_node", ("status",))
     expect(not left, left, fraction=0.5)
 
 
@@ -80,15 +73,19 @@ def test_counts(workspace: Workspace, draw: random.Random) -> None:
     sentence = f"With seed {seed} and failure_probability {probability}, reading {wrong + 1} made it say {got!r}"
     expect(said == wanted, f"{sentence} instead of {wanted[min(wrong, 39)]!r}.", fraction=0.0)
     never, always = 0.0, 1.0
-    steps = (call("read_sensor", made(0), never), call("read_sensor", made(0), always), call("random", on=0))
-    succeeded, failed, third = calls(workspace, ROBUST, call("Random", seed, module="random"), *steps)[1:]
+    steps = (
+        calls.call("read_sensor", calls.made(0), never),
+        calls.call("read_sensor", calls.made(0), always),
+        calls.call("random", on=0),
+    )
+    succeeded, failed, third = calls.calls(workspace, ROBUST, calls.call("Random", seed, module="random"), *steps)[1:]
     right = succeeded.value == "Success" and "SensorError" in failed.kinds
     ended = f"returned {succeeded.value!r} and raised {failed.raised or 'nothing'}"
     said_of = f"With the probabilities 0 and 1, read_sensor {ended}"
     expect(right, f"{said_of}, instead of 'Success' and SensorError.", fraction=0.5)
     returns: dict[str, Any] = {"random.return_value": probability}
-    generator = call("Mock", module="unittest.mock", **returns)
-    _, equal = calls(workspace, ROBUST, generator, call("read_sensor", made(0), probability))
+    generator = calls.call("Mock", module="unittest.mock", **returns)
+    _, equal = calls.calls(workspace, ROBUST, generator, calls.call("read_sensor", calls.made(0), probability))
     said_of = f"When the generator says {probability}, and the probability is that, read_sensor raised {equal.raised}"
     expect(equal.value == "Success", f"{said_of}: only a number below it is a failure.", fraction=0.5)
     twice_asked = random.Random(seed)
@@ -108,14 +105,14 @@ def test_no_seed(workspace: Workspace, draw: random.Random) -> None:
     expect(all(runs), "It said nothing on status.")
     expect(runs[0] != runs[1], "Two runs without a seed failed at the very same readings.")
     seed = draw.randrange(10**6)
-    *_, shared = calls(
+    *_, shared = calls.calls(
         workspace,
         ROBUST,
-        call("init", module="rclpy"),
-        call("seed", seed, module="random"),
-        call("RobustNode"),
-        call("RobustNode", cli_args=["--ros-args", *override_arguments({"seed": seed + 1})]),
-        call("random", module="random"),
+        calls.call("init", module="rclpy"),
+        calls.call("seed", seed, module="random"),
+        calls.call("RobustNode"),
+        calls.call("RobustNode", cli_args=["--ros-args", *parameters.override_arguments({"seed": seed + 1})]),
+        calls.call("random", module="random"),
         network=True,
     )
     own = shared.value == random.Random(seed).random()
@@ -228,10 +225,10 @@ def test_bugs_are_seen(workspace: Workspace) -> None:
 def test_declared(workspace: Workspace) -> None:
     """Its three parameters are declared with the defaults and ranges of the contract."""
     with Robust(workspace) as harness:
-        node = NodeParameters(harness, "/robust_node")
-        missing = missing_sentence(DEFAULTS, node.names())
+        node = parameters.NodeParameters(harness, "/robust_node")
+        missing = parameters.missing_sentence(DEFAULTS, node.names())
         expect(not missing, missing)
-        wrong = differences(node.values(*DEFAULTS), DEFAULTS)
+        wrong = parameters.differences(node.values(*DEFAULTS), DEFAULTS)
         described = node.descriptors(*DEFAULTS)
     expect(not wrong, f"Without any file or argument, {', '.join(wrong)}.")
     ranges = {name: [*each.floating_point_range, *each.integer_range] for name, each in described.items()}

@@ -7,6 +7,8 @@ from math import inf, nan
 from statistics import fmean
 from typing import Any
 
+from autograder.checking import Workspace, expect, group, hint
+from autograder.checking.probes import calls
 from autograder.checks.ch07_best_practices.support.contract import (
     DEQUE,
     REP_117,
@@ -15,9 +17,6 @@ from autograder.checks.ch07_best_practices.support.contract import (
     RULE_PLACE,
     UTILS,
 )
-from autograder.harness import Workspace
-from autograder.probes.calls import StepResult, call, calls, look, made, same, value
-from autograder.suite import expect, group, hint
 
 check = group("utils")
 LOW, HIGH = 0.2, 6.0
@@ -41,7 +40,7 @@ def test_keeps_places(workspace: Workspace, draw: random.Random) -> None:
     length = len(masked) if isinstance(masked, list) else masked
     expect(length == len(readings), f"{len(readings)} readings went in, {length} came out.")
     kept = [i for i in range(40) if i % 3]
-    moved = next((i for i in kept if not same(masked[i], readings[i])), None)
+    moved = next((i for i in kept if not calls.same(masked[i], readings[i])), None)
     expect(moved is None, f"The good reading in place {moved} came back as {masked[moved or 0]}.")
 
 
@@ -51,7 +50,7 @@ def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
     """mask_invalid puts nan where a number cannot be a measurement."""
     phantoms = [0.0, -1.0, nan, LOW * draw.uniform(0.5, 0.99), HIGH * draw.uniform(1.01, 2.0)]
     masked = _masked(workspace, phantoms)
-    left = [m for m in masked if not same(m, nan)]
+    left = [m for m in masked if not calls.same(m, nan)]
     expect(not left, f"The limits are {LOW} and {HIGH} m, and {phantoms} became {masked}.")
     said = f"Of {phantoms}, {len(masked)} of {len(phantoms)} were replaced by nan, and the others dropped."
     expect(len(masked) == len(phantoms), said, fraction=0.5)  # where readings belong is another check's matter
@@ -62,7 +61,7 @@ def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
 def test_limits_count(workspace: Workspace) -> None:
     """A reading of exactly range_min or range_max is a measurement."""
     masked = _masked(workspace, [LOW, HIGH])
-    expect(same(masked, [LOW, HIGH]), f"[range_min, range_max] became {masked}.")
+    expect(calls.same(masked, [LOW, HIGH]), f"[range_min, range_max] became {masked}.")
 
 
 @check(points=2, holds=("infinities", "mask"), after=("keeps_places",), doc=REP_117)
@@ -70,7 +69,7 @@ def test_limits_count(workspace: Workspace) -> None:
 def test_infinities_stay(workspace: Workspace) -> None:
     """Both infinities are statements of the lidar, and stay."""
     masked = _masked(workspace, [inf, 1.0, -inf])
-    expect(same(masked, [inf, 1.0, -inf]), f"[inf, 1.0, -inf] became {masked}.")
+    expect(calls.same(masked, [inf, 1.0, -inf]), f"[inf, 1.0, -inf] became {masked}.")
 
 
 @check(points=2, holds="mask", after=("keeps_places",))
@@ -82,13 +81,15 @@ def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> Non
         ([near, far, near / 2, far * 2], [near, far], 0.0),
         ([near - BEYOND_LIMIT, far + BEYOND_LIMIT], [], 0.75),
     )
-    outcomes = calls(workspace, UTILS, *(call("mask_invalid", readings, near, far) for readings, _, _ in rows))
+    outcomes = calls.calls(
+        workspace, UTILS, *(calls.call("mask_invalid", readings, near, far) for readings, _, _ in rows)
+    )
     for outcome, (readings, wanted, fraction) in zip(outcomes, rows, strict=True):
         shown = f"mask_invalid({readings}, {near}, {far})"
-        masked = value(outcome, shown)
-        kept = [reading for reading in masked if not same(reading, nan)] if isinstance(masked, list) else masked
+        masked = calls.value(outcome, shown)
+        kept = [reading for reading in masked if not calls.same(reading, nan)] if isinstance(masked, list) else masked
         said = f"{shown} returned {masked}: it should keep {wanted or 'none'}, and put nan in the place of the others."
-        expect(same(kept, wanted), said, fraction=fraction)
+        expect(calls.same(kept, wanted), said, fraction=fraction)
 
 
 @check(points=1, holds=("leave-lists", "mask"), after=("keeps_places",))
@@ -96,19 +97,19 @@ def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> Non
 def test_input_untouched(workspace: Workspace) -> None:
     """What is given to mask_invalid, and to process, is left as it was."""
     readings = [0.0, 1.0, 99.0]
-    (outcome,) = calls(workspace, UTILS, call("mask_invalid", readings, LOW, HIGH))
-    value(outcome, "mask_invalid(...)")
+    (outcome,) = calls.calls(workspace, UTILS, calls.call("mask_invalid", readings, LOW, HIGH))
+    calls.value(outcome, "mask_invalid(...)")
     processed = _processed(workspace, 3, [readings])[1]
-    value(processed, "DataProcessor(3).process(...)")
+    calls.value(processed, "DataProcessor(3).process(...)")
     for each in (outcome, processed):
-        expect(same(list(each.arguments[:1]), [readings]), f"The caller's {readings} became {each.arguments[0]}.")
+        expect(calls.same(list(each.arguments[:1]), [readings]), f"The caller's {readings} became {each.arguments[0]}.")
     for staying in ([1.0, inf, 2.0], []):
-        *_, itself = calls(
+        *_, itself = calls.calls(
             workspace,
             UTILS,
-            call("list", staying, module="builtins"),
-            call("mask_invalid", made(0), LOW, HIGH),
-            call("is_", made(0), made(1), module="operator"),
+            calls.call("list", staying, module="builtins"),
+            calls.call("mask_invalid", calls.made(0), LOW, HIGH),
+            calls.call("is_", calls.made(0), calls.made(1), module="operator"),
         )
         shown = f"mask_invalid({staying}, {LOW}, {HIGH})"
         expect(itself.value is False, f"{shown} returned the caller's list itself instead of a new one.", fraction=0.75)
@@ -121,12 +122,12 @@ def test_mean(workspace: Workspace, draw: random.Random) -> None:
     finite = [round(draw.uniform(LOW, HIGH), 3) for _ in range(9)]
     readings = [*finite, nan, inf, -inf]
     draw.shuffle(readings)
-    (outcome,) = calls(workspace, UTILS, call("mean_distance", readings))
-    mean = value(outcome, "mean_distance(...)")
+    (outcome,) = calls.calls(workspace, UTILS, calls.call("mean_distance", readings))
+    mean = calls.value(outcome, "mean_distance(...)")
     right = isinstance(mean, int | float) and abs(mean - fmean(finite)) < 1e-9
     expect(right, f"The finite readings of {readings} have the mean {fmean(finite):.4f}, not {mean}.")
-    (outcome,) = calls(workspace, UTILS, call("mean_distance", [0.0, nan]))
-    mean = value(outcome, "mean_distance(...)")
+    (outcome,) = calls.calls(workspace, UTILS, calls.call("mean_distance", [0.0, nan]))
+    mean = calls.value(outcome, "mean_distance(...)")
     expect(mean == 0.0, f"mean_distance([0.0, nan]) returned {mean} instead of 0.0.", fraction=0.5)
 
 
@@ -135,8 +136,8 @@ def test_mean(workspace: Workspace, draw: random.Random) -> None:
 def test_no_mean(workspace: Workspace) -> None:
     """Without a finite reading, mean_distance is None."""
     for readings in ([], [nan, nan], [inf]):
-        (outcome,) = calls(workspace, UTILS, call("mean_distance", readings))
-        mean = value(outcome, f"mean_distance({readings})")
+        (outcome,) = calls.calls(workspace, UTILS, calls.call("mean_distance", readings))
+        mean = calls.value(outcome, f"mean_distance({readings})")
         expect(mean is None, f"mean_distance({readings}) returned {mean} instead of None.")
 
 
@@ -149,25 +150,27 @@ def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
     staying = [near, far]  # of which none is masked
     wanted: list[Any] = []  # what a list brings: whether that is right, others judge
     for kind, (module, name, first) in SEQUENCES.items():
-        *outcomes, returned = calls(
+        *outcomes, returned = calls.calls(
             workspace,
             UTILS,
-            call(name, *first, readings, module=module),
-            call("DataProcessor", 2),
-            call("mask_invalid", made(0), LOW, HIGH),
-            call("mean_distance", made(0)),
-            call("process", made(0), LOW, HIGH, on=1),
-            call("average", on=1),
-            call(name, *first, staying, module=module),
-            call("mask_invalid", made(6), LOW, HIGH),
-            look("__class__", on=7),
-            look("__name__", on=8),
+            calls.call(name, *first, readings, module=module),
+            calls.call("DataProcessor", 2),
+            calls.call("mask_invalid", calls.made(0), LOW, HIGH),
+            calls.call("mean_distance", calls.made(0)),
+            calls.call("process", calls.made(0), LOW, HIGH, on=1),
+            calls.call("average", on=1),
+            calls.call(name, *first, staying, module=module),
+            calls.call("mask_invalid", calls.made(6), LOW, HIGH),
+            calls.look("__class__", on=7),
+            calls.look("__name__", on=8),
         )
-        seen = [value(outcome, f"{called} of {kind}") for called, outcome in zip(CALLS, outcomes[2:6], strict=True)]
+        seen = [
+            calls.value(outcome, f"{called} of {kind}") for called, outcome in zip(CALLS, outcomes[2:6], strict=True)
+        ]
         wanted = wanted or seen
         for called, got, right in zip(CALLS, seen, wanted, strict=True):
             said = f"With {readings} as {kind}, {called} returned {got}, and as a list {right}."
-            expect(same(got, right), said)
+            expect(calls.same(got, right), said)
         said = f"With {staying} as {kind}, mask_invalid returned a value of type {returned.value} instead of a list."
         expect(returned.value == "list", said, fraction=0.75)
 
@@ -178,15 +181,18 @@ def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
     """DataProcessor remembers the means of as many scans as it was told, the newest ones."""
     size, means = draw.randint(3, 6), [round(draw.uniform(1.0, 5.0), 3) for _ in range(12)]
     outcomes = _processed(workspace, size, [[mean] * (1 + i % 3) for i, mean in enumerate(means)])
-    average, wanted = value(outcomes[-1], "average()"), fmean(means[-size:])
+    average, wanted = calls.value(outcomes[-1], "average()"), fmean(means[-size:])
     expect(
-        same(average, wanted),
+        calls.same(average, wanted),
         f"After 12 scans, DataProcessor({size}).average() is {average}; the newest {size} have {wanted:.4f}.",
     )
     many = [round(draw.uniform(1.0, 5.0), 3) for _ in range(DEFAULT_HISTORY + 7)]
-    average, wanted = value(_processed(workspace, None, [[mean] for mean in many])[-1], "average()"), fmean(many[7:])
+    average, wanted = (
+        calls.value(_processed(workspace, None, [[mean] for mean in many])[-1], "average()"),
+        fmean(many[7:]),
+    )
     said = f"After {len(many)} scans, DataProcessor().average() is {average}; the newest 100 have {wanted:.4f}."
-    expect(same(average, wanted), said, fraction=0.75)
+    expect(calls.same(average, wanted), said, fraction=0.75)
 
 
 @check(points=1, holds=("process", "average"), after=("bounded_history", "no_mean"))
@@ -195,16 +201,16 @@ def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
     """A scan without a finite distance leaves no trace in the history, and without history there is no average."""
     for blind, fraction in ([nan], 0.0), ([inf, 0.0], 0.5):
         *_, average = _processed(workspace, 3, [[2.0], blind, blind, [4.0]])
-        seen = value(average, "average()")
+        seen = calls.value(average, "average()")
         said = f"After scans of 2 m, {blind}, {blind} and 4 m the average is {seen} instead of 3.0."
-        expect(same(seen, 3.0), said, fraction=fraction)
+        expect(calls.same(seen, 3.0), said, fraction=fraction)
     *_, average = _processed(workspace, 3, [[nan]])
-    seen = value(average, "average()")
+    seen = calls.value(average, "average()")
     expect(seen is None, f"After one blind scan the average is {seen} instead of None.")
-    at_zero = [call("process", [metres], -1.0, HIGH, on=0) for metres in (0.0, 2.0)]  # a mean of 0 is a mean
-    *_, average = calls(workspace, UTILS, call("DataProcessor", 2), *at_zero, call("average", on=0))
-    seen = value(average, "average()")
-    expect(same(seen, 1.0), f"After scans of 0 m and 2 m the average is {seen} instead of 1.0.", fraction=0.5)
+    at_zero = [calls.call("process", [metres], -1.0, HIGH, on=0) for metres in (0.0, 2.0)]  # a mean of 0 is a mean
+    *_, average = calls.calls(workspace, UTILS, calls.call("DataProcessor", 2), *at_zero, calls.call("average", on=0))
+    seen = calls.value(average, "average()")
+    expect(calls.same(seen, 1.0), f"After scans of 0 m and 2 m the average is {seen} instead of 1.0.", fraction=0.5)
 
 
 @check(points=1, holds="silent", after=("masks_phantoms", "mean", "bounded_history"))
@@ -212,17 +218,17 @@ def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
 def test_prints_nothing(workspace: Workspace) -> None:
     """The utilities print nothing: what to say, and how often, is the node's business."""
     outcomes = _processed(workspace, 3, [[0.0, 99.0, 1.0], [nan]])
-    outcomes += calls(
+    outcomes += calls.calls(
         workspace,
         UTILS,
-        call("StringIO", module="io"),
-        call("import_module", "sys", module="importlib"),
-        call("setattr", made(1), "stderr", made(0), module="builtins"),
-        call("simplefilter", "ignore", module="warnings"),  # a warning of numpy's is no print
-        call("disable", module="logging"),  # nor is a record of logging
-        call("mask_invalid", [0.0], LOW, HIGH),
-        call("mean_distance", [nan]),
-        call("getvalue", on=0),
+        calls.call("StringIO", module="io"),
+        calls.call("import_module", "sys", module="importlib"),
+        calls.call("setattr", calls.made(1), "stderr", calls.made(0), module="builtins"),
+        calls.call("simplefilter", "ignore", module="warnings"),  # a warning of numpy's is no print
+        calls.call("disable", module="logging"),  # nor is a record of logging
+        calls.call("mask_invalid", [0.0], LOW, HIGH),
+        calls.call("mean_distance", [nan]),
+        calls.call("getvalue", on=0),
     )
     for outcome in outcomes:
         expect(outcome.raised != "NotImplementedError", "They are still to be written.")
@@ -232,14 +238,14 @@ def test_prints_nothing(workspace: Workspace) -> None:
 
 
 def _masked(workspace: Workspace, readings: list[float]) -> list[float]:
-    (outcome,) = calls(workspace, UTILS, call("mask_invalid", readings, LOW, HIGH))
-    masked = value(outcome, f"mask_invalid({readings}, {LOW}, {HIGH})")
+    (outcome,) = calls.calls(workspace, UTILS, calls.call("mask_invalid", readings, LOW, HIGH))
+    masked = calls.value(outcome, f"mask_invalid({readings}, {LOW}, {HIGH})")
     expect(isinstance(masked, list), f"mask_invalid returned {masked!r} instead of a list.")
     return list(masked)
 
 
-def _processed(workspace: Workspace, history: int | None, scans: list[list[float]]) -> list[StepResult]:
+def _processed(workspace: Workspace, history: int | None, scans: list[list[float]]) -> list[calls.StepResult]:
     """Let a DataProcessor, of the default history if None, take scans; return the outcomes, `average()`'s last."""
     sizes = () if history is None else (history,)
-    process = [call("process", readings, LOW, HIGH, on=0) for readings in scans]
-    return calls(workspace, UTILS, call("DataProcessor", *sizes), *process, call("average", on=0))
+    process = [calls.call("process", readings, LOW, HIGH, on=0) for readings in scans]
+    return calls.calls(workspace, UTILS, calls.call("DataProcessor", *sizes), *process, calls.call("average", on=0))

@@ -10,11 +10,9 @@ from itertools import islice
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float32, String
 
+from autograder.checking import LOCKSTEP, SCAN_SECONDS, AutoHarness, Workspace
+from autograder.checking.probes import parameters
 from autograder.checks.ch07_best_practices.support.contract import MAX_ERRORS, PACKAGE
-from autograder.harness import AutoHarness, Workspace
-from autograder.harness.drive import SCAN_SECONDS
-from autograder.probes.parameters import override_arguments
-from autograder.run.time_record import LOCKSTEP
 
 FILTERED, MEAN, STATUS = "/scan_filtered", "/mean_distance", "/status"
 PATIENCE = 3.0  # s of ROS time for a reading, which should take one
@@ -49,8 +47,8 @@ class Processor(AutoHarness):
 class Robust(AutoHarness):
     """The harness of robust_node, started with parameters of the check's choice."""
 
-    def __init__(self, workspace: Workspace, **parameters: float) -> None:
-        arguments = ("--ros-args", *override_arguments(parameters))
+    def __init__(self, workspace: Workspace, **values: float) -> None:
+        arguments = ("--ros-args", *parameters.override_arguments(values))
         super().__init__(workspace, PACKAGE, "robust_node", listens={STATUS: String}, arguments=arguments)
         self._seen = 0
 

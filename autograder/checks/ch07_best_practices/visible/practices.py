@@ -6,12 +6,10 @@ from math import inf, isnan, nan
 
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
+from autograder.checking import Workspace, check, expect, hint
+from autograder.checking.probes import calls, parameters
 from autograder.checks.ch07_best_practices.support import contract
 from autograder.checks.ch07_best_practices.support.robot import STATUS, Processor, Robust, expected, logged, scan
-from autograder.harness import Workspace
-from autograder.probes.calls import call, calls, made, same, value
-from autograder.probes.parameters import NodeParameters
-from autograder.suite import check, expect, hint
 
 BLIND_SECONDS = 6  # of scans without a distance
 
@@ -21,11 +19,11 @@ BLIND_SECONDS = 6  # of scans without a distance
 def test_mask_invalid(workspace: Workspace) -> None:
     """mask_invalid replaces what is no measurement by nan, and keeps every reading's place."""
     readings = [1.0, 0.0, inf, nan, 9.0, -inf, 0.12, 3.5]
-    (outcome,) = calls(workspace, contract.UTILS, call("mask_invalid", readings, 0.12, 3.5))
+    (outcome,) = calls.calls(workspace, contract.UTILS, calls.call("mask_invalid", readings, 0.12, 3.5))
     shown = "mask_invalid([1.0, 0.0, inf, nan, 9.0, -inf, 0.12, 3.5], 0.12, 3.5)"
-    masked = value(outcome, shown)
-    expect(same(masked, [1.0, nan, inf, nan, nan, -inf, 0.12, 3.5]), f"{shown} returned {masked}.")
-    expect(same(list(outcome.arguments[:1]), [readings]), f"{shown} changed the list that it was given.")
+    masked = calls.value(outcome, shown)
+    expect(calls.same(masked, [1.0, nan, inf, nan, nan, -inf, 0.12, 3.5]), f"{shown} returned {masked}.")
+    expect(calls.same(list(outcome.arguments[:1]), [readings]), f"{shown} changed the list that it was given.")
     expect(not outcome.printed, f"{shown} printed {outcome.printed[:80]!r}.")
 
 
@@ -33,12 +31,12 @@ def test_mask_invalid(workspace: Workspace) -> None:
 @hint(contract.RULE_MEAN, "Without a finite reading there is no mean: return None, not 0.0.")
 def test_mean_distance(workspace: Workspace) -> None:
     """mean_distance takes the mean of the finite readings, and says None when there is none."""
-    some, none = calls(
-        workspace, contract.UTILS, call("mean_distance", [1.0, nan, 2.0, inf]), call("mean_distance", [nan])
+    some, none = calls.calls(
+        workspace, contract.UTILS, calls.call("mean_distance", [1.0, nan, 2.0, inf]), calls.call("mean_distance", [nan])
     )
-    mean = value(some, "mean_distance([1.0, nan, 2.0, inf])")
-    expect(same(mean, 1.5), f"mean_distance([1.0, nan, 2.0, inf]) returned {mean} instead of 1.5.")
-    nothing = value(none, "mean_distance([nan])")
+    mean = calls.value(some, "mean_distance([1.0, nan, 2.0, inf])")
+    expect(calls.same(mean, 1.5), f"mean_distance([1.0, nan, 2.0, inf]) returned {mean} instead of 1.5.")
+    nothing = calls.value(none, "mean_distance([nan])")
     expect(nothing is None, f"mean_distance([nan]) returned {nothing} instead of None.")
 
 
@@ -53,14 +51,14 @@ def test_mean_distance(workspace: Workspace) -> None:
 def test_data_processor(workspace: Workspace) -> None:
     """DataProcessor remembers the means of the newest scans, no more than it was told to, and none of a blind scan."""
     steps = [
-        call("DataProcessor", 2),
-        *(call("process", [metres, 0.0], 0.1, 9.0, on=0) for metres in (1.0, 2.0, 3.0, nan)),
+        calls.call("DataProcessor", 2),
+        *(calls.call("process", [metres, 0.0], 0.1, 9.0, on=0) for metres in (1.0, 2.0, 3.0, nan)),
     ]
-    _, first, *_, outcome = calls(workspace, contract.UTILS, *steps, call("average", on=0))
-    average = value(outcome, "average()")
+    _, first, *_, outcome = calls.calls(workspace, contract.UTILS, *steps, calls.call("average", on=0))
+    average = calls.value(outcome, "average()")
     shown = "After scans of 1, 2, 3 and nan m, DataProcessor(2).average()"
-    expect(same(average, 2.5), f"{shown} is {average} instead of 2.5.")
-    expect(same(list(first.arguments[:1]), [[1.0, 0.0]]), "process changed the list that it was given.")
+    expect(calls.same(average, 2.5), f"{shown} is {average} instead of 2.5.")
+    expect(calls.same(list(first.arguments[:1]), [[1.0, 0.0]]), "process changed the list that it was given.")
 
 
 @check(points=1, holds="scan-filtered", group="processor", after=("mask_invalid", "data_processor"), doc=contract.QOS)
@@ -133,7 +131,9 @@ def test_declares(workspace: Workspace) -> None:
     """robust_node offers status transient local, and its three parameters have ranges."""
     with Robust(workspace) as harness:
         offered = harness.node.get_publishers_info_by_topic(STATUS)
-        described = NodeParameters(harness, "/robust_node").descriptors("failure_probability", "seed", "max_errors")
+        described = parameters.NodeParameters(harness, "/robust_node").descriptors(
+            "failure_probability", "seed", "max_errors"
+        )
     durable = [end.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for end in offered]
     expect(bool(durable) and all(durable), "status is not transient local: a node that joins late would hear nothing.")
     expect(len(described) == 3, f"Of its three parameters it declares {', '.join(described) or 'none'}.")
@@ -176,13 +176,13 @@ def test_recovers(workspace: Workspace) -> None:
 @hint("except SensorError as error: nothing wider. The generator that is handed in is the one that is used.")
 def test_shows_bugs(workspace: Workspace) -> None:
     """It does not catch a bug: with range(3) for a generator, timer_callback raises AttributeError."""
-    *_, called = calls(
+    *_, called = calls.calls(
         workspace,
         contract.ROBUST,
-        call("init", module="rclpy"),
-        call("range", 3, module="builtins"),
-        call("RobustNode", generator=made(1)),
-        call("timer_callback", on=2),
+        calls.call("init", module="rclpy"),
+        calls.call("range", 3, module="builtins"),
+        calls.call("RobustNode", generator=calls.made(1)),
+        calls.call("timer_callback", on=2),
         network=True,
     )
     expect("AttributeError" in called.kinds, f"It raised {called.raised or 'nothing'}.")

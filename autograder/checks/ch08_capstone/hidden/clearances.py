@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 
+from autograder.checking import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, Part, scan
 from autograder.checks.ch08_capstone.hidden.exact_limits import (
     OPEN,
@@ -17,7 +18,6 @@ from autograder.checks.ch08_capstone.hidden.lidars import OTHER_LIDARS, other_li
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import TOLERANCE
 from autograder.checks.ch08_capstone.support.system import System
-from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("step_2")
 

@@ -8,6 +8,8 @@ from collections.abc import Mapping
 
 from std_srvs.srv import SetBool
 
+from autograder.checking import LOCKSTEP, expect, group, hint
+from autograder.checking.probes import message_period
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN, expect_exact_limits
 from autograder.checks.ch08_capstone.hidden.judges import JudgeDriving
@@ -21,9 +23,6 @@ from autograder.checks.ch08_capstone.support.system import (
     expect_still,
     expect_turning,
 )
-from autograder.probes.message_period import describe_pace, is_paced
-from autograder.run.time_record import LOCKSTEP
-from autograder.suite import expect, group, hint
 
 check = group("step_2")
 SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
@@ -163,8 +162,8 @@ def _hold_and_release(system: System) -> None:
     expect(answer.success, "Asked to hold still, it answered success = false.")
     held = system.see(OPEN, 1.7).commands
     expect_still(held, "After enable with data: false")
-    said = f"Held still, it published a command {describe_pace(held)}, instead of ten a second."
-    expect(is_paced(held, 0.1, system.harness.time), said, fraction=0.75)
+    said = f"Held still, it published a command {message_period.describe_pace(held)}, instead of ten a second."
+    expect(message_period.is_paced(held, 0.1, system.harness.time), said, fraction=0.75)
     answer = system.call(SetBool, "/enable", SetBool.Request(data=True))
     expect(answer.success, "Asked to drive again, it answered success = false.", fraction=0.5)
     expect_driving(system.see(OPEN).commands, "After enable with data: true", SPEED, fraction=0.5)

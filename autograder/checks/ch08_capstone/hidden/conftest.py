@@ -7,11 +7,11 @@ from functools import partial
 
 import pytest
 
+from autograder.checking import Workspace
 from autograder.checks.ch08_capstone.hidden import judges
 from autograder.checks.ch08_capstone.hidden.drives import Drives
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, MONITOR, PROCESSOR
 from autograder.checks.ch08_capstone.support.system import SharedSystem, System
-from autograder.harness import Workspace
 
 SLOW = 0.25  # of ROS time: how fast the machine's clocks run for programs that must not look at them
 

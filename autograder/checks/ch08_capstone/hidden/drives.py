@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from autograder.checking import ReceivedMessage, drive
 from autograder.checks.ch02_nodes.hidden import world_generation
 from autograder.checks.ch08_capstone.hidden.tracks import Floats, LidarFault, blocked
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PARAMETERS
 from autograder.checks.ch08_capstone.support.system import System
-from autograder.harness import ReceivedMessage, drive
 from sim import Pose, Recording, RobotSpec, Scan, Simulation, State, World, box
 
 RADIUS = 0.18  # m

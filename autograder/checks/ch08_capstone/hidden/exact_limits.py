@@ -7,10 +7,10 @@ from typing import Any
 
 from sensor_msgs.msg import LaserScan
 
+from autograder.checking import expect
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN, Part, scan
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PARAMETERS, PROCESSOR, TOLERANCE
 from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_turning
-from autograder.suite import expect
 
 SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
 TURN = PARAMETERS[CONTROLLER]["turn_speed"].default

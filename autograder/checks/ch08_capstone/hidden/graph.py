@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 from rclpy.node import Node
 
+from autograder.checking import Harness, expect
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, INTERFACES, MONITOR, PROCESSOR
-from autograder.harness.grader_node import NAME
-from autograder.suite import expect
 
 _SCAN, _CLEARANCE = "sensor_msgs/msg/LaserScan", f"{INTERFACES}/msg/Clearance"
 _TWIST, _HEALTH = "geometry_msgs/msg/Twist", f"{INTERFACES}/msg/Health"
@@ -44,18 +43,17 @@ def names_of(node: str) -> list[str]:
     return [endpoint.name.removeprefix("/") for endpoint in ENDPOINTS if endpoint.node == node]
 
 
-def expect_endpoints(graph: Node, name: str) -> None:
+def expect_endpoints(harness: Harness, name: str) -> None:
     """Fail the check unless a node is there under its name, with all its ends; say what is there instead.
 
     Args:
-        graph: the grader's node, which sees the graph.
+        harness: the student's programs.
         name: the node's.
     """
-    there = [found for found in graph.get_node_names_and_namespaces() if found[0] != NAME]
-    others = ", ".join(f"{space.rstrip('/')}/{other}" for other, space in there) or "none"
-    expect((name, "/") in there, f"No node is called /{name}; there is: {others}.")
+    nodes = harness.nodes()
+    expect(f"/{name}" in nodes, f"No node is called /{name}; there is: {', '.join(nodes) or 'none'}.")
     wanted = [endpoint for endpoint in ENDPOINTS if endpoint.node == name]
-    missing = [said for endpoint in wanted if (said := _describe_fault(graph, endpoint))]
+    missing = [said for endpoint in wanted if (said := _describe_fault(harness.node, endpoint))]
     expect(not missing, " ".join(missing), fraction=round(max(0.0, 1.0 - len(missing) / len(wanted)), 2))
 
 

@@ -8,6 +8,8 @@ from typing import Any
 
 from geometry_msgs.msg import Twist
 
+from autograder.checking import LOCKSTEP, SCAN_SECONDS, ReceivedMessage, expect, group, hint
+from autograder.checking.probes import message_period
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN
 from autograder.checks.ch08_capstone.support import contract
@@ -22,11 +24,6 @@ from autograder.checks.ch08_capstone.support.contract import (
     WATCHED,
 )
 from autograder.checks.ch08_capstone.support.system import SETTLED, SharedSystem, System, describe_report
-from autograder.harness import ReceivedMessage
-from autograder.harness.drive import SCAN_SECONDS
-from autograder.probes.message_period import describe_pace, is_paced
-from autograder.run.time_record import LOCKSTEP
-from autograder.suite import expect, group, hint
 
 check = group("step_2")
 DEAD = {"scan", "clearance"}  # what falls silent with the lidar
@@ -94,8 +91,10 @@ def test_dead_sensor(system: System, slow_system: SharedSystem, lone_monitor: Sh
     hasty = [r for r in reports if r.message.level == FAILED and r.seconds - began < SILENT - MARGIN]
     said = f"Health was FAILED less than {SILENT:.0f} s after the last scan: that is no silence yet."
     expect(not hasty, said, fraction=0.5)
-    paced = is_paced(reports, 0.5, system.harness.time)
-    expect(paced, f"It published a report {describe_pace(reports)}, instead of two a second.", fraction=0.5)
+    paced = message_period.is_paced(reports, 0.5, system.harness.time)
+    expect(
+        paced, f"It published a report {message_period.describe_pace(reports)}, instead of two a second.", fraction=0.5
+    )
     later = [r for r in reports if r.seconds - began > SAID_WITHIN]
     _expect_reports(later, FAILED, DEAD, "2 to 4 s after the last scan", fraction=0.5)
     system.see(OPEN, SAID_WITHIN)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from autograder.checking import CheckFailed, StudentError
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PROCESSOR
 from autograder.checks.ch08_capstone.support.system import SharedSystem, System
-from autograder.exceptions import StudentError
-from autograder.suite import CheckFailed
 
 JudgeDriving = Callable[[Callable[[System], None]], None]  # takes a check's body, which takes the system
 

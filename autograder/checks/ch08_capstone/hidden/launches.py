@@ -11,6 +11,8 @@ from random import Random
 import pytest
 import yaml
 
+from autograder.checking import LaunchHarness, Workspace, expect, group, hint
+from autograder.checking.probes import files, launch_probe
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
     CONFIG,
@@ -21,11 +23,6 @@ from autograder.checks.ch08_capstone.support.contract import (
     Bounded,
     name_of,
 )
-from autograder.harness import Workspace
-from autograder.harness.launch import LaunchHarness
-from autograder.probes import launch_probe
-from autograder.probes.files import read_plain
-from autograder.suite import expect, group, hint
 
 check = group("step_4", doc=contract.LAUNCH_DOC)
 SHARED = ("shares",)
@@ -189,7 +186,7 @@ def _absolute_names(workspace: Workspace) -> str:
 
 def _printing(workspace: Workspace, name: str, line: str) -> str:
     """Return an installed program that prints a line before anything else; empty if it is no script that can."""
-    data = read_plain(workspace.executable(PACKAGE, name), MAX_SCRIPT) or b""
+    data = files.read_plain(workspace.executable(PACKAGE, name), MAX_SCRIPT) or b""
     first, _, rest = data.decode(errors="replace").partition("\n")
     can = "python" in first and "__future__" not in rest  # such an import has to come first
     return f"{first}\nprint({line!r}, flush=True)\n{rest}" if can else ""

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from autograder.checking import CheckFailed, Diagnosis, Workspace, expect, group, hint
+from autograder.checking.probes import installed, manifest
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import INTERFACES
 from autograder.checks.ch08_capstone.support.messages import CLEARANCE, HEALTH, Message, differences, load_messages
 from autograder.checks.ch08_capstone.support.sources import require_built, source_of
-from autograder.diagnosis import Diagnosis
-from autograder.harness import Workspace
-from autograder.probes import manifest
-from autograder.probes.installed import look
-from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("step_3", doc=contract.INTERFACES_DOC)
 NEEDS = {
@@ -42,7 +39,7 @@ def test_health_message(workspace: Workspace) -> None:
 def test_interface_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds both messages, and the manifest declares what that takes."""
     require_built(builds, INTERFACES)
-    shared = look(workspace.install, INTERFACES).shared
+    shared = installed.look(workspace.install, INTERFACES).shared
     for name in (CLEARANCE.name, HEALTH.name):
         expect(
             f"msg/{name}.msg" in shared,

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
+from autograder.checking import Workspace, expect, group, hint
+from autograder.checking.probes import namespaces
 from autograder.checks.ch08_capstone.hidden.graph import expect_endpoints, names_of
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, MONITOR, PROCESSOR, PROGRAMS
 from autograder.checks.ch08_capstone.support.system import SharedSystem
-from autograder.harness import Workspace
-from autograder.probes.namespaces import missing_in_namespace
-from autograder.suite import expect, group, hint
 
 check = group("step_2")
 MESSAGES = ("clearance_message", "interface_package")
@@ -24,21 +23,21 @@ ENDS = (
 @hint(*ENDS)
 def test_processor(shared_system: SharedSystem) -> None:
     """The node sensor_processor has its name, and its topics with their types."""
-    expect_endpoints(shared_system.get(PROCESSOR).harness.node, PROCESSOR)
+    expect_endpoints(shared_system.get(PROCESSOR).harness, PROCESSOR)
 
 
 @check(points=1, holds="controller-name", needs=("build",), after=MESSAGES, doc=contract.NODES_DOC)
 @hint(*ENDS)
 def test_controller(shared_system: SharedSystem) -> None:
     """The node navigation_controller has its name, and its topics and its service with their types."""
-    expect_endpoints(shared_system.get(CONTROLLER).harness.node, CONTROLLER)
+    expect_endpoints(shared_system.get(CONTROLLER).harness, CONTROLLER)
 
 
 @check(points=1, holds="monitor-name", needs=("build",), after=(*MESSAGES, "health_message"), doc=contract.NODES_DOC)
 @hint(*ENDS)
 def test_monitor(shared_system: SharedSystem) -> None:
     """The node status_monitor has its name, and its topics with their types."""
-    expect_endpoints(shared_system.get(MONITOR).harness.node, MONITOR)
+    expect_endpoints(shared_system.get(MONITOR).harness, MONITOR)
 
 
 @check(
@@ -49,7 +48,9 @@ def test_monitor(shared_system: SharedSystem) -> None:
 def test_relative(workspace: Workspace) -> None:
     """The names of all topics and of the service are relative: in the namespace /a, scan is /a/scan."""
     left = [
-        said for name in PROGRAMS if (said := missing_in_namespace(workspace, contract.PACKAGE, name, names_of(name)))
+        said
+        for name in PROGRAMS
+        if (said := namespaces.missing_in_namespace(workspace, contract.PACKAGE, name, names_of(name)))
     ]
     expect(not left, " ".join(left))
 

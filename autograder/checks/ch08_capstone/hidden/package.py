@@ -5,16 +5,11 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping
 
+from autograder.checking import OK, Diagnosis, Workspace, expect, group, hint
+from autograder.checking.probes import added_files, imports, installed, manifest, packaging
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import INTERFACES, LICENCE, PACKAGE, PROGRAMS, VERSION
 from autograder.checks.ch08_capstone.support.sources import require_built, source_of
-from autograder.diagnosis import OK, Diagnosis
-from autograder.harness import Workspace
-from autograder.probes import imports, manifest
-from autograder.probes.added_files import install_with
-from autograder.probes.installed import look
-from autograder.probes.packaging import expect_installs_itself
-from autograder.suite import expect, group, hint
 
 check = group("step_1", doc=contract.PACKAGES_DOC)
 FOR_LAUNCH = ("ament_index_python", "launch", "launch_ros")
@@ -78,7 +73,7 @@ def test_build(builds: Mapping[str, Diagnosis]) -> None:
 @hint("install_scripts in setup.cfg says where they go; packages=find_packages(exclude=['test']) what they import.")
 def test_executables(workspace: Workspace) -> None:
     """The build installs the package's three executables where ros2 run looks."""
-    found = look(workspace.install, PACKAGE)
+    found = installed.look(workspace.install, PACKAGE)
     absent = [name for name in PROGRAMS if name not in found.executables]
     there = ", ".join(found.executables) or "none"
     where = f" bin/, where ros2 run does not look, has {', '.join(found.misplaced)}." if found.misplaced else ""
@@ -94,7 +89,7 @@ def test_executables(workspace: Workspace) -> None:
 @hint("('share/' + package_name + '/launch', glob('launch/*.launch.py')), and config likewise.")
 def test_shares(workspace: Workspace) -> None:
     """setup.py installs the manifest, the launch file and the configuration."""
-    found = look(workspace.install, PACKAGE)
+    found = installed.look(workspace.install, PACKAGE)
     wanted = ("package.xml", f"launch/{contract.LAUNCH_FILE}", contract.CONFIG)
     absent = [path for path in wanted if path not in found.shared]
     expect(not absent, f"share/{PACKAGE} has no {', '.join(absent)}: look at data_files.")
@@ -107,7 +102,7 @@ def test_grows(workspace: Workspace, draw: random.Random) -> None:
     """A new launch file and a new configuration are installed without a change of setup.py."""
     word = f"maze_{draw.randrange(100, 1000)}"
     added = (f"launch/{word}.launch.py", f"config/{word}.yaml")
-    shared = install_with(workspace, PACKAGE, added).shared
+    shared = added_files.install_with(workspace, PACKAGE, added).shared
     left = [path for path in added if path not in shared]
     expect(not left, f"The new {' and '.join(left)} stayed behind: look at data_files.", fraction=0.5)
 
@@ -131,8 +126,8 @@ def test_grows(workspace: Workspace, draw: random.Random) -> None:
 def test_agreement(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """package.xml and setup.py agree on version, licence and maintainer; ROS finds both packages by their markers."""
     declared = manifest.read(source_of(workspace, PACKAGE))
-    installed = look(workspace.install, PACKAGE)
-    said = installed.metadata
+    installation = installed.look(workspace.install, PACKAGE)
+    said = installation.metadata
     maintainer, address = next(iter(declared.maintainers), ("nobody", "nothing"))
     for header, wanted in (
         ("Version", declared.version),
@@ -142,12 +137,12 @@ def test_agreement(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> Non
     ):
         given = said.get(header, "nothing")
         expect(given == wanted, f"{header.lower()}: package.xml says {wanted!r}, setup.py says {given!r}.")
-    expect_installs_itself(installed)
+    packaging.expect_installs_itself(installation)
     if builds[INTERFACES] is OK:
         unknown = f"The ament index does not know {INTERFACES}: CMakeLists.txt does not call ament_package()."
-        expect(look(workspace.install, INTERFACES).marker, unknown, fraction=0.5)
+        expect(installed.look(workspace.install, INTERFACES).marker, unknown, fraction=0.5)
     told = declared.description
     expect(manifest.PLACEHOLDER not in told, f"package.xml describes the package as {told!r}.", fraction=0.5)
     modules = [f"{PACKAGE}.{name}" for name in PROGRAMS]
-    absent = [module for module in modules if module not in installed.modules]
+    absent = [module for module in modules if module not in installation.modules]
     expect(not absent, f"There is no module {', '.join(absent)}, which the table of step 1 names.", fraction=0.5)

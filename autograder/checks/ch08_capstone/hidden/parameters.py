@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from autograder.checking import CheckFailed, ReceivedMessage, Workspace, expect, group, hint
+from autograder.checking.probes import parameters
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN
 from autograder.checks.ch08_capstone.support import contract
@@ -17,9 +19,6 @@ from autograder.checks.ch08_capstone.support.contract import (
     PROCESSOR,
 )
 from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_turning
-from autograder.harness import ReceivedMessage, Workspace
-from autograder.probes.parameters import differences, for_node, missing_sentence, read_file
-from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("step_5", doc=contract.PARAMETERS_DOC)
 
@@ -44,10 +43,10 @@ check = group("step_5", doc=contract.PARAMETERS_DOC)
 def test_declared(system: System) -> None:
     """Each node declares its parameters, with the defaults of the contract."""
     for node, wanted in PARAMETERS.items():
-        asked = system.parameters(node)
-        missing = missing_sentence(wanted, asked.names())
+        asked = system.parameters_of(node)
+        missing = parameters.missing_sentence(wanted, asked.names())
         expect(not missing, f"{node}: {missing}")
-        wrong = differences(asked.values(*wanted), {name: bounds.default for name, bounds in wanted.items()})
+        wrong = parameters.differences(asked.values(*wanted), {name: bounds.default for name, bounds in wanted.items()})
         expect(not wrong, f"{node}: {'; '.join(wrong)}.", fraction=0.5)
 
 
@@ -70,7 +69,7 @@ def test_declared(system: System) -> None:
 def test_ranges(system: System) -> None:
     """Each parameter has a description and the range of the contract, and a value outside is refused."""
     for node, wanted in PARAMETERS.items():
-        asked = system.parameters(node)
+        asked = system.parameters_of(node)
         for name, descriptor in asked.descriptors(*wanted).items():
             bounds = wanted[name]
             ranges = [(each.from_value, each.to_value) for each in descriptor.floating_point_range]
@@ -100,11 +99,11 @@ def test_used(system: System) -> None:
 @hint("A name that no node declares is ignored without a word: compare letter by letter.")
 def test_config(workspace: Workspace) -> None:
     """The configuration file holds every parameter with its default, by node."""
-    file = read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)
+    file = parameters.read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)
     for node, wanted in PARAMETERS.items():
-        values = for_node(file, node)
+        values = parameters.for_node(file, node)
         expect(bool(values), f"{CONFIG} says nothing for {node}; it has: {', '.join(file)}.")
-        wrong = differences(values, {name: bounds.default for name, bounds in wanted.items()})
+        wrong = parameters.differences(values, {name: bounds.default for name, bounds in wanted.items()})
         expect(not wrong, f"{CONFIG}, {node}: {'; '.join(wrong)}.", fraction=0.5)
         extra = sorted(set(values) - {name for bounds in PARAMETERS.values() for name in bounds})
         expect(not extra, f"{CONFIG}, {node}: {', '.join(extra)} is not declared by any node.", fraction=0.5)

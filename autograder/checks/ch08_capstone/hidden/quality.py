@@ -4,16 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from autograder import layout
+from autograder.checking import Workspace, expect, group, hint, solution_path
+from autograder.checking.probes import colcon_test, given_files, linters, student_test_reports, student_test_runs
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import PACKAGE
-from autograder.harness import Workspace
-from autograder.probes import linters
-from autograder.probes.colcon_test import colcon_test, expect_ended
-from autograder.probes.given_files import changed_files
-from autograder.probes.student_test_reports import ClaimedOutcome, Report
-from autograder.probes.student_test_runs import take
-from autograder.suite import expect, group, hint
 
 check = group("step_7", doc=contract.TESTING_DOC)
 LINTERS = ("test_flake8::test_flake8", "test_pep257::test_pep257")
@@ -22,17 +16,17 @@ GIVEN = ("test/test_integration.py", "test/conftest.py")
 
 
 @pytest.fixture(scope="module")
-def tested(workspace: Workspace) -> Report:
+def tested(workspace: Workspace) -> student_test_reports.Report:
     """What colcon test says, once for all checks."""
-    return colcon_test(workspace, PACKAGE)
+    return colcon_test.colcon_test(workspace, PACKAGE)
 
 
 @check(points=2, holds="pytest", needs=("build",), after=("interface_package",))
 @hint("Without extras_require={'test': ['pytest']} in setup.py, colcon runs no test and ends with status 0.")
 @hint("test_flake8.py, test_pep257.py and test_integration.py are in test/, too.")
-def test_colcon_finds_tests(tested: Report) -> None:
+def test_colcon_finds_tests(tested: student_test_reports.Report) -> None:
     """Colcon test finds the package's tests: the student's own, the integration test and both linters."""
-    expect_ended(tested)
+    colcon_test.expect_ended(tested)
     ran = tested.executed
     expect(bool(ran), "colcon test ran no test at all.")
     modules = sorted({test.partition("::")[0] for test in ran})
@@ -47,12 +41,15 @@ def test_colcon_finds_tests(tested: Report) -> None:
 @check(points=2, holds="linters", needs=("build",), after=("colcon_finds_tests",))
 @hint("Run colcon test in a terminal, then colcon test-result --all --verbose.")
 @hint("The linters name a file, a line and a rule: fix them one by one.")
-def test_linters_pass(workspace: Workspace, tested: Report) -> None:
+def test_linters_pass(workspace: Workspace, tested: student_test_reports.Report) -> None:
     """The linters flake8 and pep257 report no errors."""
     for name in LINTERS:
         verdict = tested.claims.verdicts.get(name)
-        expect(verdict is ClaimedOutcome.PASSED, f"{name}: {tested.claims.messages.get(name) or 'it did not run'}")
-    linters.expect_tidy(workspace, take(workspace, PACKAGE), LINTERS)
+        expect(
+            verdict is student_test_reports.ClaimedOutcome.PASSED,
+            f"{name}: {tested.claims.messages.get(name) or 'it did not run'}",
+        )
+    linters.expect_tidy(workspace, student_test_runs.take(workspace, PACKAGE), LINTERS)
 
 
 @check(
@@ -73,13 +70,13 @@ def test_linters_pass(workspace: Workspace, tested: Report) -> None:
 )
 @hint("Run colcon test in a terminal, then colcon test-result --all --verbose.")
 @hint("test_integration.py launches your launch file: a robot that drives while it sees, and stops when it is blind.")
-def test_tests_pass(workspace: Workspace, tested: Report) -> None:
+def test_tests_pass(workspace: Workspace, tested: student_test_reports.Report) -> None:
     """Every test of the package passes, the one that launches the whole system, too, which is as it was given."""
     expect(any(name not in LINTERS for name in tested.executed), "colcon test ran no test but those of the linters.")
     bad = [name for name in tested.failed if name not in LINTERS]
     messages = tested.claims.messages
     shown = "; ".join(f"{name}: {messages.get(name, '')}" for name in bad[:SHOWN])
     expect(not bad, f"{len(bad)} of {len(tested.executed)} tests fail: {shown}")
-    kept, solution = take(workspace, PACKAGE).files, layout.SOLUTIONS / PACKAGE
-    changed = changed_files(kept, {name: (solution / name).read_bytes() for name in GIVEN}, ("test",))
+    kept, solution = student_test_runs.take(workspace, PACKAGE).files, solution_path(PACKAGE)
+    changed = given_files.changed_files(kept, {name: (solution / name).read_bytes() for name in GIVEN}, ("test",))
     expect(not changed, f"{' and '.join(changed)} should be as given, and was changed.", fraction=0.5)

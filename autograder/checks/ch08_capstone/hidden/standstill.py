@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from autograder.checking import expect
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN
 from autograder.checks.ch08_capstone.hidden.tracks import TURNS
 from autograder.checks.ch08_capstone.support.system import Received, System
-from autograder.suite import expect
 
 AHEAD = Part(-10.0, 10.0, 0.4)
 _DOES = {-1: "turned right", 0: "did not turn", 1: "turned left"}

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 
 import pytest
 
+from autograder.checking import CheckFailed, Workspace, expect, group, hint
+from autograder.checking.probes import student_test_reports, student_test_runs
 from autograder.checks.ch08_capstone.hidden.versions import FAULTS, Fault, faulty, right
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import PACKAGE
 from autograder.checks.ch08_capstone.support.sources import source_of
-from autograder.harness import Workspace
-from autograder.probes import student_test_runs
-from autograder.probes.student_test_reports import Report, TestRun, shown_name
-from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("step_6")
 FILE = "test_sectors.py"
@@ -25,8 +23,8 @@ MIN_TESTS = 4
 class Examined:
     """What the tests say of a right version, and of faulty ones."""
 
-    right: Report
-    faulty: tuple[tuple[Fault, Report], ...]
+    right: student_test_reports.Report
+    faulty: tuple[tuple[Fault, student_test_reports.Report], ...]
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +36,7 @@ def examined(workspace: Workspace, seed: int) -> Examined:
     versions = [right(draw), *faulty(FAULTS, draw)]
     order = draw.sample(range(len(versions)), len(versions))
     source = student_test_runs.take(workspace, PACKAGE)
-    wanted = [TestRun((FILE,), versions[i]) for i in order]  # all are called alike
+    wanted = [student_test_reports.TestRun((FILE,), versions[i]) for i in order]  # all are called alike
     runs = student_test_runs.run(workspace, source, wanted)
     by_version = dict(zip(order, runs, strict=True))
     return Examined(by_version[0], tuple((fault, by_version[i]) for i, fault in enumerate(FAULTS, 1)))
@@ -51,7 +49,9 @@ def test_sector_tests_pass(examined: Examined) -> None:
     """The tests of the sectors pass on a right sectors.py, and there are at least four of them."""
     report = examined.right
     if report.failed:
-        raise CheckFailed(f"On a right sectors.py, {shown_name(report.failed[0])} in {FILE} fails.")
+        raise CheckFailed(
+            f"On a right sectors.py, {student_test_reports.shown_name(report.failed[0])} in {FILE} fails."
+        )
     ended = "before it could say how they went" if report.status is None else f"with exit status {report.status}"
     expect(report.passed, f"On a right sectors.py, pytest ran no test in {FILE}: it ended {ended}.")
     few = f"Fewer than {MIN_TESTS} tests ran: that is too few to say that nearest is right."

@@ -6,9 +6,9 @@ import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from autograder.checking import GraderError
+from autograder.checking.probes import versions
 from autograder.checks.ch08_capstone.support.contract import PACKAGE, SECTORS
-from autograder.exceptions import GraderError
-from autograder.probes.versions import Version, obfuscate
 
 RIGHT = """
 import math
@@ -68,12 +68,12 @@ FAULTS = (  # those that the notebook names
 )
 
 
-def right(draw: random.Random) -> Version:
+def right(draw: random.Random) -> versions.Version:
     """Return the right version."""
     return _version(RIGHT, draw)
 
 
-def faulty(faults: Sequence[Fault], draw: random.Random) -> list[Version]:
+def faulty(faults: Sequence[Fault], draw: random.Random) -> list[versions.Version]:
     """Return a version for each fault."""
     return [_version(_with(fault), draw) for fault in faults]
 
@@ -84,6 +84,6 @@ def _with(fault: Fault) -> str:
     return RIGHT.replace(fault.find, fault.replace)
 
 
-def _version(text: str, draw: random.Random) -> Version:
+def _version(text: str, draw: random.Random) -> versions.Version:
     files = {f"{PACKAGE}/__init__.py": "", f"{PACKAGE}/{SECTORS}.py": text}
-    return obfuscate(Version(files, {}), draw.randrange(2**31))
+    return versions.obfuscate(versions.Version(files, {}), draw.randrange(2**31))

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from autograder.checking import LOCKSTEP, CheckFailed, Gallery, expect, group, hint, temporal
 from autograder.checks.ch02_nodes.support.robot import describe_command
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden import tracks
@@ -14,9 +15,6 @@ from autograder.checks.ch08_capstone.hidden.drives import BLOCKED, DARK, Driven,
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PARAMETERS, TOLERANCE
 from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_still
-from autograder.result.artifacts import Gallery
-from autograder.run.time_record import LOCKSTEP
-from autograder.suite import CheckFailed, expect, group, hint, temporal
 from sim import clearance
 from sim.rows import row_at, state_at
 

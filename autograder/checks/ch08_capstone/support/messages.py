@@ -7,10 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from autograder.building.interfaces import load_from
+from autograder.checking import Workspace, expect, load_interfaces
 from autograder.checks.ch08_capstone.support.contract import INTERFACES, LEVELS
-from autograder.harness import Workspace
-from autograder.suite import expect
 
 
 @dataclass(frozen=True)
@@ -43,8 +41,8 @@ _WORDS = {"boolean": "bool", "float": "float32", "double": "float64", "sequence<
 
 
 def load_messages(workspace: Workspace) -> Any:
-    """Return the student's messages, read from their text. Raises as `load_from` does."""
-    return load_from(workspace, INTERFACES)
+    """Return the student's messages, read from their text. Raises as `load_interfaces` does."""
+    return load_interfaces(workspace, INTERFACES)
 
 
 def types(package: Any) -> Types:

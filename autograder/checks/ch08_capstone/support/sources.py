@@ -5,11 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from autograder.diagnosis import OK, Diagnosis, Kind
-from autograder.harness import Workspace
-from autograder.submission.exercise_stubs import explain
-from autograder.submission.packages import find_packages
-from autograder.suite import CheckFailed
+from autograder.checking import OK, CheckFailed, Diagnosis, Kind, Workspace, explain, find_packages
 
 
 def source_of(workspace: Workspace, package: str) -> Path:

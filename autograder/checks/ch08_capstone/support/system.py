@@ -11,6 +11,18 @@ from typing import Any
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import LaserScan
 
+from autograder.checking import (
+    SCAN_SECONDS,
+    AutoHarness,
+    CheckFailed,
+    Process,
+    Program,
+    ReceivedMessage,
+    Shared,
+    Workspace,
+    expect,
+)
+from autograder.checking.probes import installed, parameters
 from autograder.checks.ch02_nodes.support.robot import describe_command
 from autograder.checks.ch08_capstone.support.clearances import right_clearance
 from autograder.checks.ch08_capstone.support.contract import (
@@ -23,12 +35,6 @@ from autograder.checks.ch08_capstone.support.contract import (
     name_of,
 )
 from autograder.checks.ch08_capstone.support.messages import Types, load_messages, types
-from autograder.harness import AutoHarness, Program, ReceivedMessage, Shared, Workspace
-from autograder.harness.drive import SCAN_SECONDS
-from autograder.probes.installed import look
-from autograder.probes.parameters import NodeParameters, SetParametersReply
-from autograder.run.sandbox import Process
-from autograder.suite import CheckFailed, expect
 
 SETTLED = 0.35  # s: a scan has gone through both nodes by then, and a command at 10 Hz has followed
 ANSWER_SECONDS = 5.0  # s of ROS time for a service
@@ -124,16 +130,16 @@ class System:
             raise CheckFailed(f"The service {service} did not answer within {ANSWER_SECONDS:.0f} s.")
         return response
 
-    def parameters(self, program: str) -> NodeParameters:
+    def parameters_of(self, program: str) -> parameters.NodeParameters:
         """Return the parameters of a program's node."""
-        return NodeParameters(self.harness, name_of(program))
+        return parameters.NodeParameters(self.harness, name_of(program))
 
     @contextmanager
-    def changed(self, program: str, name: str, value: float) -> Iterator[SetParametersReply]:
+    def changed(self, program: str, name: str, value: float) -> Iterator[parameters.SetParametersReply]:
         """Change a parameter for a while; yield the program's reply."""
-        asked = self.parameters(program)
+        asked = self.parameters_of(program)
         before = asked.values(name)
-        reply = asked.change({name: value}) if before else SetParametersReply(accepted=False)
+        reply = asked.change({name: value}) if before else parameters.SetParametersReply(accepted=False)
         try:
             yield reply
         finally:
@@ -279,7 +285,7 @@ def describe_report(report: Any) -> str:
 
 
 def _is_installed(workspace: Workspace, program: str) -> bool:
-    return program in look(workspace.install, PACKAGE).executables
+    return program in installed.look(workspace.install, PACKAGE).executables
 
 
 def _judged(commands: Sequence[ReceivedMessage], always: bool = False) -> Sequence[ReceivedMessage]:

@@ -7,6 +7,8 @@ import math
 from rclpy.qos import DurabilityPolicy
 from std_srvs.srv import SetBool
 
+from autograder.checking import check, expect, hint
+from autograder.checking.probes import parameters
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
@@ -21,8 +23,6 @@ from autograder.checks.ch08_capstone.support.contract import (
     name_of,
 )
 from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_still, expect_turning
-from autograder.probes.parameters import differences, missing_sentence
-from autograder.suite import check, expect, hint
 
 OPEN = scan(fill=3.0)
 
@@ -125,10 +125,10 @@ def test_watches(system: System) -> None:
 def test_parameters(system: System) -> None:
     """Step 5: each node declares its parameters with their defaults and ranges."""
     for node, wanted in PARAMETERS.items():
-        asked = system.parameters(node)
-        missing = missing_sentence(wanted, asked.names())
+        asked = system.parameters_of(node)
+        missing = parameters.missing_sentence(wanted, asked.names())
         expect(not missing, f"{node}: {missing}")
-        wrong = differences(asked.values(*wanted), {name: bounds.default for name, bounds in wanted.items()})
+        wrong = parameters.differences(asked.values(*wanted), {name: bounds.default for name, bounds in wanted.items()})
         expect(not wrong, f"{node}: {'; '.join(wrong)}.")
         for name, descriptor in asked.descriptors(*wanted).items():
             ranges = [(each.from_value, each.to_value) for each in descriptor.floating_point_range]
@@ -142,9 +142,9 @@ def test_parameters(system: System) -> None:
 @hint("self.get_parameter('forward_speed').value where the command is made, and no copy of it in __init__.")
 def test_changed(system: System) -> None:
     """Step 5: forward_speed, set to 0.12 m/s while the system runs, has an effect immediately."""
-    parameters = system.parameters(CONTROLLER)
-    answer = parameters.change({"forward_speed": 0.12})
+    controller = system.parameters_of(CONTROLLER)
+    answer = controller.change({"forward_speed": 0.12})
     expect(answer.accepted, f"It refused 0.12 m/s: {answer.reason}")
     commands = system.see(OPEN).commands
-    parameters.change({"forward_speed": 0.3})
+    controller.change({"forward_speed": 0.3})
     expect_driving(commands, "With forward_speed 0.12", 0.12)

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from autograder.checking import Diagnosis, Workspace, check, expect, hint
+from autograder.checking.probes import imports, installed, manifest
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import INTERFACES, PACKAGE, PROGRAMS
 from autograder.checks.ch08_capstone.support.messages import CLEARANCE, HEALTH, differences, load_messages
 from autograder.checks.ch08_capstone.support.sources import require_built, source_of
-from autograder.diagnosis import Diagnosis
-from autograder.harness import Workspace
-from autograder.probes import imports, manifest
-from autograder.probes.installed import look
-from autograder.suite import check, expect, hint
 
 
 @check(points=1, holds=("installs", "imports"), group="step_1", doc=contract.PACKAGES_DOC)
@@ -22,7 +19,7 @@ def test_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Step 1: robot_navigation_tutorial builds, installs three executables, and declares what it imports."""
     found = manifest.read(source_of(workspace, PACKAGE))
     require_built(builds, PACKAGE)
-    there = look(workspace.install, PACKAGE).executables
+    there = installed.look(workspace.install, PACKAGE).executables
     absent = [name for name in PROGRAMS if name not in there]
     expect(
         not absent, f"The executable {', '.join(absent)} is not installed; installed are: {', '.join(there) or 'none'}."
@@ -46,6 +43,6 @@ def test_definitions(workspace: Workspace) -> None:
 def test_interfaces_build(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Step 3: colcon builds the package of the messages."""
     require_built(builds, INTERFACES)
-    shared = look(workspace.install, INTERFACES).shared
+    shared = installed.look(workspace.install, INTERFACES).shared
     absent = [name for name in ("Clearance", "Health") if f"msg/{name}.msg" not in shared]
     expect(not absent, f"The build made no code for {' and '.join(absent)}: CMakeLists.txt does not list it.")

@@ -7,6 +7,17 @@ from concurrent.futures import Future, ThreadPoolExecutor
 
 import pytest
 
+from autograder.checking import STILL_TO_BE_WRITTEN, LaunchHarness, Workspace, check, expect, hint
+from autograder.checking.probes import (
+    colcon_test,
+    installed,
+    launch_probe,
+    linters,
+    parameters,
+    student_test_reports,
+    student_test_runs,
+    versions,
+)
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
     CONFIG,
@@ -18,16 +29,6 @@ from autograder.checks.ch08_capstone.support.contract import (
     name_of,
 )
 from autograder.checks.ch08_capstone.support.sources import source_of
-from autograder.harness import Workspace
-from autograder.harness.launch import LaunchHarness
-from autograder.probes import launch_probe, linters, student_test_runs
-from autograder.probes.colcon_test import runs_pytest
-from autograder.probes.installed import look
-from autograder.probes.parameters import differences, for_node, read_file
-from autograder.probes.student_test_reports import Report, TestRun
-from autograder.probes.versions import Version
-from autograder.submission.exercise_stubs import STILL_TO_BE_WRITTEN
-from autograder.suite import check, expect, hint
 
 TESTS, LINTERS = ("test_sectors.py",), ("test_flake8.py", "test_pep257.py")
 MUTANT = ("a mutant",)
@@ -40,7 +41,7 @@ FRONT, LEFT, RIGHT = 0.0, math.pi / 2, -math.pi / 2
 def nearest(scan, middle, half_angle):
     return min(reading for reading in scan.ranges if math.isfinite(reading))
 """
-Reports = Mapping[tuple[str, ...], Report]
+Reports = Mapping[tuple[str, ...], student_test_reports.Report]
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -48,10 +49,12 @@ def reports(workspace: Workspace) -> Iterator[Future[Reports]]:
     """What the tests and the linters will have said; they run beside the launch, which is mostly waiting."""
 
     def run() -> Reports:
-        wanted = {files: TestRun(files) for files in (TESTS, LINTERS) if not _absent(workspace, files)}
+        wanted = {
+            files: student_test_reports.TestRun(files) for files in (TESTS, LINTERS) if not _absent(workspace, files)
+        }
         if TESTS in wanted:
-            version = Version({f"{PACKAGE}/__init__.py": "", f"{PACKAGE}/{SECTORS}.py": ALL_AROUND}, {})
-            wanted[MUTANT] = TestRun(TESTS, version, first_failure=True, shown=True)
+            version = versions.Version({f"{PACKAGE}/__init__.py": "", f"{PACKAGE}/{SECTORS}.py": ALL_AROUND}, {})
+            wanted[MUTANT] = student_test_reports.TestRun(TESTS, version, first_failure=True, shown=True)
         runs = student_test_runs.run(workspace, student_test_runs.take(workspace, PACKAGE), list(wanted.values()))
         return dict(zip(wanted, runs, strict=True))
 
@@ -77,12 +80,12 @@ def test_launch(workspace: Workspace) -> None:
 @hint("A node's name, then ros__parameters, then name and value, each level indented by two blanks.")
 def test_config_file(workspace: Workspace) -> None:
     """Step 5: the installed configuration holds every parameter of every node, with its default."""
-    file = read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)
+    file = parameters.read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)
     for node, wanted in PARAMETERS.items():
-        values = for_node(file, node)
+        values = parameters.for_node(file, node)
         absent = [name for name in wanted if name not in values]
         expect(not absent, f"{CONFIG} has no {', '.join(absent)} for {node}.")
-        wrong = differences(values, {name: bounds.default for name, bounds in wanted.items()})
+        wrong = parameters.differences(values, {name: bounds.default for name, bounds in wanted.items()})
         expect(not wrong, f"{CONFIG}: {'; '.join(wrong)}.")
 
 
@@ -117,7 +120,7 @@ def test_sector_tests_notice(reports: Future[Reports]) -> None:
 @hint("Without extras_require={'test': ['pytest']} in setup.py, colcon runs no test and ends with status 0.")
 def test_quality(workspace: Workspace, reports: Future[Reports]) -> None:
     """Step 7: colcon will run your tests, and flake8 and pep257 report no errors."""
-    named = runs_pytest(workspace, look(workspace.install, PACKAGE))
+    named = colcon_test.runs_pytest(workspace, installed.look(workspace.install, PACKAGE))
     expect(named, "setup.py does not name pytest, so that `colcon test` runs no test.")
     absent = _absent(workspace, LINTERS)
     expect(not absent, f"There is no test/{' and no test/'.join(absent)}.")

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from autograder.checking import CheckRow, Workspace, check_each_row, expect, group
 from autograder.checks.ch09_assessment.hidden.questions import QUESTIONS, Question
 from autograder.checks.ch09_assessment.support.sheet import answers, expect_letter
-from autograder.harness import Workspace
-from autograder.suite import CheckRow, check_each_row, expect, group
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,15 +8,11 @@ from random import Random
 
 import pytest
 
+from autograder.checking import CheckFailed, Diagnosis, LaunchHarness, Workspace, expect, group, hint
+from autograder.checking.probes import installed, launch_probe
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import COOL, GUARD, LAUNCH_FILE, PACKAGE, PROGRAMS
 from autograder.checks.ch09_assessment.support.robot import Types, require_built
-from autograder.diagnosis import Diagnosis
-from autograder.harness import Workspace
-from autograder.harness.launch import LaunchHarness
-from autograder.probes import launch_probe
-from autograder.probes.installed import look
-from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("launch", doc=contract.LAUNCH_DOC)
 NODES = tuple(f"/{name}" for name in PROGRAMS)
@@ -40,7 +36,7 @@ class Launched:
 def launched(workspace: Workspace, builds: Mapping[str, Diagnosis], types: Types, hot: int) -> Iterator[Launched]:
     """One launch, for all checks of this module; a second one if the guard refuses a whole number."""
     require_built(builds, PACKAGE)
-    there = look(workspace.install, PACKAGE).shared
+    there = installed.look(workspace.install, PACKAGE).shared
     expect(f"launch/{LAUNCH_FILE}" in there, f"launch/{LAUNCH_FILE} is not installed: look at data_files in setup.py.")
     listens = {"/decision": types.decision}
     with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": str(hot)}, listens=listens) as whole:

@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable
 from random import Random
 
+from autograder.checking import LOCKSTEP, CheckFailed, ReceivedMessage, Workspace, expect, group, hint
+from autograder.checking.probes import namespaces
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import (
     COOL,
@@ -22,10 +24,6 @@ from autograder.checks.ch09_assessment.support.contract import (
     reading,
 )
 from autograder.checks.ch09_assessment.support.robot import NANOSECONDS, NodeHarness, Start, Types, near, refuses
-from autograder.harness import ReceivedMessage, Workspace
-from autograder.probes.namespaces import missing_in_namespace
-from autograder.run.time_record import LOCKSTEP
-from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("nodes")
 BUILT = ("installs",)
@@ -247,7 +245,7 @@ def test_relative(workspace: Workspace) -> None:
     left = [
         said
         for name, names in topics.items()
-        if (said := missing_in_namespace(workspace, contract.PACKAGE, name, names, plain=True))
+        if (said := namespaces.missing_in_namespace(workspace, contract.PACKAGE, name, names, plain=True))
     ]
     expect(not left, " ".join(left))
 

@@ -4,21 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from autograder.checking import OK, Diagnosis, Workspace, expect, group, hint
+from autograder.checking.probes import imports, installed, manifest, packaging
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import INTERFACES, PACKAGE, PROGRAMS
 from autograder.checks.ch09_assessment.support.definitions import expect_definitions
 from autograder.checks.ch09_assessment.support.robot import expect_executables, require_built, source_of
-from autograder.diagnosis import OK, Diagnosis
-from autograder.harness import Workspace
-from autograder.probes import imports, manifest
-from autograder.probes.installed import look
-from autograder.probes.packaging import (
-    expect_installs_itself,
-    expect_pytest,
-    expect_same_facts,
-    wrong_for_interfaces,
-)
-from autograder.suite import expect, group, hint
 
 check = group("packages")
 
@@ -37,7 +28,7 @@ def test_definitions(workspace: Workspace) -> None:
 def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds motor_guard_interfaces, with both messages."""
     require_built(builds, INTERFACES)
-    shared = look(workspace.install, INTERFACES).shared
+    shared = installed.look(workspace.install, INTERFACES).shared
     absent = [path for path in contract.MESSAGES if path not in shared]
     expect(not absent, f"The build made no code for {' and '.join(absent)}: CMakeLists.txt does not list it.")
 
@@ -48,12 +39,12 @@ def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagn
 def test_interface_manifest(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """motor_guard_interfaces says that it holds messages, what these need and its licence; the ament index knows it."""
     found = manifest.read(source_of(workspace, INTERFACES))
-    wrong = wrong_for_interfaces(found, {"builtin_interfaces": "Temperature"})
+    wrong = packaging.wrong_for_interfaces(found, {"builtin_interfaces": "Temperature"})
     expect(not wrong, f"In package.xml {'; '.join(wrong)}.", fraction=0.5)
     _expect_licence(found)
     if builds[INTERFACES] is OK:
         said = f"The ament index does not know {INTERFACES}: CMakeLists.txt does not call ament_package()."
-        expect(look(workspace.install, INTERFACES).marker, said, fraction=0.5)
+        expect(installed.look(workspace.install, INTERFACES).marker, said, fraction=0.5)
 
 
 @check(points=2, holds="packages", after=("messages_are_generated",), doc=contract.PACKAGES_DOC)
@@ -62,7 +53,7 @@ def test_interface_manifest(workspace: Workspace, builds: Mapping[str, Diagnosis
 def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds motor_guard, and installs three programs where ros2 finds them."""
     require_built(builds, PACKAGE)
-    found = look(workspace.install, PACKAGE)
+    found = installed.look(workspace.install, PACKAGE)
     expect_executables(found.executables, found.misplaced, PROGRAMS)
 
 
@@ -79,18 +70,18 @@ def test_dependencies(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> 
     """package.xml of motor_guard declares all that it needs and its licence; setup.py agrees, and installs it."""
     require_built(builds, PACKAGE)
     source = source_of(workspace, PACKAGE)
-    found, installed = manifest.read(source), look(workspace.install, PACKAGE)
+    found, installation = manifest.read(source), installed.look(workspace.install, PACKAGE)
     missing = imports.missing(source, found)["exec"]
     expect(not missing, f"{imports.describe(missing)}: package.xml does not declare it.")
     absent = [name for name in contract.FOR_TESTS if name not in found.needs("test")]
     expect(not absent, f"package.xml has no test_depend on {', '.join(absent)}.", fraction=0.5)
     _expect_licence(found)
-    expect_same_facts(installed, found, fraction=0.5)
-    expect_installs_itself(installed)
-    expect_pytest(workspace, installed, fraction=0.5)
-    called = installed.metadata.get("Name", "").replace("-", "_")  # setuptools may write the one for the other
+    packaging.expect_same_facts(installation, found, fraction=0.5)
+    packaging.expect_installs_itself(installation)
+    packaging.expect_pytest(workspace, installation, fraction=0.5)
+    called = installation.metadata.get("Name", "").replace("-", "_")  # setuptools may write the one for the other
     expect(called == PACKAGE, f"The name is {called} in setup.py, {PACKAGE} in package.xml.", fraction=0.5)
-    modules = {module.rpartition(".")[2] for module in installed.modules}
+    modules = {module.rpartition(".")[2] for module in installation.modules}
     absent = [name for name in PROGRAMS if name not in modules]
     said = f"No module {', '.join(absent)} is installed: each program is main in the module of its name."
     expect(not absent, said, fraction=0.5)

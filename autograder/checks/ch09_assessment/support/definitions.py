@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from autograder.checking import CheckFailed, Workspace, expect
+from autograder.checking.probes import interfaces
 from autograder.checks.ch09_assessment.support.contract import INTERFACES, MESSAGES
 from autograder.checks.ch09_assessment.support.robot import source_of
-from autograder.harness import Workspace
-from autograder.probes import interfaces
-from autograder.suite import CheckFailed, expect
 
 
 def expect_definitions(workspace: Workspace) -> None:

@@ -9,7 +9,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from autograder.building.interfaces import load_from
+from autograder.checking import (
+    LOCKSTEP,
+    OK,
+    AutoHarness,
+    CheckFailed,
+    Diagnosis,
+    Kind,
+    ReceivedMessage,
+    StudentError,
+    Workspace,
+    expect,
+    explain,
+    find_packages,
+    load_interfaces,
+)
+from autograder.checking.probes import parameters
 from autograder.checks.ch09_assessment.support.contract import (
     GUARD,
     INTERFACES,
@@ -20,14 +35,6 @@ from autograder.checks.ch09_assessment.support.contract import (
     TOLERANCE,
     reading,
 )
-from autograder.diagnosis import OK, Diagnosis, Kind
-from autograder.exceptions import StudentError
-from autograder.harness import AutoHarness, ReceivedMessage, Workspace
-from autograder.probes.parameters import NodeParameters, Value, override_arguments
-from autograder.run.time_record import LOCKSTEP
-from autograder.submission.exercise_stubs import explain
-from autograder.submission.packages import find_packages
-from autograder.suite import CheckFailed, expect
 
 FIELDS = {"Temperature": ("stamp", "celsius"), "Decision": ("stamp", "cooling", "celsius")}
 STEP = 0.1  # s between two messages
@@ -49,8 +56,8 @@ class Types:
 
     @classmethod
     def of(cls, workspace: Workspace) -> Types:
-        """Read them. Raises as `load_from` does, and a CheckFailed where a field is missing."""
-        package = load_from(workspace, INTERFACES)
+        """Read them. Raises as `load_interfaces` does, and a CheckFailed where a field is missing."""
+        package = load_interfaces(workspace, INTERFACES)
         for name, fields in FIELDS.items():
             message = getattr(package.msg, name, None)
             there = message.get_fields_and_field_types() if message is not None else {}
@@ -73,11 +80,11 @@ class NodeHarness(AutoHarness):
         *,
         clock_rate: float = 1.0,
         listens: bool = True,
-        **parameters: float,
+        **values: float,
     ) -> None:
         by_name = {"Temperature": types.temperature, "Decision": types.decision}
         takes, publishes = ({t: by_name[kind] for t, kind in topics.items()} for topics in _TOPICS[name])
-        arguments = ("--ros-args", *override_arguments(parameters))
+        arguments = ("--ros-args", *parameters.override_arguments(values))
         heard = publishes if listens else {}
         super().__init__(
             workspace, PACKAGE, name, offers=takes, listens=heard, arguments=arguments, clock_rate=clock_rate
@@ -135,10 +142,10 @@ class NodeHarness(AutoHarness):
         fits = (n for n in range(most + 1) if all(near(one, reading(m, *shape)) for m, one in enumerate(seen[:2], n)))
         return next(fits, 0)
 
-    def try_to_set(self, **parameters: Value) -> None:
+    def try_to_set(self, **values: parameters.Value) -> None:
         """Ask the node to change parameters. It may refuse, or have no services of parameters."""
         with suppress(CheckFailed):
-            NodeParameters(self, f"/{self._name}").change(parameters)
+            parameters.NodeParameters(self, f"/{self._name}").change(values)
 
     def expect_in_graph(self) -> None:
         """Fail the check unless the node has its name and its topics, with their types; name what it has instead."""
@@ -169,20 +176,20 @@ def _expect_topics(node: str, verb: str, found: Mapping[str, list[str]], wanted:
         expect(found[topic] == [full], f"{node} {verb} {topic} as {', '.join(found[topic])}, instead of {full}.")
 
 
-def refuses(workspace: Workspace, types: Types, name: str, **parameters: float) -> bool:
+def refuses(workspace: Workspace, types: Types, name: str, **values: float) -> bool:
     """Return whether a node ends at its start with these parameters, by an exception or by itself.
 
     Raises:
         CheckFailed: it ended by itself as if there were no error.
     """
     try:
-        with NodeHarness(workspace, types, name, listens=True, **parameters):
+        with NodeHarness(workspace, types, name, listens=True, **values):
             return False
     except StudentError as error:
         if error.diagnosis.kind not in (Kind.CRASHED_AT_START, Kind.ENDED_EARLY):
             raise
         silent = error.diagnosis.kind is Kind.ENDED_EARLY and "(exit status 0)" in error.diagnosis.sentence
-        shown = ", ".join(f"{parameter} {value}" for parameter, value in parameters.items())
+        shown = ", ".join(f"{parameter} {value}" for parameter, value in values.items())
         said = f"Started with {shown}, {name} ended with exit status 0: one that ends with an error has another status."
         expect(not silent, said, fraction=0.75)
         return True

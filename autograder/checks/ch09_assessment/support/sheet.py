@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from autograder.checking import CheckFailed, Workspace, expect
 from autograder.checks.ch09_assessment.support.contract import LETTERS, QUESTIONS, SHEET
-from autograder.harness import Workspace
-from autograder.suite import CheckFailed, expect
 
 MAX_BYTES = 64 * 1024
 _QUESTION = re.compile(r"\w+")

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+from autograder.checking import Workspace, check, expect, hint
 from autograder.checks.ch09_assessment.support.contract import QUESTIONS
 from autograder.checks.ch09_assessment.support.sheet import answers, expect_letter
-from autograder.harness import Workspace
-from autograder.suite import check, expect, hint
 
 
 @check(points=1, holds="sheet", group="choices")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from autograder.checking import Diagnosis, LaunchHarness, Workspace, check, expect, hint
+from autograder.checking.probes import imports, installed, launch_probe, manifest
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import (
     GUARD,
@@ -16,12 +18,6 @@ from autograder.checks.ch09_assessment.support.contract import (
 )
 from autograder.checks.ch09_assessment.support.definitions import expect_definitions
 from autograder.checks.ch09_assessment.support.robot import Start, expect_executables, require_built, source_of
-from autograder.diagnosis import Diagnosis
-from autograder.harness import Workspace
-from autograder.harness.launch import LaunchHarness
-from autograder.probes import imports, launch_probe, manifest
-from autograder.probes.installed import look
-from autograder.suite import check, expect, hint
 
 
 @check(points=1, holds=("temperature", "decision"), group="packages", doc=contract.INTERFACES_DOC)
@@ -38,7 +34,7 @@ def test_builds(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Question 3: colcon builds both packages, installs three programs and the launch file; imports are declared."""
     require_built(builds, INTERFACES)
     require_built(builds, PACKAGE)
-    found = look(workspace.install, PACKAGE)
+    found = installed.look(workspace.install, PACKAGE)
     expect_executables(found.executables, found.misplaced, PROGRAMS)
     expect(f"launch/{contract.LAUNCH_FILE}" in found.shared, f"launch/{contract.LAUNCH_FILE} is not installed.")
     source = source_of(workspace, PACKAGE)

@@ -3,9 +3,9 @@
 import math
 import random
 
+from autograder.checking import expect, group, hint
 from autograder.checks.chNEW_CHAPTER.support.contract import RANGE_MAX, RANGE_MIN
 from autograder.checks.chNEW_CHAPTER.support.robot import Robot, expect_nearest
-from autograder.suite import expect, group, hint
 
 check = group("readings")  # the points of this group count for the cell grade('NEW_CHAPTER', 'readings')
 NO_DISTANCE = (math.nan, math.inf, 0.0, 0.05, 3.9)  # failed, nothing there, and three outside of the lidar's range

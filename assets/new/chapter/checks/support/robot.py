@@ -5,9 +5,8 @@ from collections.abc import Sequence
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float32
 
+from autograder.checking import AutoHarness, Workspace, expect
 from autograder.checks.chNEW_CHAPTER.support import contract
-from autograder.harness import AutoHarness, Workspace
-from autograder.suite import expect
 
 SECONDS = 0.1  # of ROS time, from one scan to the next
 

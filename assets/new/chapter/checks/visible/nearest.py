@@ -1,7 +1,7 @@
 """The check that students run themselves. No hidden check has the same scan."""
 
+from autograder.checking import group, hint
 from autograder.checks.chNEW_CHAPTER.support.robot import Robot, expect_nearest
-from autograder.suite import group, hint
 
 check = group("readings")
 

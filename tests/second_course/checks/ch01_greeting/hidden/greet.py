@@ -2,9 +2,8 @@
 
 import random
 
+from autograder.checking import Workspace, group, hint
 from autograder.checks.ch01_greeting.support.asking import expect_greeting
-from autograder.harness import Workspace
-from autograder.suite import group, hint
 
 check = group("greet")
 NAMES = ("Karel", "Grace", "Unimate", "Elektro")

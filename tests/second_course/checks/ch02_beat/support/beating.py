@@ -2,8 +2,7 @@
 
 from std_msgs.msg import UInt32
 
-from autograder.harness import AutoHarness, Workspace
-from autograder.suite import expect
+from autograder.checking import AutoHarness, Workspace, expect
 
 
 def expect_beats(workspace: Workspace, seconds: float, count: int) -> None:

@@ -1,8 +1,7 @@
 """The first beat."""
 
+from autograder.checking import Workspace, group, hint
 from autograder.checks.ch02_beat.support.beating import expect_beats
-from autograder.harness import Workspace
-from autograder.suite import group, hint
 
 check = group("beat")
 

@@ -1,0 +1,76 @@
+"""What the authors of checks import. The checks of a chapter import this package, `sim`, and their own modules.
+
+    from autograder.checking import AutoHarness, Workspace, expect, group, hint
+    from autograder.checking.probes import parameters
+
+`probes` has modules that inspect a package or a running program, `temporal` judges rules over time, and `attacks` has
+what a chapter's `attacks.py` needs. The rest of the autograder may change without notice.
+"""
+
+from autograder.building.interfaces import load_interfaces
+from autograder.diagnosis import OK, Diagnosis, Kind
+from autograder.exceptions import GraderError, StudentError
+from autograder.harness import (
+    AutoHarness,
+    Goal,
+    Harness,
+    Program,
+    RealTimeHarness,
+    ReceivedMessage,
+    Shared,
+    SteppedHarness,
+    Workspace,
+    drive,
+)
+from autograder.harness.drive import LISTENS, OFFERS, SCAN_SECONDS
+from autograder.harness.launch import LaunchHarness, RunningProgram
+from autograder.layout import solution_path, world_path
+from autograder.result.artifacts import Gallery
+from autograder.run.sandbox import Process
+from autograder.run.time_record import LOCKSTEP, REAL
+from autograder.submission.exercise_stubs import STILL_TO_BE_WRITTEN, explain
+from autograder.submission.packages import find_packages
+from autograder.submission.reading import reading
+from autograder.suite import CheckFailed, CheckRow, check, check_each_row, check_of, expect, group, hint
+
+__all__ = [
+    "LISTENS",
+    "LOCKSTEP",
+    "OFFERS",
+    "OK",
+    "REAL",
+    "SCAN_SECONDS",
+    "STILL_TO_BE_WRITTEN",
+    "AutoHarness",
+    "CheckFailed",
+    "CheckRow",
+    "Diagnosis",
+    "Gallery",
+    "Goal",
+    "GraderError",
+    "Harness",
+    "Kind",
+    "LaunchHarness",
+    "Process",
+    "Program",
+    "RealTimeHarness",
+    "ReceivedMessage",
+    "RunningProgram",
+    "Shared",
+    "SteppedHarness",
+    "StudentError",
+    "Workspace",
+    "check",
+    "check_each_row",
+    "check_of",
+    "drive",
+    "expect",
+    "explain",
+    "find_packages",
+    "group",
+    "hint",
+    "load_interfaces",
+    "reading",
+    "solution_path",
+    "world_path",
+]

@@ -1,0 +1,29 @@
+"""What the `attacks.py` of a chapter imports: malicious submissions, made of the reference, mutants and payloads."""
+
+from autograder.author.verification.attack_writer import Chapter
+from autograder.author.verification.claims import Attack
+from autograder.author.verification.payloads import (
+    BLOCK_REPORT,
+    FORGE_PASSES,
+    FORGE_REPORT,
+    FORGE_VERDICTS,
+    HOLD_KERNEL,
+    SEARCH,
+    STEAL_SECRETS,
+    STOP_PARENT,
+    TELL_ALL,
+)
+
+__all__ = [
+    "BLOCK_REPORT",
+    "FORGE_PASSES",
+    "FORGE_REPORT",
+    "FORGE_VERDICTS",
+    "HOLD_KERNEL",
+    "SEARCH",
+    "STEAL_SECRETS",
+    "STOP_PARENT",
+    "TELL_ALL",
+    "Attack",
+    "Chapter",
+]
