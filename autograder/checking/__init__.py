@@ -22,7 +22,7 @@ from autograder.harness import (
     Workspace,
     drive,
 )
-from autograder.harness.drive import LISTENS, OFFERS, SCAN_SECONDS
+from autograder.harness.drive import COMMAND_TOPICS, SCAN_SECONDS, SENSOR_TOPICS
 from autograder.harness.launch import LaunchHarness, RunningProgram
 from autograder.layout import solution_path, world_path
 from autograder.result.artifacts import Gallery
@@ -34,12 +34,12 @@ from autograder.submission.reading import reading
 from autograder.suite import CheckFailed, CheckRow, check, check_each_row, check_of, expect, group, hint
 
 __all__ = [
-    "LISTENS",
+    "COMMAND_TOPICS",
     "LOCKSTEP",
-    "OFFERS",
     "OK",
     "REAL",
     "SCAN_SECONDS",
+    "SENSOR_TOPICS",
     "STILL_TO_BE_WRITTEN",
     "AutoHarness",
     "CheckFailed",

@@ -46,10 +46,10 @@ class Program:
 class Harness(ExitStack, ABC):
     """A student's programs and the grader's node that talks with them over DDS; a context manager.
 
-    Name what the grader publishes and listens to, then enter::
+    Name what the grader publishes and subscribes to, then enter::
 
-        offers, listens = {"/scan": LaserScan}, {"/cmd_vel": Twist}
-        with SteppedHarness(workspace, PACKAGE, EXECUTABLE, offers=offers, listens=listens) as harness:
+        sensors, commands = {"/scan": LaserScan}, {"/cmd_vel": Twist}
+        with SteppedHarness(workspace, PACKAGE, EXECUTABLE, publishes=sensors, subscribes=commands) as harness:
             harness.publish("/scan", scan)
             harness.run(0.1)
             harness.messages("/cmd_vel")
@@ -61,8 +61,8 @@ class Harness(ExitStack, ABC):
         package: of the one program; or
         executable: its name in the package.
         programs: several programs, which talk with each other as well.
-        offers: topics that the grader publishes, with their types.
-        listens: topics that the grader subscribes to, with their types.
+        publishes: topics that the grader publishes, with their types.
+        subscribes: topics that the grader subscribes to, with their types.
         arguments: of the one program.
         clock_rate: seconds that the programs' machine counts in a second of ROS time; always 1 in real time.
 
@@ -86,8 +86,8 @@ class Harness(ExitStack, ABC):
         executable: str = "",
         *,
         programs: tuple[Program, ...] = (),
-        offers: Mapping[str, type] | None = None,
-        listens: Mapping[str, type] | None = None,
+        publishes: Mapping[str, type] | None = None,
+        subscribes: Mapping[str, type] | None = None,
         arguments: tuple[str, ...] = (),
         clock_rate: float = 1.0,
     ) -> None:
@@ -101,8 +101,8 @@ class Harness(ExitStack, ABC):
         plain = self._workspace.sandbox()
         often = {**plain.environment, PROFILES_VARIABLE: str(PROFILES)}  # who start together find each other at once
         self._sandbox = replace(plain, mounts=(*plain.mounts, Mount(PROFILES)), environment=often)
-        self._offers, self._listens = dict(offers or {}), dict(listens or {})
-        self._received: dict[str, list[ReceivedMessage]] = {topic: [] for topic in self._listens}
+        self._publishes, self._subscribes = dict(publishes or {}), dict(subscribes or {})
+        self._received: dict[str, list[ReceivedMessage]] = {topic: [] for topic in self._subscribes}
 
     # What each kind of harness defines.
 
@@ -140,7 +140,7 @@ class Harness(ExitStack, ABC):
 
     @abstractmethod
     def _topics(self) -> tuple[set[str], set[str]]:
-        """Return which topics of `offers` the programs subscribe to, and which topics of `listens` they publish."""
+        """Return the topics of `publishes` with a subscription, and those of `subscribes` with a publisher."""
 
     @abstractmethod
     def _connected(self) -> bool:
@@ -176,7 +176,7 @@ class Harness(ExitStack, ABC):
                 raise StudentError(diagnose_ending(process))
 
     def takes(self, topic: str) -> bool:
-        """Return whether a program subscribes to a topic that the grader offers, with the right type."""
+        """Return whether a program subscribes to a topic that the grader publishes, with the right type."""
         return topic in self._grader_node.publishers
 
     def publish(self, topic: str, message: Any) -> None:
@@ -191,15 +191,15 @@ class Harness(ExitStack, ABC):
             self.step(min(self.tick_ns, left))
             left -= self.tick_ns
 
-    def listen(self, listens: Mapping[str, type]) -> None:
+    def subscribe(self, topics: Mapping[str, type]) -> None:
         """Subscribe to more topics, with their types, while the programs run."""
-        self._listens.update(listens)
-        for topic in listens:
+        self._subscribes.update(topics)
+        for topic in topics:
             self._received.setdefault(topic, [])
         self._match()
 
     def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[ReceivedMessage]:
-        """Return what was published on a topic of `listens` after `since` and up to `until`, in s since the start."""
+        """Return the messages on a topic of `subscribes` after `since` and up to `until`, in s since the start."""
         hold(f"What your program sent on {topic}")
         received = self._received[topic]
         first = bisect_right(received, since, key=_SECONDS)
@@ -258,9 +258,9 @@ class Harness(ExitStack, ABC):
         """Make the grader's endpoints for the programs' own, and wait until all are matched."""
         subscribed, published = self._topics()
         for topic in sorted(subscribed):
-            self._grader_node.offer(topic, self._offers[topic])
+            self._grader_node.make_publisher(topic, self._publishes[topic])
         for topic in sorted(published):
-            self._grader_node.listen(topic, self._listens[topic], self._receiver(topic))
+            self._grader_node.make_subscription(topic, self._subscribes[topic], self._receiver(topic))
         self._await(self._connected)
 
     def _receiver(self, topic: str) -> OnMessage:

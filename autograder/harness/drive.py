@@ -19,8 +19,8 @@ from autograder.run.sandbox import Process
 from sim import Command, Recorder, Recording, Scan, Simulation, State, observe, start, step
 from sim.bridge.messages import odom_to_msg, scan_to_msg, twist_to_command
 
-OFFERS = {"/scan": LaserScan, "/odom": Odometry}
-LISTENS = {"/cmd_vel": Twist}
+SENSOR_TOPICS = {"/scan": LaserScan, "/odom": Odometry}
+COMMAND_TOPICS = {"/cmd_vel": Twist}
 PHYSICS_NS = 60_000_000  # between two rows of the recording: 18 mm at 0.3 m/s; whole ticks of the simulator's 20 ms
 SCAN_NS = 100_000_000
 SCAN_SECONDS = SCAN_NS / 1e9
@@ -55,7 +55,7 @@ def drive(
     ROS time.
 
     Args:
-        harness: must have been given `OFFERS` and `LISTENS`.
+        harness: must have been given `SENSOR_TOPICS` and `COMMAND_TOPICS`.
         simulation: its world and its robot.
         seconds: of ROS time, at most.
         alter_scan: changes scans before they are sent.

@@ -81,7 +81,7 @@ class GraderNode:
         self.node.destroy_node()
         self.context.try_shutdown()
 
-    def offer(self, topic: str, kind: Any) -> None:
+    def make_publisher(self, topic: str, kind: Any) -> None:
         """Make a publisher that suits each subscription that is seen, unless there is one or the type is another."""
         peers = self.subscriptions_of(topic)
         if topic in self.publishers or not _have_type(kind, peers):
@@ -90,7 +90,7 @@ class GraderNode:
         self.publishers[topic] = self.node.create_publisher(kind, topic, qos)
         self.written[topic] = channels.publisher_channel(topic, kind, qos)
 
-    def listen(self, topic: str, kind: Any, receive: OnMessage) -> None:
+    def make_subscription(self, topic: str, kind: Any, receive: OnMessage) -> None:
         """Make a subscription that suits each publisher that is seen, unless there is one or the type is another."""
         peers = self.publishers_of(topic)
         subscribed = (reader.entity.topic_name for reader in self.readers if reader.kind == "subscription")
@@ -119,7 +119,7 @@ class GraderNode:
         )
 
     def publish(self, topic: str, message: Any) -> None:
-        """Publish a message on a topic that is offered."""
+        """Publish a message on a topic that has a publisher."""
         self.publishers[topic].publish(message)
         self.sent[self.written[topic]] += 1
 

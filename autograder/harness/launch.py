@@ -92,7 +92,7 @@ class LaunchHarness(contextlib.ExitStack):
     For example::
 
         with LaunchHarness(workspace, "bringup", "robot.launch.py", {"speed": "0.3"},
-                       listens={"/cmd_vel": Twist}) as harness:
+                       subscribes={"/cmd_vel": Twist}) as harness:
             harness.wait_for(lambda: "/driver" in harness.nodes(), 20.0)
             harness.parameters("/driver", "speed")
             harness.interrupt(20.0)
@@ -105,7 +105,7 @@ class LaunchHarness(contextlib.ExitStack):
         package: the package with the launch file.
         file: its name.
         arguments: launch arguments by name.
-        listens: topics that the grader subscribes to from the start, with their types.
+        subscribes: topics that the grader subscribes to from the start, with their types.
         environment: variables that are set for the launch.
 
     Attributes:
@@ -122,12 +122,12 @@ class LaunchHarness(contextlib.ExitStack):
         file: str,
         arguments: Mapping[str, str] | None = None,
         *,
-        listens: Mapping[str, type] | None = None,
+        subscribes: Mapping[str, type] | None = None,
         environment: Mapping[str, str] | None = None,
     ) -> None:
         super().__init__()
         self.another = partial(
-            LaunchHarness, workspace, package, file, arguments, listens=listens, environment=environment
+            LaunchHarness, workspace, package, file, arguments, subscribes=subscribes, environment=environment
         )
         self._domain = Domain(workspace.domain + next(_NUMBERS))
         plain = sandbox(replace(workspace, domain=self._domain.number))
@@ -135,8 +135,8 @@ class LaunchHarness(contextlib.ExitStack):
         assignments = [f"{name}:={value}" for name, value in (arguments or {}).items()]
         # Without a terminal, it is the launch's own task to pass Ctrl-C on.
         self._command = ("launch", "--noninteractive", package, file, *assignments)
-        self._listens = dict(listens or {})
-        self._received: dict[str, list[Any]] = {topic: [] for topic in self._listens}
+        self._subscribes = dict(subscribes or {})
+        self._received: dict[str, list[Any]] = {topic: [] for topic in self._subscribes}
         self._status_text = b""
 
     def __enter__(self) -> LaunchHarness:
@@ -144,7 +144,7 @@ class LaunchHarness(contextlib.ExitStack):
         self._grader_node = GraderNode(self._domain.number)
         self.callback(self._grader_node.close)
         profile = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
-        for topic, kind in self._listens.items():
+        for topic, kind in self._subscribes.items():
             self._grader_node.subscribe(topic, kind, _keep_in(self._received[topic]), profile)
         hold("What the launch started")
         self._pipe, theirs = os.pipe()
@@ -206,7 +206,7 @@ class LaunchHarness(contextlib.ExitStack):
         return _names_of(self._grader_node.subscriptions_of(topic))
 
     def messages(self, topic: str) -> list[Any]:
-        """Return the messages that came on a topic of `listens`."""
+        """Return the messages that came on a topic of `subscribes`."""
         hold(f"What was sent on {topic}")
         return self._received[topic]
 

@@ -105,13 +105,13 @@ class RealTimeHarness(Harness):
 
     def _topics(self) -> tuple[set[str], set[str]]:
         def complete() -> bool:
-            return all(map(self._grader_node.subscriptions_of, self._offers)) and all(
-                map(self._grader_node.publishers_of, self._listens)
+            return all(map(self._grader_node.subscriptions_of, self._publishes)) and all(
+                map(self._grader_node.publishers_of, self._subscribes)
             )
 
         self.wait_for(lambda: self._alive() and complete(), SETTLE_SECONDS)
-        return {topic for topic in self._offers if self._grader_node.subscriptions_of(topic)}, {
-            topic for topic in self._listens if self._grader_node.publishers_of(topic)
+        return {topic for topic in self._publishes if self._grader_node.subscriptions_of(topic)}, {
+            topic for topic in self._subscribes if self._grader_node.publishers_of(topic)
         }
 
     def _connected(self) -> bool:

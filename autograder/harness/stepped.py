@@ -214,7 +214,7 @@ class SteppedHarness(Harness):
         self.tick_ns = tick_of(self.tick_ns, (period for description in descriptions for period in description.timers))
         subscribed = {channels.topic_of(name[0]) for d in descriptions for name, _ in d.readers if name}
         published = {channels.topic_of(name) for d in descriptions for name, _ in d.writers}
-        subscribed, published = subscribed & set(self._offers), published & set(self._listens)
+        subscribed, published = subscribed & set(self._publishes), published & set(self._subscribes)
         self._await(
             lambda: (
                 all(map(self._grader_node.subscriptions_of, subscribed))

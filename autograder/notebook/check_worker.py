@@ -85,7 +85,7 @@ def _drive(
 ) -> dict[str, Any]:
     from autograder.building.build import build_workspace
     from autograder.harness import SteppedHarness, drive
-    from autograder.harness.drive import LISTENS, OFFERS
+    from autograder.harness.drive import COMMAND_TOPICS, SENSOR_TOPICS
     from autograder.notebook.publishing import messages_at, types_of
     from sim import State
     from sim.codec import from_json
@@ -100,7 +100,12 @@ def _drive(
     try:
         build_workspace(workspace, (package,))
         with SteppedHarness(
-            workspace, package, executable, offers={**OFFERS, **types}, listens=LISTENS, arguments=arguments
+            workspace,
+            package,
+            executable,
+            publishes={**SENSOR_TOPICS, **types},
+            subscribes=COMMAND_TOPICS,
+            arguments=arguments,
         ) as harness:
 
             def publish(state: State) -> bool:

@@ -105,7 +105,7 @@ def _three(workspace: Any) -> list[float]:
     rates = []
     for _ in range(RUNS):
         with SteppedHarness(
-            workspace, programs=programs, offers={"/in": String}, listens={"/third": String}
+            workspace, programs=programs, publishes={"/in": String}, subscribes={"/third": String}
         ) as harness:
             began = time.perf_counter()
             for number in range(CHAIN_STEPS):

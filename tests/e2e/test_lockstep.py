@@ -123,10 +123,10 @@ def trace(scratch: Path, program: str, runs: int) -> list[Any]:
     (install / "node").write_text(f"#!/usr/bin/env python3\n{HEAD}{program}")
     (scratch / "home").mkdir()
     workspace = Workspace(scratch / "ws", activate(), scratch / "home")
-    offers, listens = {"/heard": String, "/also": String}, {"/said": String}
+    publishes, subscribes = {"/heard": String, "/also": String}, {"/said": String}
     traces = []
     for _ in range(runs):
-        with SteppedHarness(workspace, "pkg", "node", offers=offers, listens=listens) as harness:
+        with SteppedHarness(workspace, "pkg", "node", publishes=publishes, subscribes=subscribes) as harness:
             for number in range(STEPS):
                 harness.publish("/also", String(data=f"also {number}"))
                 harness.publish("/heard", String(data=f"message {number}"))

@@ -1,4 +1,4 @@
-"""Lockstep carries what rclpy offers: services, actions, several programs; the same run every time."""
+"""Lockstep carries what rclpy publishes: services, actions, several programs; the same run every time."""
 
 from __future__ import annotations
 
@@ -61,9 +61,9 @@ def open_lab(workspace: Any, *names: str, real: bool = False, **options: Any) ->
 
     from autograder.harness import Program, RealTimeHarness, SteppedHarness
 
-    listens = {"/said": String, **options.pop("listens", {})}
+    subscribes = {"/said": String, **options.pop("subscribes", {})}
     kind = RealTimeHarness if real else SteppedHarness
-    return kind(workspace, programs=tuple(Program("pkg", name) for name in names), listens=listens, **options)
+    return kind(workspace, programs=tuple(Program("pkg", name) for name in names), subscribes=subscribes, **options)
 
 
 def server(scratch: Path) -> Any:
@@ -228,7 +228,7 @@ def alone(scratch: Path, text: str, seconds: float) -> Any:
     workspace = write_workspace(scratch, node=text)
 
     def run() -> Any:
-        with open_lab(workspace, "node", listens={"/also": String, "/map": String}) as harness:
+        with open_lab(workspace, "node", subscribes={"/also": String, "/map": String}) as harness:
             harness.run(seconds)
             return [said(harness), said(harness, "/also"), said(harness, "/map"), harness.notes]
 
@@ -287,7 +287,7 @@ def together(scratch: Path, texts: dict[str, str], seconds: float) -> Any:
     workspace = write_workspace(scratch, **texts)
 
     def run() -> Any:
-        with open_lab(workspace, *texts, listens={"/map": String, "/ping": String}) as harness:
+        with open_lab(workspace, *texts, subscribes={"/map": String, "/ping": String}) as harness:
             harness.run(seconds)
             return [said(harness), said(harness, "/map"), said(harness, "/ping")]
 
@@ -331,7 +331,7 @@ def forged(scratch: Path) -> Any:
     workspace = write_workspace(scratch, talker=programs.FORGED_WORDS)
 
     def run() -> Any:
-        with open_lab(workspace, "talker", listens={"/words": word}) as harness:
+        with open_lab(workspace, "talker", subscribes={"/words": word}) as harness:
             harness.run(0.3)
             return [[round(each.seconds, 3), each.message.text] for each in harness.messages("/words")]
 

@@ -163,7 +163,7 @@ def met(scratch: Path, text: str) -> Any:
     workspace = workspace_of(scratch, text)
     ways = []
     for _ in range(2):
-        with AutoHarness(workspace, "pkg", "node", listens={"/said": String}) as harness:
+        with AutoHarness(workspace, "pkg", "node", subscribes={"/said": String}) as harness:
             began = harness.seconds
             harness.run(1.0)
             ways.append([harness.time, 8 <= len(harness.messages("/said", since=began)) <= 12])
@@ -219,7 +219,7 @@ def unheard(scratch: Path) -> int:
 
     text = "class Tick(Speaker):\n    def __init__(self):\n        super().__init__()\n"
     text += "        self.create_timer(0.05, lambda: (self.say('tick'), print('tick', flush=True)))\nspin(Tick)\n"
-    with RealTimeHarness(workspace_of(scratch, text), "pkg", "node", listens={"/said": String}) as harness:
+    with RealTimeHarness(workspace_of(scratch, text), "pkg", "node", subscribes={"/said": String}) as harness:
         assert harness.until(lambda: bool(harness.messages("/said")), 10.0)
         began, ticks, deadline = harness.seconds, harness.output.count("tick"), time.monotonic() + 30.0
         while harness.output.count("tick") < ticks + 10 and time.monotonic() < deadline:

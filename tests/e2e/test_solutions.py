@@ -189,7 +189,7 @@ def test_two_robots_start_in_their_namespaces_and_end_together(
 ) -> None:
     workspace = Workspace(reference.root, environment.find(), tmp_path, domain=ros_domain)
     with LaunchHarness(
-        workspace, "my_robot_bringup", "two_robots.launch.py", listens={"/fleet/status": String}
+        workspace, "my_robot_bringup", "two_robots.launch.py", subscribes={"/fleet/status": String}
     ) as harness:
         names = [f"/{robot}/{node}" for robot in ("robot1", "robot2") for node in ("driver", "reporter")]
         launch_probe.expect_nodes(harness, names)

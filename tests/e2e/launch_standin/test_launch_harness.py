@@ -145,7 +145,7 @@ def workspace(install_fleet: Callable[[Path], None], tmp_path: Path, ros_domain:
 
 def test_nodes_parameters_messages_and_programs_are_seen_and_ctrl_c_ends_them(workspace: Workspace) -> None:
     arguments = {"name": "lamp", "rate": "8.5"}
-    with LaunchHarness(workspace, "fleet", "single.launch.py", arguments, listens={"/beat": String}) as harness:
+    with LaunchHarness(workspace, "fleet", "single.launch.py", arguments, subscribes={"/beat": String}) as harness:
         launch_probe.expect_nodes(harness, ["/lamp"])
         assert harness.parameters("/lamp", ["rate", "label"]) == {"rate": 8.5, "label": "42"}
         assert harness.parameters("/lamp", ["rate", "absent"]) == {"rate": 8.5, "absent": None}

@@ -45,7 +45,7 @@ def test_goes_on(workspace: Workspace) -> None:
 @hint("The node calls command_at; leave the class as it is.", "Save the file by running its cell.")
 def test_robot(workspace: Workspace) -> None:
     """The robot itself does so, ten commands a second."""
-    with SteppedHarness(workspace, "first_robot", "square", listens={"/cmd_vel": Twist}) as harness:
+    with SteppedHarness(workspace, "first_robot", "square", subscribes={"/cmd_vel": Twist}) as harness:
         harness.run(SIDE + TURN)
         commands = [received.message for received in harness.messages("/cmd_vel")]
     expect(58 <= len(commands) <= 62, f"In 6 s it published {len(commands)} commands.")

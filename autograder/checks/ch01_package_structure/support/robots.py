@@ -20,7 +20,7 @@ TOLERANCE = 1e-3  # m/s and rad/s: the node is given, and its numbers go through
 def dancer(workspace: Workspace, *arguments: str) -> Iterator[SteppedHarness]:
     """Start the dancer."""
     with SteppedHarness(
-        workspace, contract.SQUARE_DANCE, contract.DANCER, listens={CMD_VEL: Twist}, arguments=_ros(arguments)
+        workspace, contract.SQUARE_DANCE, contract.DANCER, subscribes={CMD_VEL: Twist}, arguments=_ros(arguments)
     ) as harness:
         yield harness
 
@@ -32,8 +32,8 @@ def alarm(workspace: Workspace, *arguments: str) -> Iterator[SteppedHarness]:
         workspace,
         contract.WALL_ALARM,
         contract.ALARM,
-        offers={SCAN: LaserScan},
-        listens={ALARM: Bool},
+        publishes={SCAN: LaserScan},
+        subscribes={ALARM: Bool},
         arguments=_ros(arguments),
     ) as harness:
         yield harness

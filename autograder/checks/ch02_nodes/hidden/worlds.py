@@ -6,8 +6,8 @@ import math
 import random
 
 from autograder.checking import (
-    LISTENS,
-    OFFERS,
+    COMMAND_TOPICS,
+    SENSOR_TOPICS,
     AutoHarness,
     CheckFailed,
     Gallery,
@@ -59,7 +59,7 @@ def test_corridor(workspace: Workspace, draw: random.Random, gallery: Gallery) -
 
 def _expect_safe_drive(workspace: Workspace, world: World, draw: random.Random, gallery: Gallery) -> None:
     simulation = Simulation(world, (RobotSpec(radius=RADIUS),), seed=draw.randrange(2**31))
-    with AutoHarness(workspace, PACKAGE, EXECUTABLE, offers=OFFERS, listens=LISTENS) as harness:
+    with AutoHarness(workspace, PACKAGE, EXECUTABLE, publishes=SENSOR_TOPICS, subscribes=COMMAND_TOPICS) as harness:
         recording = drive(harness, simulation, SECONDS).recording
     verdict = temporal.always(SAFE, recording.times.tolist(), {"gap": recording.clearances[:, 0].tolist()})
     rules = {"the gap to the nearest thing, in m, is above 0.01": verdict}

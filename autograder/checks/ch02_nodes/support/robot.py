@@ -15,8 +15,8 @@ from std_msgs.msg import String
 from autograder.checking import SCAN_SECONDS, AutoHarness, ReceivedMessage, Workspace, expect
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, FORWARD, PACKAGE, TOLERANCE, TURN
 
-OFFERS = {"/scan": LaserScan, "/status": String}
-LISTENS = {"/cmd_vel": Twist}
+PUBLISHES = {"/scan": LaserScan, "/status": String}
+SUBSCRIBES = {"/cmd_vel": Twist}
 SETTLED = 0.25  # s: a controller at 10 Hz has answered a scan by then
 WRITTEN_SECONDS = 5.0  # of real time until a line that was logged is read; only a silent node takes so long
 
@@ -25,7 +25,9 @@ class Robot(AutoHarness):
     """A harness in which scans are shown and commands are read."""
 
     def __init__(self, workspace: Workspace, clock_rate: float = 1.0) -> None:
-        super().__init__(workspace, PACKAGE, EXECUTABLE, offers=OFFERS, listens=LISTENS, clock_rate=clock_rate)
+        super().__init__(
+            workspace, PACKAGE, EXECUTABLE, publishes=PUBLISHES, subscribes=SUBSCRIBES, clock_rate=clock_rate
+        )
 
     def see(self, scan: LaserScan, seconds: float = 1.0, *, late: float = 0.0) -> list[ReceivedMessage]:
         """Show a scan ten times a second; return the commands that came once the controller had time to react."""

@@ -61,7 +61,7 @@ def _end(workspace: Workspace, number: signal.Signals) -> tuple[int | None, str,
     Returns:
         Its exit status, None if it stays; its output; the lines that it logged after the signal.
     """
-    with RealTimeHarness(workspace, PACKAGE, EXECUTABLE, listens={"/cmd_vel": Twist}) as harness:
+    with RealTimeHarness(workspace, PACKAGE, EXECUTABLE, subscribes={"/cmd_vel": Twist}) as harness:
         # A node may be seen while its __init__ still runs; a command shows that it spins, or an answer.
         harness.until(
             lambda: bool(harness.messages("/cmd_vel")) or harness.processes[0].cpu_seconds() > COMPUTING,

@@ -35,8 +35,8 @@ class Driver(AutoHarness):
     """
 
     def __init__(self, workspace: Workspace, types: Types, clock_rate: float = 1.0) -> None:
-        offers, listens = {ODOMETRY: Odometry}, {COMMANDS: Twist}
-        super().__init__(workspace, PACKAGE, DRIVER, offers=offers, listens=listens, clock_rate=clock_rate)
+        publishes, subscribes = {ODOMETRY: Odometry}, {COMMANDS: Twist}
+        super().__init__(workspace, PACKAGE, DRIVER, publishes=publishes, subscribes=subscribes, clock_rate=clock_rate)
         self.types = types
         self.x, self.y, self.heading, self.height = 0.0, 0.0, 0.0, 0.0
         self.stuck = self.deaf = self.used = False

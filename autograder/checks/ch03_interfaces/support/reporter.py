@@ -15,7 +15,7 @@ from autograder.checks.ch03_interfaces.support.contract import PACKAGE, RESERVE,
 from autograder.checks.ch03_interfaces.support.types import Types
 
 BATTERY, JOINTS, TOPIC, SERVICE = "/battery_state", "/joint_states", "/robot_status", "/check_trip"
-OFFERS = {BATTERY: BatteryState, JOINTS: JointState}
+PUBLISHES = {BATTERY: BatteryState, JOINTS: JointState}
 PERIOD = 1.0  # s between two messages, unless the parameter says otherwise
 STALE_NS = 700_000_000  # how old what a sensor says is when it is said
 SLOW_SECONDS = 4.0  # more, for a status whose period is too long
@@ -29,9 +29,15 @@ class Reporter(AutoHarness):
     def __init__(
         self, workspace: Workspace, types: Types, arguments: tuple[str, ...] = (), clock_rate: float = 1.0
     ) -> None:
-        listens = {TOPIC: types.robot_status}
+        subscribes = {TOPIC: types.robot_status}
         super().__init__(
-            workspace, PACKAGE, STATUS, offers=OFFERS, listens=listens, arguments=arguments, clock_rate=clock_rate
+            workspace,
+            PACKAGE,
+            STATUS,
+            publishes=PUBLISHES,
+            subscribes=subscribes,
+            arguments=arguments,
+            clock_rate=clock_rate,
         )
         self.types = types
 

@@ -123,7 +123,7 @@ class Launches:
         self,
         file: str,
         arguments: Mapping[str, object],
-        listens: Mapping[str, type],
+        subscribes: Mapping[str, type],
         robot: str | None = None,
         programs: str | None = None,
         environment: Mapping[str, str] = ON_STDOUT,
@@ -138,7 +138,7 @@ class Launches:
         if key not in self._harnesses:
             words = {name: str(value) for name, value in arguments.items()}
             copy = self._copy(beside or file, robot, programs)
-            harness = LaunchHarness(copy, PACKAGE, file, words, listens=listens, environment=environment)
+            harness = LaunchHarness(copy, PACKAGE, file, words, subscribes=subscribes, environment=environment)
             self._harnesses[key] = self._stack.enter_context(harness)
             if finishes and short_lived.run_together(harness, finishes, "driver"):
                 self._early.add(harness)

@@ -36,8 +36,8 @@ def launches(workspace: Workspace) -> Iterator[Launches]:
     """Start them all with the first check that asks: together they are up in half the time, and a student waits."""
     with ExitStack() as stack:
 
-        def start(file: str, arguments: dict[str, str], listens: dict[str, type] | None = None) -> LaunchHarness:
-            return stack.enter_context(LaunchHarness(workspace, PACKAGE, file, arguments, listens=listens))
+        def start(file: str, arguments: dict[str, str], subscribes: dict[str, type] | None = None) -> LaunchHarness:
+            return stack.enter_context(LaunchHarness(workspace, PACKAGE, file, arguments, subscribes=subscribes))
 
         yield Launches(
             robot=start(ROBOT, {"speed": "1", "robot_name": "42"}),

@@ -12,9 +12,9 @@ from rcl_interfaces.msg import ParameterDescriptor, ParameterType
 from sensor_msgs.msg import BatteryState, LaserScan
 
 from autograder.checking import (
-    LISTENS,
-    OFFERS,
+    COMMAND_TOPICS,
     SCAN_SECONDS,
+    SENSOR_TOPICS,
     AutoHarness,
     Kind,
     ReceivedMessage,
@@ -48,13 +48,13 @@ class Robot(AutoHarness):
         arguments: Sequence[str] = (),
         name: str = NODE,
     ) -> None:
-        offers = {**OFFERS, "/battery_state": BatteryState}
+        publishes = {**SENSOR_TOPICS, "/battery_state": BatteryState}
         super().__init__(
             workspace,
             PACKAGE,
             EXECUTABLE,
-            offers=offers,
-            listens=LISTENS,
+            publishes=publishes,
+            subscribes=COMMAND_TOPICS,
             arguments=("--ros-args", *parameters.override_arguments(values or {}), *arguments),
         )
         self.parameters = parameters.NodeParameters(self, name)

@@ -27,8 +27,8 @@ class Processor(AutoHarness):
             workspace,
             PACKAGE,
             "sensor_processor",
-            offers={"/scan": LaserScan},
-            listens={FILTERED: LaserScan, MEAN: Float32},
+            publishes={"/scan": LaserScan},
+            subscribes={FILTERED: LaserScan, MEAN: Float32},
         )
 
     def show(self, *scans: LaserScan, apart: float = SCAN_SECONDS) -> tuple[list[LaserScan], list[float]]:
@@ -49,7 +49,7 @@ class Robust(AutoHarness):
 
     def __init__(self, workspace: Workspace, **values: float) -> None:
         arguments = ("--ros-args", *parameters.override_arguments(values))
-        super().__init__(workspace, PACKAGE, "robust_node", listens={STATUS: String}, arguments=arguments)
+        super().__init__(workspace, PACKAGE, "robust_node", subscribes={STATUS: String}, arguments=arguments)
         self._seen = 0
 
     def live(self, seconds: int) -> list[str]:

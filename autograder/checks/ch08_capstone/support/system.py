@@ -83,8 +83,8 @@ class System:
         self.harness = AutoHarness(
             workspace,
             programs=tuple(Program(PACKAGE, name) for name in there),
-            offers={"/scan": LaserScan, **dict(published[name] for name in published if name in absent)},
-            listens={"/clearance": types.clearance, "/cmd_vel": Twist, "/health": types.health},
+            publishes={"/scan": LaserScan, **dict(published[name] for name in published if name in absent)},
+            subscribes={"/clearance": types.clearance, "/cmd_vel": Twist, "/health": types.health},
             clock_rate=clock_rate,
         )
         self.need(needed)

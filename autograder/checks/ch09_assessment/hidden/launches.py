@@ -38,12 +38,12 @@ def launched(workspace: Workspace, builds: Mapping[str, Diagnosis], types: Types
     require_built(builds, PACKAGE)
     there = installed.look(workspace.install, PACKAGE).shared
     expect(f"launch/{LAUNCH_FILE}" in there, f"launch/{LAUNCH_FILE} is not installed: look at data_files in setup.py.")
-    listens = {"/decision": types.decision}
-    with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": str(hot)}, listens=listens) as whole:
+    subscribes = {"/decision": types.decision}
+    with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": str(hot)}, subscribes=subscribes) as whole:
         if f"/{GUARD}" in launch_probe.settle(whole, NODES):
             yield Launched(whole, whole)
             return
-    with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": f"{hot}.0"}, listens=listens) as harness:
+    with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": f"{hot}.0"}, subscribes=subscribes) as harness:
         yield Launched(harness, whole)
 
 

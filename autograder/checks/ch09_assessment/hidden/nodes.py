@@ -81,7 +81,7 @@ def test_stamps(start: Start) -> None:
         first = heard[0].seconds
         said = f"The first reading came {first:.2f} s after the start, and its period is {period:.2f} s."
         expect(abs(first - period) < period / 2, said, fraction=0.5)
-    with start(THERMOMETER, clock_rate=SLOW, listens=False) as harness:
+    with start(THERMOMETER, clock_rate=SLOW, is_heard=False) as harness:
         harness.run(LATE)
         harness.listen_late()
         heard = _expect_fresh(harness)

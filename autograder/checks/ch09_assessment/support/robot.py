@@ -69,7 +69,7 @@ class Types:
 class NodeHarness(AutoHarness):
     """The harness of one of the three nodes, started with parameters of the check's choice.
 
-    Where `listens` is False, nobody subscribes to what the node publishes before `listen_late`.
+    Where `is_heard` is False, nobody subscribes to what the node publishes before `listen_late`.
     """
 
     def __init__(
@@ -79,22 +79,22 @@ class NodeHarness(AutoHarness):
         name: str,
         *,
         clock_rate: float = 1.0,
-        listens: bool = True,
+        is_heard: bool = True,
         **values: float,
     ) -> None:
         by_name = {"Temperature": types.temperature, "Decision": types.decision}
         takes, publishes = ({t: by_name[kind] for t, kind in topics.items()} for topics in _TOPICS[name])
         arguments = ("--ros-args", *parameters.override_arguments(values))
-        heard = publishes if listens else {}
+        heard = publishes if is_heard else {}
         super().__init__(
-            workspace, PACKAGE, name, offers=takes, listens=heard, arguments=arguments, clock_rate=clock_rate
+            workspace, PACKAGE, name, publishes=takes, subscribes=heard, arguments=arguments, clock_rate=clock_rate
         )
-        self._types, self._name, self._publishes = types, name, publishes
+        self._types, self._name, self._outputs = types, name, publishes
         self._out, self._in = next(iter(publishes)), next(iter(takes), "")
 
     def listen_late(self) -> None:
         """Subscribe to what the node publishes, to which nobody has listened so far."""
-        self.listen(self._publishes)
+        self.subscribe(self._outputs)
 
     def published(self, since: float = -1.0) -> list[ReceivedMessage]:
         """Return what it has published."""
@@ -183,7 +183,7 @@ def refuses(workspace: Workspace, types: Types, name: str, **values: float) -> b
         CheckFailed: it ended by itself as if there were no error.
     """
     try:
-        with NodeHarness(workspace, types, name, listens=True, **values):
+        with NodeHarness(workspace, types, name, is_heard=True, **values):
             return False
     except StudentError as error:
         if error.diagnosis.kind not in (Kind.CRASHED_AT_START, Kind.ENDED_EARLY):

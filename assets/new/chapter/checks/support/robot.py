@@ -20,8 +20,8 @@ class Robot(AutoHarness):
             workspace,
             contract.PACKAGE,
             contract.EXECUTABLE,
-            offers={"/scan": LaserScan},
-            listens={"/nearest": Float32},
+            publishes={"/scan": LaserScan},
+            subscribes={"/nearest": Float32},
             arguments=arguments,
         )
 
