@@ -93,7 +93,7 @@ def _home(check: Check, there: Sequence[Exercise], checks: Sequence[Check]) -> E
 
 
 def _stating(check: Check, there: Sequence[Exercise]) -> list[Exercise]:
-    return [each for each in there if not set(each.sentences).isdisjoint(check.holds)]
+    return [each for each in there if not set(each.sentences).isdisjoint(check.covers)]
 
 
 def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]:

@@ -59,7 +59,7 @@ class CheckResult:
     doc: str | None  # address of a page to read, or None
     visibility: Visibility
     seconds: float  # wall time of the check
-    holds: tuple[str, ...] = ()  # ids of the sentences of the contract that it holds
+    holds: tuple[str, ...] = ()  # ids of the requirements that it covers
     after: tuple[str, ...] = ()  # ids of the checks that explain its failure if they did not pass either
     talk: tuple[Exchange, ...] = ()  # what the nodes were asked, and what they answered
 
@@ -94,7 +94,7 @@ class CheckResult:
             doc=check.doc,
             visibility=check.visibility,
             seconds=round(seconds, 3),
-            holds=check.holds,
+            holds=check.covers,
             after=check.dependencies,
         )
 

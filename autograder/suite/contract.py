@@ -5,11 +5,11 @@ table's row has its bars, and a wrapped line is one line:
 
     {"course": {"contract": {"stale-scan": "| the newest scan arrived more than 0.5 s ago, in ROS time | 0 | 0 |",
                              "keeps-pace": "always"},
-                "unchecked": {"keeps-pace": "why no check can hold it"},
+                "unchecked": {"keeps-pace": "why no check can cover it"},
                 "explains": ["- a row, a bullet or a docstring that obliges to nothing"]}}
 
 An id that stands in two cells is said twice; a list of texts is said in several sentences. A check names the ids that
-it holds. Feedback quotes the whole sentence or row, as it is read (`autograder.suite.quotation`).
+it covers. Feedback quotes the whole sentence or row, as it is read (`autograder.suite.quotation`).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Sentence:
     Attributes:
         id: its name in its chapter.
         text: the whole sentence, or the row of a table, as a student reads it.
-        unchecked: why no check holds it. It is empty if checks do.
+        unchecked: why no check covers it. It is empty if checks do.
     """
 
     id: str
@@ -49,7 +49,7 @@ def contract(assignment: str) -> dict[str, Sentence]:
 
 
 def counts(assignments: Iterable[str]) -> dict[str, int]:
-    """Return how many sentences the contracts of chapters have, and how many of them no check holds."""
+    """Return how many sentences the contracts of chapters have, and how many of them no check covers."""
     found = [sentence for name in assignments for sentence in contract(name).values()]
     return {"contract_sentences": len(found), "contract_unchecked": sum(bool(each.unchecked) for each in found)}
 

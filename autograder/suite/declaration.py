@@ -4,7 +4,7 @@ A suite is a pytest module. Each of its tests is a check, in the group of checks
 
     check = group("reaction")
 
-    @check(points=2, holds="turns", needs=("starts",), doc=contract.LASER_SCAN)
+    @check(points=2, covers="turns", needs=("starts",), doc=contract.LASER_SCAN)
     @hint("Where is 0 rad in a scan?")
     @hint("Compare the smallest forward range with 1.0.")
     def test_turns_when_blocked(robot: Robot) -> None:
@@ -70,7 +70,7 @@ class Check:
         hints: shown one after the other when it fails.
         doc: a page to read, or None.
         needs: ids of checks without which this one cannot be run; it is not checked unless all of them passed.
-        holds: ids of the sentences of the contract that it holds; see `autograder.suite.contract`.
+        covers: ids of the requirements that it covers; see `autograder.suite.contract`.
         after: ids of checks whose failure is likely to be the cause if this one fails, too; it is run in any case.
     """
 
@@ -82,7 +82,7 @@ class Check:
     hints: tuple[str, ...]
     doc: str | None
     needs: tuple[str, ...] = ()
-    holds: tuple[str, ...] = ()
+    covers: tuple[str, ...] = ()
     after: tuple[str, ...] = ()
 
     @property
@@ -117,7 +117,7 @@ class Declare(Protocol):
         self,
         *,
         points: float,
-        holds: str | tuple[str, ...] = ...,
+        covers: str | tuple[str, ...] = ...,
         needs: tuple[str, ...] = ...,
         after: tuple[str, ...] = ...,
         doc: str | None = ...,
@@ -137,7 +137,7 @@ class CheckRow:
     points: float
     hints: tuple[str, ...]
     doc: str
-    holds: str | tuple[str, ...] = ()
+    covers: str | tuple[str, ...] = ()
 
 
 R = TypeVar("R", bound=CheckRow)
@@ -147,7 +147,7 @@ def check(
     *,
     points: float,
     group: str,
-    holds: str | tuple[str, ...] = (),
+    covers: str | tuple[str, ...] = (),
     needs: tuple[str, ...] = (),
     after: tuple[str, ...] = (),
     doc: str | None = None,
@@ -170,9 +170,9 @@ def check(
         visible = Path(inspect.unwrap(function).__code__.co_filename).parent.name == Visibility.VISIBLE.value
         visibility = Visibility.VISIBLE if visible else Visibility.HIDDEN
         hints = getattr(function, "__hints__", ())
-        held = (holds,) if isinstance(holds, str) else holds
+        covered = (covers,) if isinstance(covers, str) else covers
         id = name.removeprefix(PREFIX)
-        declared = Check(id, title, float(points), group, visibility, hints, doc, needs, held, after)
+        declared = Check(id, title, float(points), group, visibility, hints, doc, needs, covered, after)
         function.__check__ = declared  # type: ignore[attr-defined]
         return function
 
@@ -186,12 +186,12 @@ def group(name: str, *, needs: tuple[str, ...] = (), after: tuple[str, ...] = ()
     def check_of_group(
         *,
         points: float,
-        holds: str | tuple[str, ...] = (),
+        covers: str | tuple[str, ...] = (),
         needs: tuple[str, ...] = default_needs,
         after: tuple[str, ...] = default_after,
         doc: str | None = default_doc,
     ) -> Callable[[F], F]:
-        return check(points=points, group=name, holds=holds, needs=needs, after=after, doc=doc)
+        return check(points=points, group=name, covers=covers, needs=needs, after=after, doc=doc)
 
     return check_of_group
 
@@ -229,7 +229,7 @@ def check_each_row(check: Declare, rows: Iterable[R]) -> Callable[[F], F]:
         if body.__name__.startswith("test"):
             raise GraderError(f"body {body.__name__!r}: its name must not start with 'test', its checks' names do")
         for row in rows:
-            declare = check(points=row.points, holds=row.holds, doc=row.doc)
+            declare = check(points=row.points, covers=row.covers, doc=row.doc)
             body.__globals__[PREFIX + row.id] = declare(hint(*row.hints)(_with_row(body, row)))
         return body
 

@@ -41,15 +41,15 @@ def broken_holding(
     `places` maps `VISIBILITY ID` of a check to its file and line. A check without one is attributed to the notebook.
     """
     known = sentences(notebook.cells)
-    covered = {sentence for check in checks for sentence in check.holds}
+    covered = {sentence for check in checks for sentence in check.covers}
     for sentence in known.values():
         if not sentence.unchecked and sentence.id not in covered:
             yield Finding(name, None, f"no check covers the requirement {sentence.id!r}")
         if sentence.unchecked and sentence.id in covered:
             yield Finding(name, None, f"the requirement {sentence.id!r} is marked as unchecked, but a check covers it")
     for check in checks:
-        unknown = ", ".join(repr(each) for each in check.holds if each not in known)
-        if unknown or not check.holds:
+        unknown = ", ".join(repr(each) for each in check.covers if each not in known)
+        if unknown or not check.covers:
             message = f"covers {unknown}, which no cell names" if unknown else "covers no requirement"
             file, line = places.get(f"{check.visibility.value} {check.id}", (name, None))
             yield Finding(file, None, f"the {check.visibility.value} check {check.id!r} {message}", line)

@@ -30,7 +30,7 @@ from autograder.suite.declaration import PREFIX
 TEXTS = ("PACKAGES", "MODULES", "GROUPS", "FOLDERS", "READS", "OWN_TESTS")
 KNOWN = (*TEXTS, "BUILD_MAY_FAIL")
 NEEDED = ("PACKAGES", "MODULES")
-ARGUMENTS = ("points", "group", "holds", "needs", "after", "doc")  # of `check`
+ARGUMENTS = ("points", "group", "covers", "needs", "after", "doc")  # of `check`
 HELPERS = ("__init__.py", "conftest.py")
 
 

@@ -37,7 +37,7 @@ def _sentence(sentence: Sentence, checks: Sequence[Check], flawed: Sequence[Muta
     """Return the row of a requirement."""
     if sentence.unchecked:
         return sentence.text, f"no check: {sentence.unchecked}", ""
-    covering = [check for check in checks if sentence.id in check.holds]
+    covering = [check for check in checks if sentence.id in check.covers]
     broken_by = dict.fromkeys(m.id for check in covering for m in flawed if _fails(m, check))
     return sentence.text, ", ".join(f"`{check.id}`" for check in covering), ", ".join(broken_by)
 

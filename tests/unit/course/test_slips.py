@@ -26,7 +26,7 @@ from autograder.suite import expect, group
 check = group("readings")
 
 
-@check(points=1, holds="counts")
+@check(points=1, covers="counts")
 def test_more():
     """It does more."""
     expect(True, "no")
@@ -102,8 +102,8 @@ SLIPS = [
     ),
     (
         READINGS,
-        'holds="silent"',
-        'holds="silence"',
+        'covers="silent"',
+        'covers="silence"',
         "38",
         "the hidden check 'silent' covers 'silence', which no cell names",
     ),

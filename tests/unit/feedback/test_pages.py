@@ -87,7 +87,7 @@ def test_consequences_are_folded_under_their_cause_and_named_once_in_their_own_g
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
     first = make_check("first", "It drives.", 1.0, "graph")
-    same = make_check("same", "It turns.", 2.0, "graph", after=("first",), hints=("Look.",), holds=("stale",))
+    same = make_check("same", "It turns.", 2.0, "graph", after=("first",), hints=("Look.",), covers=("stale",))
     other = make_check("other", "It stops.", 3.0, "safety", after=("first",))
     blind = make_check("blind", "It sees.", 4.0, "safety", needs=("other",))
     checks = (
@@ -133,7 +133,7 @@ def test_hints_are_folded_one_inside_the_other_and_the_page_to_read_is_linked(
 def test_a_failed_check_quotes_its_sentence_of_the_contract(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
-    stops = make_check("stops", "It stops.", 1, "graph", holds=("stale", "no-such-sentence"))
+    stops = make_check("stops", "It stops.", 1, "graph", covers=("stale", "no-such-sentence"))
     page = Page(feedback.write(make_result(checks=(CheckResult.of(stops, Outcome.FAILED, "it drove"),)), tmp_path))
     assert f"The contract: {contract('02_nodes')['stale'].text}" in page.text
     passed = make_result(checks=(CheckResult.of(stops, Outcome.PASSED),))
@@ -146,8 +146,8 @@ def test_a_failed_check_quotes_its_sentence_of_the_contract(
 def test_a_sentence_of_the_contract_is_quoted_once_for_failures_with_one_cause(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
-    first = make_check("first", "It stops.", 1, "graph", holds=("stale",))
-    others = [make_check(id, "It turns.", 1, "graph", holds=("stale", "near"), after=("first",)) for id in "ab"]
+    first = make_check("first", "It stops.", 1, "graph", covers=("stale",))
+    others = [make_check(id, "It turns.", 1, "graph", covers=("stale", "near"), after=("first",)) for id in "ab"]
     checks = tuple(CheckResult.of(check, Outcome.FAILED, "it drove") for check in (first, *others))
     text = Page(feedback.write(make_result(checks=checks), tmp_path)).text
     assert [text.count(f"The contract: {contract('02_nodes')[name].text}") for name in ("stale", "near")] == [1, 1]

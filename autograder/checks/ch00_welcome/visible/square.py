@@ -17,7 +17,7 @@ TOLERANCE = 0.01  # m/s and rad/s: a speed may be rounded to two digits
 DOC = "https://docs.python.org/3/library/stdtypes.html#numeric-types-int-float-complex"
 
 
-@check(points=1, holds="side")
+@check(points=1, covers="side")
 @hint("Return two numbers: return SPEED, 0.0", "The first SIDE_SECONDS of a round are a side.")
 def test_side(workspace: Workspace) -> None:
     """At the start of a round the robot drives straight on at 0.3 m/s."""
@@ -25,7 +25,7 @@ def test_side(workspace: Workspace) -> None:
     _expect(workspace, SIDE - 0.1, SPEED, 0.0)
 
 
-@check(points=1, holds="corner", needs=("side",))
+@check(points=1, covers="corner", needs=("side",))
 @hint("After SIDE_SECONDS it turns: return 0.0, TURN_RATE", "A positive rate turns to the left.")
 def test_corner(workspace: Workspace) -> None:
     """After 4 s it turns left on the spot, 90 degrees in 2 s."""
@@ -33,7 +33,7 @@ def test_corner(workspace: Workspace) -> None:
     _expect(workspace, SIDE + TURN - 0.1, 0.0, RATE)
 
 
-@check(points=1, holds="rounds", needs=("corner",), doc=DOC)
+@check(points=1, covers="rounds", needs=("corner",), doc=DOC)
 @hint("seconds % (SIDE_SECONDS + TURN_SECONDS) is how far the present round is.", "7.5 % 6.0 is 1.5.")
 def test_goes_on(workspace: Workspace) -> None:
     """After 6 s the next side begins, and so on for ever."""
@@ -41,7 +41,7 @@ def test_goes_on(workspace: Workspace) -> None:
     _expect(workspace, 7.0 * (SIDE + TURN) + SIDE + 1.0, 0.0, RATE)
 
 
-@check(points=1, holds=("side", "corner"), needs=("goes_on",))
+@check(points=1, covers=("side", "corner"), needs=("goes_on",))
 @hint("The node calls command_at; leave the class as it is.", "Save the file by running its cell.")
 def test_robot(workspace: Workspace) -> None:
     """The robot itself does so, ten commands a second."""

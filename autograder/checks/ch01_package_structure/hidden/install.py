@@ -23,7 +23,7 @@ from autograder.checks.ch01_package_structure.support.assertions import (
 check = group("install")
 
 
-@check(points=2, holds="builds", doc=contract.COLCON)
+@check(points=2, covers="builds", doc=contract.COLCON)
 @hint("Run colcon build in ws and read the first line that says error.")
 @hint("A syntax error in setup.py, a file that data_files names and that is not there: colcon quotes Python.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:
@@ -31,7 +31,7 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     expect_built(builds, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds=("files", "empty-files"), needs=("builds",), doc=contract.DEVELOP)
+@check(points=1, covers=("files", "empty-files"), needs=("builds",), doc=contract.DEVELOP)
 @hint("ros2 finds a package by an empty file of its name in share/ament_index/resource_index/packages.")
 @hint("data_files: that folder with ['resource/' + package_name], 'share/' + package_name with ['package.xml'].")
 def test_marker(workspace: Workspace, installed_dance: installed.Installed) -> None:
@@ -44,7 +44,7 @@ def test_marker(workspace: Workspace, installed_dance: installed.Installed) -> N
     expect_empty(source_of(workspace, contract.SQUARE_DANCE), contract.EMPTY_FILES)
 
 
-@check(points=1, holds="program", needs=("builds",), doc=contract.DEVELOP)
+@check(points=1, covers="program", needs=("builds",), doc=contract.DEVELOP)
 @hint("console_scripts in setup.py says which programs there are, setup.cfg says where they go.")
 @hint("dancer = square_dance.nodes.dancer:main, and install_scripts=$base/lib/square_dance under [install].")
 def test_executable(workspace: Workspace, installed_dance: installed.Installed) -> None:
@@ -53,7 +53,7 @@ def test_executable(workspace: Workspace, installed_dance: installed.Installed) 
     expect_develop(source_of(workspace, contract.SQUARE_DANCE), contract.SQUARE_DANCE)
 
 
-@check(points=2, holds=("modules", "empty-files"), needs=("builds",), doc=contract.SUBPACKAGES)
+@check(points=2, covers=("modules", "empty-files"), needs=("builds",), doc=contract.SUBPACKAGES)
 @hint("packages=[package_name] means one folder, not those in it.")
 @hint("find_packages takes a folder for a package when there is an __init__.py in it.")
 def test_subpackages(workspace: Workspace, installed_dance: installed.Installed) -> None:
@@ -61,21 +61,21 @@ def test_subpackages(workspace: Workspace, installed_dance: installed.Installed)
     expect_modules(installed_dance, source_of(workspace, contract.SQUARE_DANCE))
 
 
-@check(points=1, holds="files", needs=("builds",), doc=contract.DEVELOP)
+@check(points=1, covers="files", needs=("builds",), doc=contract.DEVELOP)
 @hint("Launch files are data to setuptools: data_files.", "glob('launch/*.launch.py') gives the list of files.")
 def test_launch_file(workspace: Workspace, installed_dance: installed.Installed) -> None:
     """Its launch file is installed in share/square_dance/launch."""
     expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), contract.DANCE_LAUNCH)
 
 
-@check(points=1, holds="files", needs=("builds",), doc=contract.DEVELOP)
+@check(points=1, covers="files", needs=("builds",), doc=contract.DEVELOP)
 @hint("Configuration is data to setuptools: data_files.", "glob('config/*.yaml') gives the list of files.")
 def test_config(workspace: Workspace, installed_dance: installed.Installed) -> None:
     """Its configuration is installed in share/square_dance/config."""
     expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), contract.DANCE_CONFIG)
 
 
-@check(points=1, holds="same-facts", needs=("builds",), after=("manifest",), doc=contract.DEVELOP)
+@check(points=1, covers="same-facts", needs=("builds",), after=("manifest",), doc=contract.DEVELOP)
 @hint("package.xml and setup.py each say the version, the licence and the maintainer.")
 @hint("license='Apache-2.0' in setup.py is the licence in the form of package.xml.")
 def test_same_facts(workspace: Workspace, installed_dance: installed.Installed) -> None:
@@ -83,7 +83,7 @@ def test_same_facts(workspace: Workspace, installed_dance: installed.Installed) 
     packaging.expect_same_facts(installed_dance, read_manifest(workspace, contract.SQUARE_DANCE))
 
 
-@check(points=1, holds="pytest", needs=("builds",), doc=contract.COLCON)
+@check(points=1, covers="pytest", needs=("builds",), doc=contract.COLCON)
 @hint("colcon test runs pytest only for a package that says that it uses it.")
 @hint("extras_require={'test': ['pytest']} says so to every setuptools.")
 def test_names_pytest(workspace: Workspace, installed_dance: installed.Installed) -> None:
@@ -93,7 +93,7 @@ def test_names_pytest(workspace: Workspace, installed_dance: installed.Installed
 
 @check(
     points=2,
-    holds=("modules", "files"),
+    covers=("modules", "files"),
     needs=("builds",),
     after=("subpackages", "launch_file", "config"),
     doc=contract.SUBPACKAGES,
@@ -106,7 +106,7 @@ def test_grows(extended: ExtendedPackage) -> None:
     expect(not missing, f"The new {', '.join(missing)} stayed behind.", fraction=1.0 - len(missing) / 4)
 
 
-@check(points=1, holds=("tests-stay", "modules", "program"), needs=("builds",), doc=contract.SUBPACKAGES)
+@check(points=1, covers=("tests-stay", "modules", "program"), needs=("builds",), doc=contract.SUBPACKAGES)
 @hint("find_packages() takes test/ for a package of yours when there is an __init__.py in it.", "exclude=['test']")
 @hint("A setup.py copied from another package still names its programs: remove the lines of those that are not yours.")
 def test_tests_stay(extended: ExtendedPackage) -> None:
@@ -122,7 +122,7 @@ def test_tests_stay(extended: ExtendedPackage) -> None:
             expect(module in modules, said, fraction=0.5)
 
 
-@check(points=1, holds="given", needs=("builds",), doc=contract.COLCON)
+@check(points=1, covers="given", needs=("builds",), doc=contract.COLCON)
 @hint(*HINTS)
 def test_given_tests(workspace: Workspace) -> None:
     """The tests given with square_dance, the linters' too, notice a fault that is put into a copy of the package."""

@@ -20,7 +20,7 @@ DECLARE = (
 )
 
 
-@check(points=2, holds=("manifest", "build-type"), doc=contract.REP_149)
+@check(points=2, covers=("manifest", "build-type"), doc=contract.REP_149)
 @hint("Compare it with what ros2 pkg create wrote: which tag is missing, or stands twice?")
 @hint('<export><build_type>ament_python</build_type></export>, inside <package format="3">.')
 def test_manifest(workspace: Workspace) -> None:
@@ -28,14 +28,14 @@ def test_manifest(workspace: Workspace) -> None:
     expect_manifest(workspace, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds="licence", after=("manifest",), doc=contract.REP_149)
+@check(points=1, covers="licence", after=("manifest",), doc=contract.REP_149)
 @hint("A licence is named by its SPDX identifier.", "<license>Apache-2.0</license>")
 def test_licence(workspace: Workspace) -> None:
     """package.xml names the licence Apache-2.0."""
     expect_licence(workspace, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds="description", after=("manifest",), doc=contract.CREATE)
+@check(points=1, covers="description", after=("manifest",), doc=contract.CREATE)
 @hint("ros2 pkg create leaves a TODO in the description.", "Say in half a sentence what the package is for.")
 def test_description(workspace: Workspace) -> None:
     """package.xml describes the package."""
@@ -43,7 +43,7 @@ def test_description(workspace: Workspace) -> None:
     expect(len(said.split()) >= 3 and manifest.PLACEHOLDER not in said, f"The description is {said!r}.")
 
 
-@check(points=2, holds="dependencies", after=("manifest",), doc=contract.ROSDEP)
+@check(points=2, covers="dependencies", after=("manifest",), doc=contract.ROSDEP)
 @hint(*DECLARE)
 def test_run_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the package's modules import, so that it is there when they run."""
@@ -51,7 +51,7 @@ def test_run_dependencies(workspace: Workspace) -> None:
     expect_declared(needed, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
 
 
-@check(points=1, holds="dependencies", after=("manifest",), doc=contract.ROSDEP)
+@check(points=1, covers="dependencies", after=("manifest",), doc=contract.ROSDEP)
 @hint(*DECLARE)
 def test_launch_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the launch file imports, by <exec_depend> or <depend>."""
@@ -59,7 +59,7 @@ def test_launch_dependencies(workspace: Workspace) -> None:
     expect_declared(needed, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
 
 
-@check(points=1, holds="dependencies", after=("manifest",), doc=contract.ROSDEP)
+@check(points=1, covers="dependencies", after=("manifest",), doc=contract.ROSDEP)
 @hint(*DECLARE)
 def test_test_dependencies(workspace: Workspace) -> None:
     """package.xml declares what test/ imports, by <test_depend>."""

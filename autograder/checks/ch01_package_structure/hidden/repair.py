@@ -23,7 +23,7 @@ check = group("repair")
 MISSING_AT_FIRST = 4  # numpy and the three packages of the launch file
 
 
-@check(points=2, holds="alarm-builds", doc=contract.COLCON)
+@check(points=2, covers="alarm-builds", doc=contract.COLCON)
 @hint("Run colcon build --paths src/wall_alarm in ws and read the first line that says error.")
 @hint("The marker is an empty file: resource/wall_alarm.")
 def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
@@ -31,7 +31,7 @@ def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
     expect_built(builds, contract.WALL_ALARM)
 
 
-@check(points=1, holds="alarm-runs", needs=("alarm_builds",), doc=contract.DEVELOP)
+@check(points=1, covers="alarm-runs", needs=("alarm_builds",), doc=contract.DEVELOP)
 @hint("No executable found: look for the program in install/wall_alarm, and see where it is.")
 @hint("setup.cfg: install_scripts=$base/lib/wall_alarm under [install].")
 def test_alarm_executable(installed_alarm: installed.Installed) -> None:
@@ -39,7 +39,7 @@ def test_alarm_executable(installed_alarm: installed.Installed) -> None:
     expect_executable(installed_alarm, contract.ALARM)
 
 
-@check(points=2, holds="alarm-runs", needs=("alarm_builds",), doc=contract.SUBPACKAGES)
+@check(points=2, covers="alarm-runs", needs=("alarm_builds",), doc=contract.SUBPACKAGES)
 @hint("ModuleNotFoundError: No module named 'wall_alarm.nodes': was it installed?")
 @hint("packages=find_packages(exclude=['test']) in setup.py.")
 def test_alarm_subpackages(workspace: Workspace, installed_alarm: installed.Installed) -> None:
@@ -47,14 +47,14 @@ def test_alarm_subpackages(workspace: Workspace, installed_alarm: installed.Inst
     expect_modules(installed_alarm, source_of(workspace, contract.WALL_ALARM))
 
 
-@check(points=1, holds="alarm-config", needs=("alarm_builds",), doc=contract.DEVELOP)
+@check(points=1, covers="alarm-config", needs=("alarm_builds",), doc=contract.DEVELOP)
 @hint("Look into install/wall_alarm/share/wall_alarm.", "The pattern says yml, the file is called yaml.")
 def test_alarm_config(workspace: Workspace, installed_alarm: installed.Installed) -> None:
     """Its configuration is installed."""
     expect_shared(installed_alarm, source_of(workspace, contract.WALL_ALARM), contract.ALARM_CONFIG)
 
 
-@check(points=2, holds="alarm-dependencies", doc=contract.ROSDEP)
+@check(points=2, covers="alarm-dependencies", doc=contract.ROSDEP)
 @hint("numpy's name in package.xml is python3-numpy: rosdep's key, not pip's.")
 @hint("The launch file imports three packages; each is an <exec_depend>.")
 def test_alarm_dependencies(workspace: Workspace) -> None:
@@ -66,7 +66,7 @@ def test_alarm_dependencies(workspace: Workspace) -> None:
     expect("numpy" not in manifest.needs(), said, fraction=0.75)
 
 
-@check(points=1, holds="alarm-licence", needs=("alarm_builds",), doc=contract.REP_149)
+@check(points=1, covers="alarm-licence", needs=("alarm_builds",), doc=contract.REP_149)
 @hint("Two files name the licence. Do they agree?", "license='Apache-2.0' in setup.py.")
 def test_alarm_licence(workspace: Workspace, installed_alarm: installed.Installed) -> None:
     """Both files name the licence Apache-2.0."""
@@ -83,7 +83,7 @@ def test_alarm_licence(workspace: Workspace, installed_alarm: installed.Installe
     expect(not others, told, fraction=0.5)
 
 
-@check(points=1, holds="alarm-pytest", needs=("alarm_builds",), doc=contract.COLCON)
+@check(points=1, covers="alarm-pytest", needs=("alarm_builds",), doc=contract.COLCON)
 @hint("colcon test runs pytest only for a package that says that it uses it.")
 @hint("extras_require={'test': ['pytest']} says so to every setuptools.")
 def test_alarm_names_pytest(workspace: Workspace, installed_alarm: installed.Installed) -> None:
@@ -93,7 +93,7 @@ def test_alarm_names_pytest(workspace: Workspace, installed_alarm: installed.Ins
 
 @check(
     points=2,
-    holds=("alarm-runs", "alarm-given"),
+    covers=("alarm-runs", "alarm-given"),
     needs=("alarm_executable",),
     after=("alarm_subpackages",),
     doc=contract.CREATE,
@@ -109,7 +109,7 @@ def test_alarm_sounds(workspace: Workspace, draw: random.Random) -> None:
 
 @check(
     points=1,
-    holds=("alarm-config", "alarm-given"),
+    covers=("alarm-config", "alarm-given"),
     needs=("alarm_executable", "alarm_config"),
     after=("alarm_sounds",),
     doc=contract.DEVELOP,
@@ -123,7 +123,7 @@ def test_alarm_configured(workspace: Workspace, installed_alarm: installed.Insta
         robots.expect_alarm(harness, round(draw.uniform(0.84, 0.98), 2), False)
 
 
-@check(points=1, holds="alarm-given", needs=("alarm_builds",), doc=contract.COLCON)
+@check(points=1, covers="alarm-given", needs=("alarm_builds",), doc=contract.COLCON)
 @hint(*HINTS)
 def test_alarm_given_tests(workspace: Workspace) -> None:
     """The tests given with wall_alarm, the linters' too, notice a fault that is put into a copy of the package."""

@@ -36,7 +36,7 @@ def running_dancer(workspace: Workspace, seed: int) -> Iterator[RunningDancer]:
         yield RunningDancer(harness, side)
 
 
-@check(points=2, holds="program", needs=("executable",), after=("subpackages",), doc=contract.CREATE)
+@check(points=2, covers="program", needs=("executable",), after=("subpackages",), doc=contract.CREATE)
 @hint(*HINTS)
 def test_starts(running_dancer: RunningDancer) -> None:
     """`ros2 run square_dance dancer` starts a node called dancer."""
@@ -44,7 +44,7 @@ def test_starts(running_dancer: RunningDancer) -> None:
     expect("/dancer" in names, f"The graph holds {', '.join(names) or 'no node'}, but no /dancer.")
 
 
-@check(points=1, holds="given", needs=("executable",), after=("starts",), doc=contract.CREATE)
+@check(points=1, covers="given", needs=("executable",), after=("starts",), doc=contract.CREATE)
 @hint(*HINTS)
 def test_dances(workspace: Workspace, running_dancer: RunningDancer) -> None:
     """It drives along a side of the square, and then turns to the left."""
@@ -53,7 +53,7 @@ def test_dances(workspace: Workspace, running_dancer: RunningDancer) -> None:
         robots.expect_dance(harness, contract.SIDE)
 
 
-@check(points=1, holds="given", needs=("executable", "config"), after=("starts",), doc=contract.DEVELOP)
+@check(points=1, covers="given", needs=("executable", "config"), after=("starts",), doc=contract.DEVELOP)
 @hint("The configuration is given: install it as it is.", "It belongs to the node dancer, and sets side.")
 def test_configured(workspace: Workspace, installed_dance: installed.Installed) -> None:
     """With the installed configuration it dances a square of the size that is written there."""

@@ -22,7 +22,7 @@ from autograder.checks.ch01_package_structure.support.assertions import (
 check = group("packages")
 
 
-@check(points=1, holds=("manifest", "build-type"), doc=contract.CREATE)
+@check(points=1, covers=("manifest", "build-type"), doc=contract.CREATE)
 @hint("Name, version, description, maintainer, licence and <export><build_type>: look at what ros2 pkg create wrote.")
 @hint('The tags stand between <package format="3"> and </package>; <export> stands last.')
 def test_manifest(workspace: Workspace) -> None:
@@ -30,14 +30,14 @@ def test_manifest(workspace: Workspace) -> None:
     expect_manifest(workspace, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds="licence", after=("manifest",), doc=contract.REP_149)
+@check(points=1, covers="licence", after=("manifest",), doc=contract.REP_149)
 @hint("A licence is named by its SPDX identifier.", "<license>Apache-2.0</license>")
 def test_licence(workspace: Workspace) -> None:
     """package.xml names the licence Apache-2.0."""
     expect_licence(workspace, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds="dependencies", after=("manifest",), doc=contract.ROSDEP)
+@check(points=1, covers="dependencies", after=("manifest",), doc=contract.ROSDEP)
 @hint("Read the import lines of each file in square_dance: all that is neither Python's own nor the package's.")
 @hint("<depend> for what the node imports, <exec_depend> for the launch file, <test_depend> for test/.")
 def test_dependencies(workspace: Workspace) -> None:
@@ -47,7 +47,7 @@ def test_dependencies(workspace: Workspace) -> None:
     expect_declared(imports.imported(source), manifest.needs("exec", "test"))
 
 
-@check(points=1, holds="builds", doc=contract.COLCON)
+@check(points=1, covers="builds", doc=contract.COLCON)
 @hint("Run colcon build in ws and read the first line that says error.")
 @hint("can't copy 'resource/square_dance' means: the empty marker file is not there.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:
@@ -55,7 +55,7 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     expect_built(builds, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds=("program", "given"), needs=("builds",), doc=contract.DEVELOP)
+@check(points=1, covers=("program", "given"), needs=("builds",), doc=contract.DEVELOP)
 @hint("Was a module left behind, or the program not found? packages= in setup.py says which, or the entry points.")
 @hint("find_packages finds folders that have an __init__.py; setup.cfg says where programs go.")
 def test_dancer(workspace: Workspace, installed_dance: installed.Installed) -> None:
@@ -66,7 +66,7 @@ def test_dancer(workspace: Workspace, installed_dance: installed.Installed) -> N
         robots.expect_dance(harness, 1.0)
 
 
-@check(points=1, holds="files", needs=("builds",), doc=contract.DEVELOP)
+@check(points=1, covers="files", needs=("builds",), doc=contract.DEVELOP)
 @hint("Each entry of data_files is a pair: a folder below the install prefix, and a list of files.")
 @hint("('share/' + package_name + '/launch', glob('launch/*.launch.py')); config goes the same way.")
 def test_shared(workspace: Workspace, installed_dance: installed.Installed) -> None:
@@ -75,7 +75,7 @@ def test_shared(workspace: Workspace, installed_dance: installed.Installed) -> N
         expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), name)
 
 
-@check(points=1, holds=("same-facts", "pytest"), needs=("builds",), after=("manifest",), doc=contract.DEVELOP)
+@check(points=1, covers=("same-facts", "pytest"), needs=("builds",), after=("manifest",), doc=contract.DEVELOP)
 @hint("Compare version, license and maintainer_email in setup.py with package.xml, letter by letter.")
 @hint("extras_require={'test': ['pytest']} tells colcon that pytest runs the tests.")
 def test_facts(workspace: Workspace, installed_dance: installed.Installed) -> None:
@@ -84,7 +84,7 @@ def test_facts(workspace: Workspace, installed_dance: installed.Installed) -> No
     packaging.expect_pytest(workspace, installed_dance)
 
 
-@check(points=1, holds=("modules", "files"), needs=("builds",), after=("dancer", "shared"), doc=contract.SUBPACKAGES)
+@check(points=1, covers=("modules", "files"), needs=("builds",), after=("dancer", "shared"), doc=contract.SUBPACKAGES)
 @hint("A list of names that you wrote does not hold a file that is added later.")
 @hint("find_packages(exclude=['test']), glob('launch/*.launch.py') and glob('config/*.yaml').")
 def test_grows(workspace: Workspace) -> None:
@@ -93,7 +93,7 @@ def test_grows(workspace: Workspace) -> None:
     expect(not missing, f"The new {', '.join(missing)} stayed behind.")
 
 
-@check(points=1, holds="alarm-builds", doc=contract.COLCON)
+@check(points=1, covers="alarm-builds", doc=contract.COLCON)
 @hint("Run colcon build --paths src/wall_alarm in ws and read the first line that says error.")
 @hint("The marker is an empty file: resource/wall_alarm.")
 def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
@@ -101,7 +101,7 @@ def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
     expect_built(builds, contract.WALL_ALARM)
 
 
-@check(points=1, holds="alarm-runs", needs=("alarm_builds",), doc=contract.DEVELOP)
+@check(points=1, covers="alarm-runs", needs=("alarm_builds",), doc=contract.DEVELOP)
 @hint("Mend one error, then build again: what does ros2 run wall_alarm alarm say now?")
 @hint("No executable found: setup.cfg. No module named ...: packages= in setup.py.")
 def test_alarm_runs(workspace: Workspace, installed_alarm: installed.Installed) -> None:
@@ -113,7 +113,7 @@ def test_alarm_runs(workspace: Workspace, installed_alarm: installed.Installed) 
         robots.expect_alarm(harness, 3.0, False)
 
 
-@check(points=1, holds="alarm-dependencies", doc=contract.ROSDEP)
+@check(points=1, covers="alarm-dependencies", doc=contract.ROSDEP)
 @hint("numpy's name in package.xml is python3-numpy: rosdep's key, not pip's.")
 @hint("The launch file imports three packages; each is an <exec_depend>.")
 def test_alarm_dependencies(workspace: Workspace) -> None:
@@ -125,7 +125,7 @@ def test_alarm_dependencies(workspace: Workspace) -> None:
 
 @check(
     points=1,
-    holds=("alarm-licence", "alarm-config", "alarm-pytest"),
+    covers=("alarm-licence", "alarm-config", "alarm-pytest"),
     needs=("alarm_builds",),
     after=("alarm_dependencies",),
     doc=contract.DEVELOP,

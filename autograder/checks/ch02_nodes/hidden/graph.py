@@ -10,7 +10,7 @@ from autograder.checks.ch02_nodes.support.robot import Robot, qos_mismatch
 check = group("graph")
 
 
-@check(points=1, holds="node-name", doc=contract.NODES)
+@check(points=1, covers="node-name", doc=contract.NODES)
 @hint("Run the cell that builds the workspace and read its last lines.")
 @hint("setup.py must name robot_controller = my_robot_package.nodes.robot_controller:main in console_scripts.")
 def test_starts(robot: Robot) -> None:
@@ -18,7 +18,7 @@ def test_starts(robot: Robot) -> None:
     robot.require_running()
 
 
-@check(points=1, holds="node-name", needs=("starts",))
+@check(points=1, covers="node-name", needs=("starts",))
 @hint("The name is the argument of super().__init__.")
 def test_node_name(robot: Robot) -> None:
     """The node is called robot_controller."""
@@ -26,14 +26,14 @@ def test_node_name(robot: Robot) -> None:
     expect(contract.NODE in names, f"The graph holds {', '.join(names) or 'no node'}, but no {contract.NODE}.")
 
 
-@check(points=1, holds="scan", needs=("starts",))
+@check(points=1, covers="scan", needs=("starts",))
 @hint("create_subscription(LaserScan, 'scan', self.scan_callback, ...) in __init__.")
 def test_subscribes_scan(robot: Robot) -> None:
     """It subscribes to scan as sensor_msgs/msg/LaserScan."""
     _expect_endpoint(robot, "subscription", "/scan", "sensor_msgs/msg/LaserScan")
 
 
-@check(points=2, holds=("scan", "cmd-vel", "status"), needs=("subscribes_scan",), doc=contract.QOS)
+@check(points=2, covers=("scan", "cmd-vel", "status"), needs=("subscribes_scan",), doc=contract.QOS)
 @hint("A lidar publishes best-effort; a reliable subscription never matches it.")
 @hint("Give create_subscription qos_profile_sensor_data instead of 10.")
 def test_scan_qos(robot: Robot) -> None:
@@ -44,14 +44,14 @@ def test_scan_qos(robot: Robot) -> None:
     expect(not differs, differs, fraction=0.5)
 
 
-@check(points=1, holds=("cmd-vel", "twist"), needs=("starts",))
+@check(points=1, covers=("cmd-vel", "twist"), needs=("starts",))
 @hint("create_publisher(Twist, 'cmd_vel', 10) in __init__.")
 def test_publishes_cmd_vel(robot: Robot) -> None:
     """It publishes cmd_vel as geometry_msgs/msg/Twist."""
     _expect_endpoint(robot, "publisher", "/cmd_vel", "geometry_msgs/msg/Twist")
 
 
-@check(points=1, holds="status", needs=("starts",))
+@check(points=1, covers="status", needs=("starts",))
 @hint("create_subscription(String, 'status', self.status_callback, 10) in __init__.")
 def test_subscribes_status(robot: Robot) -> None:
     """It subscribes to status as std_msgs/msg/String."""
@@ -60,7 +60,7 @@ def test_subscribes_status(robot: Robot) -> None:
 
 @check(
     points=1,
-    holds="relative",
+    covers="relative",
     needs=("starts",),
     after=("subscribes_scan", "publishes_cmd_vel", "subscribes_status"),
 )

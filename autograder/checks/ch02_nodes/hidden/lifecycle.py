@@ -13,21 +13,21 @@ check = group("lifecycle")
 LONG_NAME = "a" * 300  # ROS refuses names of 256 letters and more
 
 
-@check(points=2, holds="ends", needs=("starts",))
+@check(points=2, covers="ends", needs=("starts",))
 @hint(*HINTS)
 def test_sigint(workspace: Workspace) -> None:
     """It ends with exit status 0, without a traceback, on Ctrl-C (SIGINT)."""
     expect_clean_end(workspace, signal.SIGINT)
 
 
-@check(points=2, holds="ends", needs=("starts",))
+@check(points=2, covers="ends", needs=("starts",))
 @hint(*HINTS)
 def test_sigterm(workspace: Workspace) -> None:
     """It ends with exit status 0, without a traceback, when a launch system stops it (SIGTERM)."""
     expect_clean_end(workspace, signal.SIGTERM)
 
 
-@check(points=1, holds="fails", needs=("starts",))
+@check(points=1, covers="fails", needs=("starts",))
 @hint("In `except RuntimeError`, a bare `raise` hands the error on. Where rclpy.ok() is false, a signal was its cause.")
 @hint("`finally` runs also where the node was never made: node = None before `try` says so.")
 def test_fails(workspace: Workspace) -> None:

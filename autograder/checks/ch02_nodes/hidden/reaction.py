@@ -22,7 +22,7 @@ JUST_BELOW = 0.003  # m: who rounds a distance, even to centimetres, takes it fo
 SHOWN_SECONDS = 0.4  # s for which one scan is judged: there are commands after SETTLED, and the scan is not old yet
 
 
-@check(points=2, holds=("clear", "in-range"), needs=TALKS)
+@check(points=2, covers=("clear", "in-range"), needs=TALKS)
 @hint(contract.RULE_FORWARD, "Look at the last branch of control_loop.")
 def test_forward_when_clear(robot: Robot, draw: random.Random) -> None:
     """It drives straight on at 0.3 m/s while the nearest thing in front is far away."""
@@ -30,7 +30,7 @@ def test_forward_when_clear(robot: Robot, draw: random.Random) -> None:
     expect_forward(robot.see(scan(fill=distance)), f"With {distance:.2f} m of free space all around")
 
 
-@check(points=2, holds=("near", "in-range"), needs=TALKS)
+@check(points=2, covers=("near", "in-range"), needs=TALKS)
 @hint(contract.RULE_TURN, "Look at the middle branch of control_loop.")
 def test_turns_when_blocked(robot: Robot, draw: random.Random) -> None:
     """It turns left on the spot while something stands within 1 m in front."""
@@ -41,7 +41,7 @@ def test_turns_when_blocked(robot: Robot, draw: random.Random) -> None:
     expect_turn(robot.see(lone), f"With a single beam that reads {distance:.2f} m, straight ahead", fraction=0.75)
 
 
-@check(points=2, holds=("near", "clear"), needs=TALKS, after=REACTS)
+@check(points=2, covers=("near", "clear"), needs=TALKS, after=REACTS)
 @hint("The limit is 1.0 m: nearer blocks, farther does not.", "Compare metres with metres, and with < rather than <=.")
 def test_threshold(robot: Robot, own: Reactions, draw: random.Random) -> None:
     """Its limit is 1 m: a little nearer blocks, a little farther does not."""
@@ -67,7 +67,7 @@ def test_threshold(robot: Robot, own: Reactions, draw: random.Random) -> None:
             expect_reaction(seen, f"After a single scan with something {distance:.2f} m ahead", fraction=0.75)
 
 
-@check(points=3, holds=("sector", "minus-inf"), needs=TALKS, after=REACTS, doc=contract.LASER_SCAN)
+@check(points=3, covers=("sector", "minus-inf"), needs=TALKS, after=REACTS, doc=contract.LASER_SCAN)
 @hint("Only beams within 30° of forward count; min(msg.ranges) is over all of them.")
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi].")
 def test_only_forward_counts(robot: Robot, own: Reactions, draw: random.Random) -> None:
@@ -90,7 +90,7 @@ def test_only_forward_counts(robot: Robot, own: Reactions, draw: random.Random) 
 
 @check(
     points=2,
-    holds=("bearings", "sector"),
+    covers=("bearings", "sector"),
     needs=TALKS,
     after=(*REACTS, "only_forward_counts"),
     doc=contract.LASER_SCAN,

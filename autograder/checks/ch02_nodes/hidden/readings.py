@@ -19,7 +19,7 @@ BESIDE = 4.0, 20.0  # degrees, a little to the left: who looks straight ahead al
 BLINDS = 35.0  # degrees to each side, beyond the forward sector
 
 
-@check(points=2, holds=("nan", "readings"), needs=TALKS, after=REACTS, doc=contract.REP_117)
+@check(points=2, covers=("nan", "readings"), needs=TALKS, after=REACTS, doc=contract.REP_117)
 @hint("min([nan, 0.5]) is nan, and nan < 1.0 is False.", "Leave nan out before you take the minimum: math.isnan.")
 def test_nan(robot: Robot, own: Reactions, draw: random.Random) -> None:
     """A nan among the readings hides no obstacle and is none itself."""
@@ -39,21 +39,21 @@ def test_nan(robot: Robot, own: Reactions, draw: random.Random) -> None:
         expect_reaction(robot.see(lone), said, fraction=0.75)
 
 
-@check(points=1, holds=("plus-inf", "readings"), needs=TALKS, after=REACTS, doc=contract.REP_117)
+@check(points=1, covers=("plus-inf", "readings"), needs=TALKS, after=REACTS, doc=contract.REP_117)
 @hint("+inf says: nothing within range_max.")
 def test_plus_inf(robot: Robot, own: Reactions) -> None:
     """+inf means that nothing is there, and the way is clear."""
     own.expect_forward(robot.see(scan(fill=math.inf)), "With +inf from every beam")
 
 
-@check(points=2, holds=("minus-inf", "readings"), needs=TALKS, after=REACTS, doc=contract.REP_117)
+@check(points=2, covers=("minus-inf", "readings"), needs=TALKS, after=REACTS, doc=contract.REP_117)
 @hint("-inf says: something is nearer than range_min.", "Do not throw -inf away together with other odd numbers.")
 def test_minus_inf(robot: Robot, own: Reactions) -> None:
     """-inf means that something is too near to measure, and the way is blocked."""
     own.expect_turn(robot.see(scan(Part(-3.0, 3.0, -math.inf))), "With -inf straight ahead")
 
 
-@check(points=2, holds=("phantom", "readings"), needs=TALKS, after=REACTS, doc=contract.LASER_SCAN)
+@check(points=2, covers=("phantom", "readings"), needs=TALKS, after=REACTS, doc=contract.LASER_SCAN)
 @hint("Many lidars send 0.0 where they measured nothing.")
 @hint("A finite reading counts only from range_min to range_max of the message.")
 def test_phantoms(robot: Robot, own: Reactions, draw: random.Random) -> None:
@@ -81,7 +81,7 @@ def test_phantoms(robot: Robot, own: Reactions, draw: random.Random) -> None:
     own.expect_forward(robot.see(far), f"With 5 m of free space all around, from a lidar of {RANGE_MIN:g} to 10 m")
 
 
-@check(points=2, holds=("blind", "phantom", "stale"), needs=TALKS, after=REACTS)
+@check(points=2, covers=("blind", "phantom", "stale"), needs=TALKS, after=REACTS)
 @hint(contract.RULE_STOP, 'What does your minimum give when no reading is left? It must not mean "clear".')
 def test_blind(robot: Robot, own: Reactions) -> None:
     """It stands still when no beam in front has a usable reading."""

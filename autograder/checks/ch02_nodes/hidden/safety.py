@@ -31,7 +31,7 @@ FINE = 0.01  # s between two looks at the clock
 SLOW = 0.25  # of ROS time: how fast the machine's clocks run for a robot that must not look at them
 
 
-@check(points=2, holds=("no-scan", "cmd-vel"), needs=("publishes_cmd_vel",))
+@check(points=2, covers=("no-scan", "cmd-vel"), needs=("publishes_cmd_vel",))
 @hint("obstacle_detected = False at the start means: drive before anything was seen.")
 @hint("Start with last_scan = None, and let None mean stop.")
 def test_stops_before_first_scan(fresh_robot: Robot) -> None:
@@ -39,7 +39,7 @@ def test_stops_before_first_scan(fresh_robot: Robot) -> None:
     expect_stop(fresh_robot.left_alone(1.5), "Before the first scan")
 
 
-@check(points=3, holds=("stale", "ros-time"), needs=TALKS, after=("forward_when_clear",))
+@check(points=3, covers=("stale", "ros-time"), needs=TALKS, after=("forward_when_clear",))
 @hint("Remember when the last scan came, by self.get_clock().now().")
 @hint("In control_loop, compare now with that time: older than 0.5 s means stop.")
 def test_stops_when_stale(workspace: Workspace, robot: Robot, own: Reactions, draw: random.Random) -> None:
@@ -61,7 +61,7 @@ def test_stops_when_stale(workspace: Workspace, robot: Robot, own: Reactions, dr
     _expect_ros_time(workspace, scan(fill=distance))  # where time is real, it is the machine's
 
 
-@check(points=1, holds=("stale", "clear", "ros-time"), needs=TALKS, after=("stops_when_stale",))
+@check(points=1, covers=("stale", "clear", "ros-time"), needs=TALKS, after=("stops_when_stale",))
 @hint("Keep looking at the age of the newest scan; a stop is no state to be stuck in.")
 def test_recovers(robot: Robot, own: Reactions, draw: random.Random) -> None:
     """It drives again when scans come again."""

@@ -26,7 +26,7 @@ IN_TURN = (Part(10.0, 20.0, 0.9), Part(-5.0, 5.0, -math.inf), Part(-20.0, -10.0,
 _ENTRY = re.compile(r"^(?=\[(?:DEBUG|INFO|WARN|ERROR|FATAL)\] )", re.MULTILINE)  # where one begins in the log
 
 
-@check(points=2, holds="cmd-vel", needs=("publishes_cmd_vel",))
+@check(points=2, covers="cmd-vel", needs=("publishes_cmd_vel",))
 @hint("create_timer(0.1, self.control_loop) calls control_loop ten times a second.")
 @hint("Publish in the timer's callback and nowhere else, once each time.")
 def test_ten_hertz(robot: Robot) -> None:
@@ -48,7 +48,7 @@ def test_ten_hertz(robot: Robot) -> None:
         expect(message_period.is_paced(commands, PERIOD, robot.time), said, fraction=fraction)
 
 
-@check(points=1, holds="warns", needs=("subscribes_scan",))
+@check(points=1, covers="warns", needs=("subscribes_scan",))
 @hint("A warning at every scan is 10 lines a second, and nobody reads them.")
 @hint("self.get_logger().warning(..., throttle_duration_sec=1.0)")
 def test_no_flood(robot: Robot) -> None:
@@ -65,7 +65,7 @@ def test_no_flood(robot: Robot) -> None:
     _expect_few_warnings(robot, began, warned, situation, fraction=0.5)
 
 
-@check(points=1, holds="warns", needs=("subscribes_scan",), after=("turns_when_blocked", "minus_inf"))
+@check(points=1, covers="warns", needs=("subscribes_scan",), after=("turns_when_blocked", "minus_inf"))
 @hint("A warning has its own level: self.get_logger().warning(...), in the branch that turns.")
 @hint("It warns again and again while it is blocked, not once for each obstacle.")
 def test_warns(fresh_robot: Robot, own: Reactions) -> None:
@@ -89,7 +89,7 @@ def test_warns(fresh_robot: Robot, own: Reactions) -> None:
         expect(len(_logged(fresh_robot, "WARN")) == before, "The way was clear, and it logged a warning.")
 
 
-@check(points=1, holds=("logs-status", "status"), needs=("subscribes_status",))
+@check(points=1, covers=("logs-status", "status"), needs=("subscribes_status",))
 @hint("self.get_logger().info(msg.data), in status_callback.")
 def test_logs_status(robot: Robot, draw: random.Random) -> None:
     """The text of each status is in its log, at level info."""

@@ -36,21 +36,21 @@ HINTS = (
 )
 
 
-@check(points=3, holds=("near", "clear", "sector"), needs=TALKS, after=REACTS)
+@check(points=3, covers=("near", "clear", "sector"), needs=TALKS, after=REACTS)
 @hint(*HINTS)
 def test_room(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a furnished room and touches nothing."""
     _expect_safe_drive(workspace, world_generation.furnished_room(draw), draw, gallery)
 
 
-@check(points=3, holds=("near", "clear", "sector"), needs=TALKS, after=REACTS)
+@check(points=3, covers=("near", "clear", "sector"), needs=TALKS, after=REACTS)
 @hint(*HINTS)
 def test_pillars(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a hall of pillars and touches nothing."""
     _expect_safe_drive(workspace, world_generation.hall_of_pillars(draw), draw, gallery)
 
 
-@check(points=3, holds=("near", "clear", "sector"), needs=TALKS, after=REACTS)
+@check(points=3, covers=("near", "clear", "sector"), needs=TALKS, after=REACTS)
 @hint(*HINTS)
 def test_corridor(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a bent corridor and touches nothing."""

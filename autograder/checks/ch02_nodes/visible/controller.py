@@ -22,7 +22,7 @@ from autograder.checks.ch02_nodes.support.shutdown import HINTS, expect_clean_en
 check = group("controller")
 
 
-@check(points=1, holds="node-name", doc=contract.NODES)
+@check(points=1, covers="node-name", doc=contract.NODES)
 @hint("The sentence above names the error, the lines below it say where.")
 @hint("It needs the whole file: forward_clearance, the class and main.")
 def test_starts(robot: Robot) -> None:
@@ -30,7 +30,7 @@ def test_starts(robot: Robot) -> None:
     expect(bool(robot.nodes()), "The program runs, and the graph holds no node.")
 
 
-@check(points=1, holds=("node-name", "scan", "status", "cmd-vel"), needs=("starts",), doc=contract.NODES)
+@check(points=1, covers=("node-name", "scan", "status", "cmd-vel"), needs=("starts",), doc=contract.NODES)
 @hint("The three calls stand in __init__: create_publisher once, create_subscription twice.")
 @hint("'cmd_vel' is published as Twist; 'scan' comes as LaserScan and 'status' as String.")
 def test_topics(robot: Robot) -> None:
@@ -42,7 +42,7 @@ def test_topics(robot: Robot) -> None:
     expect(not missing, f"Nothing of the right type is on {', '.join(missing)}.")
 
 
-@check(points=1, holds="scan", needs=("starts",), after=("topics",), doc=contract.QOS)
+@check(points=1, covers="scan", needs=("starts",), after=("topics",), doc=contract.QOS)
 @hint("A lidar publishes best-effort; a reliable subscription never matches it.")
 @hint("Give create_subscription qos_profile_sensor_data instead of 10.")
 def test_qos(robot: Robot) -> None:
@@ -51,21 +51,21 @@ def test_qos(robot: Robot) -> None:
     expect(not reason, f"It would get no scan: {reason}.")
 
 
-@check(points=1, holds="no-scan", needs=("starts",), after=("topics",))
+@check(points=1, covers="no-scan", needs=("starts",), after=("topics",))
 @hint(contract.RULE_STOP, "Start with last_scan = None, and let None mean stop.")
 def test_waits(fresh_robot: Robot) -> None:
     """It stands still until the first scan has come."""
     expect_stop(fresh_robot.left_alone(1.0), "Before the first scan")
 
 
-@check(points=1, holds="clear", needs=("starts",), after=("topics",))
+@check(points=1, covers="clear", needs=("starts",), after=("topics",))
 @hint(contract.RULE_FORWARD)
 def test_drives(robot: Robot) -> None:
     """It drives straight on while the way is clear."""
     expect_forward(robot.see(scan(fill=2.0)), "With 2 m of free space all around")
 
 
-@check(points=1, holds=("near", "sector"), needs=("starts",), after=("topics",), doc=contract.LASER_SCAN)
+@check(points=1, covers=("near", "sector"), needs=("starts",), after=("topics",), doc=contract.LASER_SCAN)
 @hint(contract.RULE_TURN, "A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi].")
 def test_turns(robot: Robot) -> None:
     """It turns left when a wall is 0.6 m ahead, and only when it is ahead."""
@@ -74,7 +74,7 @@ def test_turns(robot: Robot) -> None:
     expect_forward(robot.see(scan(Part(150.0, 180.0, 0.6))), "With a wall 0.6 m behind")
 
 
-@check(points=1, holds="bearings", needs=("starts",), after=("turns",), doc=contract.LASER_SCAN)
+@check(points=1, covers="bearings", needs=("starts",), after=("turns",), doc=contract.LASER_SCAN)
 @hint("Take angle_min and angle_increment from the message: a beam's number is not its bearing in degrees.")
 def test_other_lidar(robot: Robot) -> None:
     """With a lidar of 480 beams from -120° to 120° it turns for a wall ahead, and not for one at its left."""
@@ -83,21 +83,21 @@ def test_other_lidar(robot: Robot) -> None:
         expect_reaction(robot.see(seen), f"With a wall 0.7 m away, from {first:.0f}° to {first + 16.0:.0f}°")
 
 
-@check(points=1, holds="plus-inf", needs=("starts",), after=("drives",), doc=contract.REP_117)
+@check(points=1, covers="plus-inf", needs=("starts",), after=("drives",), doc=contract.REP_117)
 @hint("+inf says that nothing is there: it counts, and it is far away.")
 def test_open_door(robot: Robot) -> None:
     """It drives on when every beam ahead reads +inf and there are walls at both sides."""
     expect_forward(robot.see(scan(Part(-40.0, 40.0, math.inf), fill=0.65)), "With +inf ahead and walls at both sides")
 
 
-@check(points=1, holds="blind", needs=("starts",), after=("drives",))
+@check(points=1, covers="blind", needs=("starts",), after=("drives",))
 @hint("What does your minimum give when no reading is left? It must not mean that the way is clear.")
 def test_dirty_window(robot: Robot) -> None:
     """It stands still when every beam ahead reads nan."""
     expect_stop(robot.see(scan(Part(-50.0, 50.0, math.nan), fill=1.5)), "With nan from every beam ahead")
 
 
-@check(points=1, holds="nan", needs=("starts",), after=("drives", "turns"), doc=contract.REP_117)
+@check(points=1, covers="nan", needs=("starts",), after=("drives", "turns"), doc=contract.REP_117)
 @hint("min([nan, 0.5]) is nan, and nan < 1.0 is False.", "Leave nan out before you take the minimum.")
 def test_nan(robot: Robot) -> None:
     """A nan among the readings hides no wall."""
@@ -105,21 +105,21 @@ def test_nan(robot: Robot) -> None:
     expect_turn(robot.see(wall), "With a wall 0.6 m ahead and one beam nan")
 
 
-@check(points=1, holds="minus-inf", needs=("starts",), after=("drives", "turns"), doc=contract.REP_117)
+@check(points=1, covers="minus-inf", needs=("starts",), after=("drives", "turns"), doc=contract.REP_117)
 @hint("-inf says: something is nearer than range_min.", "Do not throw -inf away together with other odd numbers.")
 def test_too_near(robot: Robot) -> None:
     """It turns when a reading straight ahead is -inf."""
     expect_turn(robot.see(scan(Part(-2.0, 2.0, -math.inf))), "With -inf straight ahead")
 
 
-@check(points=1, holds="phantom", needs=("starts",), after=("drives", "turns"), doc=contract.REP_117)
+@check(points=1, covers="phantom", needs=("starts",), after=("drives", "turns"), doc=contract.REP_117)
 @hint("A finite reading counts only from range_min to range_max of the message.")
 def test_phantom(robot: Robot) -> None:
     """A reading of 0.0 straight ahead is no wall."""
     expect_forward(robot.see(scan(Part(-2.0, 2.0, 0.0))), "With 0.0 straight ahead")
 
 
-@check(points=1, holds="stale", needs=("starts",), after=("drives",))
+@check(points=1, covers="stale", needs=("starts",), after=("drives",))
 @hint("Remember when the last scan came, by self.get_clock().now().")
 @hint("In control_loop, compare now with that time: older than 0.5 s means stop.")
 def test_dead_lidar(robot: Robot) -> None:
@@ -130,7 +130,7 @@ def test_dead_lidar(robot: Robot) -> None:
     expect_stop(robot.messages("/cmd_vel", since=began + 1.0), "A second after the last scan")
 
 
-@check(points=1, holds="cmd-vel", needs=("starts",), after=("topics",))
+@check(points=1, covers="cmd-vel", needs=("starts",), after=("topics",))
 @hint("create_timer(0.1, self.control_loop) calls control_loop ten times a second.")
 def test_rate(robot: Robot) -> None:
     """It publishes ten commands a second."""
@@ -140,7 +140,7 @@ def test_rate(robot: Robot) -> None:
     expect(9.0 <= rate <= 11.0, f"It published {rate:.1f} commands a second.")
 
 
-@check(points=1, holds="warns", needs=("starts",), after=("turns",))
+@check(points=1, covers="warns", needs=("starts",), after=("turns",))
 @hint("warning(text, throttle_duration_sec=1.0)", "It warns while it is blocked, and says nothing while it drives.")
 def test_warns(robot: Robot) -> None:
     """In front of a wall for 6 s it warns once a second."""
@@ -153,7 +153,7 @@ def test_warns(robot: Robot) -> None:
     expect(MIN_WARNINGS <= warnings <= 2 * MIN_WARNINGS, said)
 
 
-@check(points=1, holds="ends", needs=("starts",), after=("topics",))
+@check(points=1, covers="ends", needs=("starts",), after=("topics",))
 @hint(*HINTS)
 def test_ends(workspace: Workspace) -> None:
     """Ctrl-C and SIGTERM end it with exit status 0."""

@@ -39,7 +39,7 @@ EXECUTOR = (
 )
 
 
-@check(points=1, holds="drive-action", needs=("builds", "drive_distance"), after=("generated",), doc=contract.ACTION)
+@check(points=1, covers="drive-action", needs=("builds", "drive_distance"), after=("generated",), doc=contract.ACTION)
 @hint("Start it with ros2 run my_robot_package distance_driver and read its last lines.")
 @hint("ActionServer(self, DriveDistance, 'drive_distance', execute_callback=..., ...) in __init__.")
 def test_drive_serves(driver: Driver) -> None:
@@ -56,7 +56,7 @@ def test_drive_serves(driver: Driver) -> None:
     expect(there[ACTION] == [wanted], f"{ACTION} has the type {', '.join(there[ACTION])}, it should be {wanted}.")
 
 
-@check(points=1, holds=("drive-node", "no-odometry", "drive-cmd-vel"), needs=SERVES, doc=contract.ACTION)
+@check(points=1, covers=("drive-node", "no-odometry", "drive-cmd-vel"), needs=SERVES, doc=contract.ACTION)
 @hint("Start with self.position = None, and reject while it is None.")
 @hint("Nothing but a goal that is driven publishes on cmd_vel, not even a stop.")
 def test_drive_needs_odometry(driver: Driver) -> None:
@@ -76,7 +76,7 @@ def test_drive_needs_odometry(driver: Driver) -> None:
     expect(f"/{contract.DRIVER}" in names, said, fraction=0.5)
 
 
-@check(points=2, holds=("drives", "drive-cmd-vel"), needs=SERVES, doc=contract.GROUPS)
+@check(points=2, covers=("drives", "drive-cmd-vel"), needs=SERVES, doc=contract.GROUPS)
 @hint(*EXECUTOR)
 def test_drive_moves(placed_driver: Driver, draw: random.Random) -> None:
     """An accepted goal moves the robot straight on, at the goal's speed, ten times a second."""
@@ -95,7 +95,7 @@ def test_drive_moves(placed_driver: Driver, draw: random.Random) -> None:
 
 @check(
     points=2,
-    holds=("arrives", "stop", "odom", "overshoot", "drives"),
+    covers=("arrives", "stop", "odom", "overshoot", "drives"),
     needs=SERVES,
     after=MOVES,
     doc=contract.ACTION,
@@ -124,7 +124,7 @@ def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
 
 @check(
     points=2,
-    holds=("driven", "arrives", "drive-cmd-vel", "odom"),
+    covers=("driven", "arrives", "drive-cmd-vel", "odom"),
     needs=SERVES,
     after=("drive_succeeds",),
     doc=contract.ACTION,
@@ -173,7 +173,7 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
         expect(min(soon) <= top - PUSHED / 2, said, fraction=0.75)
 
 
-@check(points=2, holds=("drives", "driven"), needs=SERVES, after=MOVES, doc=contract.ACTION)
+@check(points=2, covers=("drives", "driven"), needs=SERVES, after=MOVES, doc=contract.ACTION)
 @hint("goal_handle.publish_feedback(DriveDistance.Feedback(driven=..., remaining=...)) each time around the loop.")
 def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
     """Ten times a second come a command and feedback: driven grows, and remaining is what is left."""
@@ -202,7 +202,7 @@ def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
     expect(len(still) >= count / 2, said, fraction=0.5)
 
 
-@check(points=2, holds=("rejects", "busy"), needs=SERVES, doc=contract.ACTION)
+@check(points=2, covers=("rejects", "busy"), needs=SERVES, doc=contract.ACTION)
 @hint("goal_callback=self.accept returns GoalResponse.ACCEPT or GoalResponse.REJECT.")
 @hint("0.0 < goal.distance <= MAX_DISTANCE is false for nan, too.")
 def test_drive_rejects(free_driver: Driver, draw: random.Random) -> None:
@@ -236,7 +236,7 @@ def test_drive_rejects(free_driver: Driver, draw: random.Random) -> None:
     expect(right.accepted is True, said, fraction=0.5)
 
 
-@check(points=1, holds=("rejects", "drives", "no-odometry"), needs=SERVES, after=MOVES, doc=contract.ACTION)
+@check(points=1, covers=("rejects", "drives", "no-odometry"), needs=SERVES, after=MOVES, doc=contract.ACTION)
 @hint("At most means <=: 5.0 m and 0.5 m/s can be driven.", "speed has a default in the goal; do not ask for more.")
 def test_drive_limits(placed_driver: Driver) -> None:
     """The largest distance, the largest speed and the default speed can be driven."""

@@ -16,7 +16,7 @@ TABLES = (
 )
 
 
-@check(points=1, holds="names-and-order", doc=contract.DEFINE)
+@check(points=1, covers="names-and-order", doc=contract.DEFINE)
 @hint("The files are msg/RobotStatus.msg, srv/CheckTrip.srv and action/DriveDistance.action in my_robot_interfaces.")
 @hint("`colcon build` names the line that it cannot read.")
 def test_readable(workspace: Workspace) -> None:
@@ -27,7 +27,7 @@ def test_readable(workspace: Workspace) -> None:
 
 @check(
     points=2,
-    holds=(
+    covers=(
         "names-and-order",
         "battery-unknown",
         "status-header",
@@ -47,7 +47,7 @@ def test_robot_status(workspace: Workspace) -> None:
 
 @check(
     points=2,
-    holds=(
+    covers=(
         "names-and-order",
         "metres-per-percent",
         "trip-legs",
@@ -67,7 +67,7 @@ def test_check_trip(workspace: Workspace) -> None:
 
 @check(
     points=2,
-    holds=(
+    covers=(
         "names-and-order",
         "goal-constants",
         "goal-distance",
@@ -85,7 +85,7 @@ def test_drive_distance(workspace: Workspace) -> None:
     expect_like(workspace, contract.DRIVE_DISTANCE, *FIELDS)
 
 
-@check(points=1, holds=("battery-unknown", "metres-per-percent", "goal-constants"), after=AFTER, doc=contract.LANGUAGE)
+@check(points=1, covers=("battery-unknown", "metres-per-percent", "goal-constants"), after=AFTER, doc=contract.LANGUAGE)
 @hint("A constant is written `type NAME = value`, with an equals sign and in capitals; it is never sent.")
 def test_constants(workspace: Workspace) -> None:
     """The four constants of the definitions have the contract's names, types and values."""
@@ -94,7 +94,7 @@ def test_constants(workspace: Workspace) -> None:
 
 @check(
     points=1,
-    holds=("status-level", "trip-reserve", "trip-at-end", "goal-speed"),
+    covers=("status-level", "trip-reserve", "trip-at-end", "goal-speed"),
     after=AFTER,
     doc=contract.LANGUAGE,
 )
@@ -106,7 +106,7 @@ def test_defaults(workspace: Workspace) -> None:
 
 @check(
     points=1,
-    holds=("trip-legs", "trip-reason-field", "result-reason", "status-joints"),
+    covers=("trip-legs", "trip-reason-field", "result-reason", "status-joints"),
     after=AFTER,
     doc=contract.LANGUAGE,
 )

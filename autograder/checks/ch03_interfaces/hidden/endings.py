@@ -27,7 +27,7 @@ ROLLS_BACK = 0.015  # m each time the robot is looked at, far more than a centim
 SOON_THERE, UNHURRIED = 0.04, 0.015  # m, m/s: a little more than a centimetre in 1 s
 
 
-@check(points=3, holds=("cancels", "stop"), needs=SERVES, after=MOVES)
+@check(points=3, covers=("cancels", "stop"), needs=SERVES, after=MOVES)
 @hint("Look at goal_handle.is_cancel_requested each time around the loop; stop, then goal_handle.canceled().")
 @hint("cancel_callback must return CancelResponse.ACCEPT: without one, each cancel is rejected.")
 def test_drive_cancels(placed_driver: Driver, draw: random.Random) -> None:
@@ -54,7 +54,7 @@ def test_drive_cancels(placed_driver: Driver, draw: random.Random) -> None:
     expect(goal.result.reason.strip() != "", "The result gives no reason.", fraction=0.8)
 
 
-@check(points=2, holds=("busy", "next-goal", "drive-cmd-vel"), needs=SERVES, after=("drive_cancels",))
+@check(points=2, covers=("busy", "next-goal", "drive-cmd-vel"), needs=SERVES, after=("drive_cancels",))
 @hint("Remember that a goal is being driven when you accept it, and forget it when it has ended.")
 @hint("self.busy.acquire(blocking=False) in accept, self.busy.release() at the end of execute.")
 def test_drive_one_at_a_time(placed_driver: Driver) -> None:
@@ -73,7 +73,7 @@ def test_drive_one_at_a_time(placed_driver: Driver) -> None:
     expect(own, "With a goal that was rejected came a command that was not the first goal's.", fraction=0.75)
 
 
-@check(points=2, holds=("stuck", "stop-in-time", "slow-goal"), needs=SERVES, after=MOVES)
+@check(points=2, covers=("stuck", "stop-in-time", "slow-goal"), needs=SERVES, after=MOVES)
 @hint("Remember how far the robot had come, and when; a centimetre more sets both anew.")
 @hint("self.get_clock().now() - progress_time > PATIENCE: stop, abort, and say why.")
 def test_drive_stuck(placed_driver: Driver) -> None:
@@ -114,7 +114,7 @@ def test_drive_stuck(placed_driver: Driver) -> None:
     expect(arrived, f"At {UNHURRIED} m/s, more than a centimetre in 1 s, the goal ended {ended}.", fraction=0.7)
 
 
-@check(points=2, holds=("stuck", "drive-time", "driven", "result-reason"), needs=SERVES, after=("drive_stuck",))
+@check(points=2, covers=("stuck", "drive-time", "driven", "result-reason"), needs=SERVES, after=("drive_stuck",))
 @hint("Without odometry the position stays as it was, and that is no progress, either.")
 @hint("time.sleep() and time.monotonic() know nothing of ROS time; self.get_clock() does.")
 def test_drive_blind(tardy_driver: Driver) -> None:

@@ -17,7 +17,7 @@ HINTS = (
 )
 
 
-@check(points=2, holds="interfaces-manifest")
+@check(points=2, covers="interfaces-manifest")
 @hint(*HINTS)
 def test_manifest(workspace: Workspace) -> None:
     """package.xml says that the package is built by CMake and what the generators and the users need."""
@@ -27,7 +27,7 @@ def test_manifest(workspace: Workspace) -> None:
     expect(not wrong, f"In package.xml {'; '.join(wrong)}.", fraction=round(max(0.0, 1.0 - len(wrong) / 7), 2))
 
 
-@check(points=2, holds="interfaces-manifest", after=("readable",))
+@check(points=2, covers="interfaces-manifest", after=("readable",))
 @hint("Run `colcon build --packages-select my_robot_interfaces` and read the first line with “error”.")
 @hint("Each package in a definition is found in CMakeLists.txt, and named after DEPENDENCIES.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:
@@ -36,7 +36,7 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
         raise StudentError(builds[INTERFACES])
 
 
-@check(points=2, holds="names-and-order", needs=("builds",))
+@check(points=2, covers="names-and-order", needs=("builds",))
 @hint("Installing a .msg file generates nothing: rosidl_generate_interfaces in CMakeLists.txt does.")
 @hint("rosidl_generate_interfaces(${PROJECT_NAME} …) names every definition, with its folder.")
 def test_generated(workspace: Workspace) -> None:
@@ -56,7 +56,7 @@ def test_generated(workspace: Workspace) -> None:
         raise CheckFailed(f"There is no class for {', '.join(absent)}: {why}.", fraction=fraction)
 
 
-@check(points=1, holds="interfaces-manifest", needs=("builds",))
+@check(points=1, covers="interfaces-manifest", needs=("builds",))
 @hint("ament_package() is the last line of CMakeLists.txt, after everything that it has to know.")
 def test_indexed(workspace: Workspace) -> None:
     """The ament index knows the package, so that ros2 and other packages find it."""

@@ -21,7 +21,7 @@ HEARD = {LOCKSTEP: 0.1, REAL: PERIOD + 0.2}  # s for a battery to be heard; in l
 RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT), and possible when that is at least reserve."
 
 
-@check(points=1, holds="trip-service", needs=("status_starts", "check_trip"))
+@check(points=1, covers="trip-service", needs=("status_starts", "check_trip"))
 @hint("self.create_service(CheckTrip, 'check_trip', self.check_trip) in __init__.")
 @hint("check_trip(self, request, response) returns the response.")
 def test_trip_answers(reporter: Reporter) -> None:
@@ -42,7 +42,7 @@ def test_trip_answers(reporter: Reporter) -> None:
     reporter.ask([])
 
 
-@check(points=2, holds=("trip-unknown", "trip-reason", "newest"), needs=ANSWERS, after=("status_unknown",))
+@check(points=2, covers=("trip-unknown", "trip-reason", "newest"), needs=ANSWERS, after=("status_unknown",))
 @hint("An unknown battery makes no trip possible; start with possible = False.")
 def test_trip_unknown_battery(silent_reporter: Reporter, reporter: Reporter) -> None:
     """While the battery is unknown no trip is possible, and battery_at_end is -1."""
@@ -54,7 +54,7 @@ def test_trip_unknown_battery(silent_reporter: Reporter, reporter: Reporter) -> 
     _expect(reporter.ask([10.0], 0), UNKNOWN, situation, fraction=0.75)
 
 
-@check(points=2, holds="trip-rule", needs=ANSWERS, after=("status_battery",))
+@check(points=2, covers="trip-rule", needs=ANSWERS, after=("status_battery",))
 @hint(RULE)
 def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
     """battery_at_end is what the legs leave of the battery, rounded down."""
@@ -65,7 +65,7 @@ def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
         expect(said == left, f"{situation}, battery_at_end is {said}, not {left}.")
 
 
-@check(points=2, holds=("trip-rule", "trip-enough"), needs=ANSWERS, after=("trip_level",))
+@check(points=2, covers=("trip-rule", "trip-enough"), needs=ANSWERS, after=("trip_level",))
 @hint(RULE, "Exactly the reserve left is enough: at least means >=.")
 def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
     """A trip is possible when at least the reserve is left, and not when less is."""
@@ -84,7 +84,7 @@ def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
         expect(answer.possible, said, fraction=0.75)
 
 
-@check(points=1, holds=("trip-far", "trip-reason"), needs=ANSWERS, after=("trip_level",))
+@check(points=1, covers=("trip-far", "trip-reason"), needs=ANSWERS, after=("trip_level",))
 @hint("An empty battery is 0, not below: max(0, …).", "-1 says that the level is unknown, which it is not.")
 def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
     """A trip that is longer than the battery lasts leaves 0 percent, never less, and is not possible."""
@@ -103,7 +103,7 @@ def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
     expect(left == 0, f"At 0 %, which is known, and without legs, battery_at_end is {left}, not 0.", fraction=0.5)
 
 
-@check(points=2, holds=("trip-unknown", "trip-reason"), needs=ANSWERS)
+@check(points=2, covers=("trip-unknown", "trip-reason"), needs=ANSWERS)
 @hint("A leg is a distance: at least 0, and finite. nan is not at least 0.")
 @hint("0.0 <= leg < math.inf holds for distances alone.")
 def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
@@ -113,7 +113,7 @@ def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
         _expect(reporter.ask(legs, 0), UNKNOWN, f"With a leg of {bad:.1f} m")
 
 
-@check(points=1, holds="trip-reason", needs=ANSWERS, after=("trip_possible",))
+@check(points=1, covers="trip-reason", needs=ANSWERS, after=("trip_possible",))
 @hint("Set response.reason wherever possible stays False, and nowhere else; 80 characters at most.")
 def test_trip_reason(reporter: Reporter) -> None:
     """The reason says why a trip is not possible, and is empty when it is."""

@@ -25,7 +25,7 @@ TUNED_PERIOD = 0.25  # s
 TUNED_SECONDS = 3.0
 
 
-@check(points=1, holds="status-node", needs=("builds",), after=("generated",), doc=contract.DEFINE)
+@check(points=1, covers="status-node", needs=("builds",), after=("generated",), doc=contract.DEFINE)
 @hint("Start it with ros2 run my_robot_package status_publisher and read its last lines.")
 @hint("setup.py is given: it names my_robot_package.nodes.status_publisher:main.")
 def test_status_starts(reporter: Reporter) -> None:
@@ -33,7 +33,7 @@ def test_status_starts(reporter: Reporter) -> None:
     expect(bool(reporter.nodes()), "The program runs, and the graph holds no node.")
 
 
-@check(points=1, holds=("status-topic", "status-node"), needs=("status_starts",), doc=contract.DEFINE)
+@check(points=1, covers=("status-topic", "status-node"), needs=("status_starts",), doc=contract.DEFINE)
 @hint("create_publisher(RobotStatus, 'robot_status', STATUS_QOS) in __init__.")
 @hint("The name is the argument of super().__init__.")
 def test_publishes_status(reporter: Reporter) -> None:
@@ -53,7 +53,7 @@ def test_publishes_status(reporter: Reporter) -> None:
     expect(f"/{contract.STATUS}" in names, said, fraction=0.5)
 
 
-@check(points=1, holds="status-topic", needs=NEEDS, after=AFTER, doc=contract.QOS)
+@check(points=1, covers="status-topic", needs=NEEDS, after=AFTER, doc=contract.QOS)
 @hint("STATUS_QOS is defined above the class; use it instead of a number.")
 def test_status_for_late_joiners(reporter: Reporter) -> None:
     """Its quality of service keeps the last status for whoever joins late."""
@@ -70,7 +70,7 @@ def test_status_for_late_joiners(reporter: Reporter) -> None:
         expect(kept == 1, f"A watcher that joins late got {kept} messages, not the last one alone.", fraction=0.5)
 
 
-@check(points=1, holds=("status-topic", "status-period", "newest"), needs=NEEDS, after=AFTER)
+@check(points=1, covers=("status-topic", "status-period", "newest"), needs=NEEDS, after=AFTER)
 @hint("create_timer(period, self.publish_status), with the period that read_parameters() returns.")
 def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
     """It publishes once a second, and at another rate when status_period says so."""
@@ -99,7 +99,7 @@ def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
 
 @check(
     points=1,
-    holds="status-stamp",
+    covers="status-stamp",
     needs=NEEDS,
     after=AFTER,
     doc="https://docs.ros.org/en/jazzy/p/std_msgs/msg/Header.html",
@@ -119,7 +119,7 @@ def test_status_stamp(hasty_reporter: Reporter) -> None:
     expect(abs(age) <= 0.2, f"header.stamp is {than}.", fraction=fraction)
 
 
-@check(points=2, holds="unknown", needs=NEEDS, after=AFTER, doc=contract.BATTERY)
+@check(points=2, covers="unknown", needs=NEEDS, after=AFTER, doc=contract.BATTERY)
 @hint("No message is not an empty battery: start with self.battery = None, and say BATTERY_UNKNOWN.")
 def test_status_unknown(silent_reporter: Reporter) -> None:
     """Before any sensor has spoken the battery is unknown, not charging, and there are no joints."""
@@ -129,7 +129,7 @@ def test_status_unknown(silent_reporter: Reporter) -> None:
     expect(len(status.joint_positions) == 0, f"There are {len(status.joint_positions)} joints, from nowhere.")
 
 
-@check(points=1, holds="status-name", needs=NEEDS, after=AFTER)
+@check(points=1, covers="status-name", needs=NEEDS, after=AFTER)
 @hint("self.robot_name comes from read_parameters(); put it into each message.")
 def test_status_name(tuned_reporter: Reporter, tuned_name: str) -> None:
     """The status carries the name that the parameter robot_name holds."""
@@ -140,7 +140,7 @@ def test_status_name(tuned_reporter: Reporter, tuned_name: str) -> None:
     expect(said == tuned_name, f"With robot_name {tuned_name!r} the status says {said!r}.")
 
 
-@check(points=2, holds=("battery-topic", "percent", "newest"), needs=NEEDS, after=AFTER, doc=contract.BATTERY)
+@check(points=2, covers=("battery-topic", "percent", "newest"), needs=NEEDS, after=AFTER, doc=contract.BATTERY)
 @hint("percentage goes from 0.0 to 1.0; 0.855 is 86 percent.")
 @hint("math.floor(percentage * 100.0 + 0.5) rounds halves up; int() would cut.")
 def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
@@ -161,7 +161,7 @@ def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
         expect(said == up, f"At percentage {half} battery_level is {said}, instead of {up}: halves go up.")
 
 
-@check(points=1, holds="percent-unknown", needs=NEEDS, after=AFTER, doc=contract.BATTERY)
+@check(points=1, covers="percent-unknown", needs=NEEDS, after=AFTER, doc=contract.BATTERY)
 @hint("A driver says nan when it does not know; nan is not between 0.0 and 1.0.")
 def test_status_bad_battery(reporter: Reporter, draw: random.Random) -> None:
     """A percentage that is nan or outside 0 to 1 is unknown."""
@@ -175,7 +175,7 @@ def test_status_bad_battery(reporter: Reporter, draw: random.Random) -> None:
         expect(said == UNKNOWN, sentence, fraction=0.5 if percentage > 2.0 else 0.0)
 
 
-@check(points=1, holds="charging", needs=NEEDS, after=AFTER, doc=contract.BATTERY)
+@check(points=1, covers="charging", needs=NEEDS, after=AFTER, doc=contract.BATTERY)
 @hint("Compare power_supply_status with BatteryState.POWER_SUPPLY_STATUS_CHARGING.")
 def test_status_charging(reporter: Reporter) -> None:
     """is_charging follows the battery's power_supply_status."""
@@ -188,7 +188,7 @@ def test_status_charging(reporter: Reporter) -> None:
     expect(said, "is_charging is False while the battery is charging, and does not say its level.", fraction=0.5)
 
 
-@check(points=1, holds=("joint-topic", "newest"), needs=NEEDS, after=AFTER)
+@check(points=1, covers=("joint-topic", "newest"), needs=NEEDS, after=AFTER)
 @hint("msg.joint_positions = list(self.joints.position), when there are joints.")
 def test_status_joints(reporter: Reporter, draw: random.Random) -> None:
     """joint_positions are the newest joint state's positions, as many as there are."""

@@ -19,7 +19,7 @@ TABLES = (
 
 @check(
     points=1,
-    holds=(
+    covers=(
         "names-and-order",
         "battery-unknown",
         "status-header",
@@ -38,7 +38,7 @@ def test_robot_status(workspace: Workspace) -> None:
 
 @check(
     points=1,
-    holds=(
+    covers=(
         "names-and-order",
         "metres-per-percent",
         "trip-legs",
@@ -57,7 +57,7 @@ def test_check_trip(workspace: Workspace) -> None:
 
 @check(
     points=1,
-    holds=(
+    covers=(
         "names-and-order",
         "goal-constants",
         "goal-distance",
@@ -74,7 +74,7 @@ def test_drive_distance(workspace: Workspace) -> None:
     expect_like(workspace, contract.DRIVE_DISTANCE, *ALL)
 
 
-@check(points=1, holds="interfaces-manifest", doc=contract.DEFINE)
+@check(points=1, covers="interfaces-manifest", doc=contract.DEFINE)
 @hint("Read the first error above; `colcon build` in a terminal shows the same.")
 @hint("rosidl_generate_interfaces in CMakeLists.txt names each file, and std_msgs behind DEPENDENCIES.")
 @hint("package.xml says ament_cmake in <export>.")

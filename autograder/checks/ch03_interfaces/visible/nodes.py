@@ -15,7 +15,7 @@ from autograder.checks.ch03_interfaces.support.reporter import Reporter
 STATUS, TRIP, DRIVE = (("builds", definition) for definition in ("robot_status", "check_trip", "drive_distance"))
 
 
-@check(points=1, holds=("status-topic", "unknown", "percent"), group="status", needs=STATUS, doc=contract.BATTERY)
+@check(points=1, covers=("status-topic", "unknown", "percent"), group="status", needs=STATUS, doc=contract.BATTERY)
 @hint("create_publisher(RobotStatus, 'robot_status', STATUS_QOS), and a timer that calls publish_status.")
 @hint("A stamp is a message: self.get_clock().now().to_msg(). A level is an int: math.floor gives one.")
 def test_status(reporter: Reporter) -> None:
@@ -29,7 +29,7 @@ def test_status(reporter: Reporter) -> None:
     expect(level == 40, f"At percentage 0.4 battery_level is {level}.")
 
 
-@check(points=1, holds="percent", group="status", needs=STATUS, after=("status",), doc=contract.BATTERY)
+@check(points=1, covers="percent", group="status", needs=STATUS, after=("status",), doc=contract.BATTERY)
 @hint("int() cuts off. math.floor(percent + 0.5) goes to the nearest, and halves go up.")
 def test_rounding(reporter: Reporter) -> None:
     """At percentage 0.278 battery_level is 28, not 27."""
@@ -40,7 +40,7 @@ def test_rounding(reporter: Reporter) -> None:
 
 @check(
     points=1,
-    holds=("status-stamp", "charging", "joint-topic", "newest"),
+    covers=("status-stamp", "charging", "joint-topic", "newest"),
     group="status",
     needs=STATUS,
     after=("status",),
@@ -59,7 +59,7 @@ def test_sensors(reporter: Reporter) -> None:
     expect(joints == [0.25, -1.5], f"joint_positions is {joints} instead of [0.25, -1.5].")
 
 
-@check(points=1, holds=("trip-rule", "trip-enough"), group="service", needs=TRIP, doc=contract.SERVICE)
+@check(points=1, covers=("trip-rule", "trip-enough"), group="service", needs=TRIP, doc=contract.SERVICE)
 @hint("battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT); possible when that is at least reserve.")
 def test_trip(reporter: Reporter) -> None:
     """At 40 %, legs of 50 m and 50 m leave 20 %, which is possible; 51 m instead leave 19 %, which is not."""
@@ -72,7 +72,7 @@ def test_trip(reporter: Reporter) -> None:
         )
 
 
-@check(points=1, holds=("trip-far", "trip-reason"), group="service", needs=TRIP, after=("trip",), doc=contract.SERVICE)
+@check(points=1, covers=("trip-far", "trip-reason"), group="service", needs=TRIP, after=("trip",), doc=contract.SERVICE)
 @hint("max(0, ...) keeps battery_at_end from falling below 0; then compare with what the legs take, too.")
 @hint("Whenever possible is False, put a sentence into response.reason.")
 def test_too_far(reporter: Reporter) -> None:
@@ -84,7 +84,7 @@ def test_too_far(reporter: Reporter) -> None:
     expect(bool(answer.reason.strip()), "The response gives no reason.")
 
 
-@check(points=1, holds="trip-unknown", group="service", needs=TRIP, after=("trip",), doc=contract.SERVICE)
+@check(points=1, covers="trip-unknown", group="service", needs=TRIP, after=("trip",), doc=contract.SERVICE)
 @hint("A leg is a distance: at least 0, and finite. Look at the legs before you add them up.")
 def test_negative_leg(reporter: Reporter) -> None:
     """With a leg of -1 m no trip is possible, and battery_at_end is -1."""
@@ -95,7 +95,7 @@ def test_negative_leg(reporter: Reporter) -> None:
     expect(left == contract.UNKNOWN, f"With a leg of -1 m battery_at_end is {left}, instead of {contract.UNKNOWN}.")
 
 
-@check(points=1, holds=("drives", "arrives", "driven"), group="action", needs=DRIVE, doc=contract.ACTION)
+@check(points=1, covers=("drives", "arrives", "driven"), group="action", needs=DRIVE, doc=contract.ACTION)
 @hint("goal_callback accepts, execute drives: publish feedback and a command, wait, look how far the robot has come.")
 @hint("Without a MultiThreadedExecutor, execute never hears of the odometry.")
 def test_drive(driver: Driver) -> None:
@@ -116,7 +116,7 @@ def test_drive(driver: Driver) -> None:
     expect(stopped(commands), "After the goal had ended, the last command was no stop.")
 
 
-@check(points=1, holds="cancels", group="action", needs=DRIVE, after=("drive",), doc=contract.ACTION)
+@check(points=1, covers="cancels", group="action", needs=DRIVE, after=("drive",), doc=contract.ACTION)
 @hint("cancel_callback accepts, and execute looks at goal_handle.is_cancel_requested.")
 @hint("A goal that is rejected: self.busy.release() comes at the end of execute, in finally.")
 def test_cancel(driver: Driver) -> None:
@@ -129,7 +129,7 @@ def test_cancel(driver: Driver) -> None:
     expect(stopped(commands), "After the cancel, the last command was no stop.")
 
 
-@check(points=1, holds=("rejects", "busy"), group="action", needs=DRIVE, after=("drive",), doc=contract.ACTION)
+@check(points=1, covers=("rejects", "busy"), group="action", needs=DRIVE, after=("drive",), doc=contract.ACTION)
 @hint("0.0 < goal.distance <= MAX_DISTANCE and 0.0 < goal.speed <= MAX_SPEED, in accept.")
 @hint("Take self.busy last of all: self.busy.acquire(blocking=False) says whether a goal is being driven.")
 def test_reject(driver: Driver) -> None:
@@ -150,7 +150,7 @@ def test_reject(driver: Driver) -> None:
     expect(goes_on, "The first goal ended when another one came.")
 
 
-@check(points=1, holds="stuck", group="action", needs=DRIVE, after=("drive",), doc=contract.ACTION)
+@check(points=1, covers="stuck", group="action", needs=DRIVE, after=("drive",), doc=contract.ACTION)
 @hint("Remember how far it had come, and when; a centimetre more sets both again.", "After PATIENCE: stop and abort.")
 def test_stuck(driver: Driver) -> None:
     """Held at 0.45 m/s, the robot is stopped after a second, and the goal ends ABORTED with a reason."""

@@ -27,14 +27,14 @@ MATCH_SECONDS = 5.0  # real time for a node's topics to be seen, once the node i
 GROUPED = "GroupAction([PushRosNamespace(name), SetRemap(...), IncludeLaunchDescription(...)]), once a robot."
 
 
-@check(points=3, holds=("first", "second", "included"), doc=contract.LARGE)
+@check(points=3, covers=("first", "second", "included"), doc=contract.LARGE)
 @hint("What is pushed in a GroupAction holds to its end; without a group it holds for all that follows.", GROUPED)
 def test_two_robots(launches: Launches) -> None:
     """two_robots.launch.py starts driver and reporter in /robot1 and in /robot2, and nothing else."""
     launch_probe.expect_nodes(launches.fleet(), in_spaces(FIRST, SECOND))
 
 
-@check(points=2, holds="included", after=("two_robots",), doc=contract.LARGE)
+@check(points=2, covers="included", after=("two_robots",), doc=contract.LARGE)
 @hint("IncludeLaunchDescription(PythonLaunchDescriptionSource(path), launch_arguments=...)")
 @hint("path leads to launch/robot.launch.py in the package's share folder.")
 @hint("robot_name and speed are handed on; report keeps the default that robot.launch.py declares.")
@@ -50,7 +50,7 @@ def test_includes(launches: Launches) -> None:
     expect(len(included) == len(nodes) == 2, said, fraction=0.5 if nodes and included == nodes else 0.0)
 
 
-@check(points=1, holds=("first", "second", "fleet-speed", "fleet-described"), doc=contract.SUBSTITUTIONS)
+@check(points=1, covers=("first", "second", "fleet-speed", "fleet-described"), doc=contract.SUBSTITUTIONS)
 @hint("ros2 launch -s my_robot_bringup two_robots.launch.py shows what you have declared.")
 @hint("DeclareLaunchArgument('first', default_value='robot1', description='...')")
 def test_fleet_arguments(launches: Launches) -> None:
@@ -62,14 +62,14 @@ def test_fleet_arguments(launches: Launches) -> None:
         launch_probe.expect_argument(arguments, name, default)
 
 
-@check(points=2, holds=("first", "second"), after=("two_robots",), doc=contract.SUBSTITUTIONS)
+@check(points=2, covers=("first", "second"), after=("two_robots",), doc=contract.SUBSTITUTIONS)
 @hint("PushRosNamespace takes a substitution: PushRosNamespace(LaunchConfiguration('first')).", GROUPED)
 def test_spaces(launches: Launches, inputs: Inputs) -> None:
     """First and second name the two namespaces."""
     launch_probe.expect_nodes(_renamed(launches, inputs), in_spaces(*inputs.names))
 
 
-@check(points=2, holds=("first", "second"), after=("spaces",), doc=contract.LARGE)
+@check(points=2, covers=("first", "second"), after=("spaces",), doc=contract.LARGE)
 @hint("launch_arguments={'robot_name': name, 'speed': speed}.items() hands arguments on to the included file.")
 @hint("A robot's robot_name is its own namespace's name.")
 def test_robot_names(launches: Launches, inputs: Inputs) -> None:
@@ -83,7 +83,7 @@ def test_robot_names(launches: Launches, inputs: Inputs) -> None:
     expect(right, f"With first:={inputs.names[0]} and second:={inputs.names[1]}, {said}.")
 
 
-@check(points=2, holds="fleet-speed", after=("spaces",), doc=contract.LARGE)
+@check(points=2, covers="fleet-speed", after=("spaces",), doc=contract.LARGE)
 @hint("The included file has an argument of its own called speed: hand yours on to it.")
 @hint("launch_arguments={..., 'speed': LaunchConfiguration('speed')}.items()")
 def test_fleet_speed(launches: Launches, inputs: Inputs) -> None:
@@ -99,7 +99,7 @@ def test_fleet_speed(launches: Launches, inputs: Inputs) -> None:
             raise CheckFailed(f"{said}; alone, in no namespace, it has {inputs.speed!r}.", fraction=0.5)
 
 
-@check(points=3, holds="fleet-status", after=("two_robots",), doc=contract.LARGE)
+@check(points=3, covers="fleet-status", after=("two_robots",), doc=contract.LARGE)
 @hint("SetRemap('status', '/fleet/status') must stand before the include: it holds for what follows it in its group.")
 @hint("With the slash in front the name is the same for everybody; without it, it is in each robot's namespace.")
 def test_status(launches: Launches, inputs: Inputs) -> None:
@@ -121,7 +121,7 @@ def test_status(launches: Launches, inputs: Inputs) -> None:
         expect(heard, said, fraction=max(fraction, 0.5))
 
 
-@check(points=2, holds="fleet-status", after=("two_robots", "spaces"), doc=contract.LARGE)
+@check(points=2, covers="fleet-status", after=("two_robots", "spaces"), doc=contract.LARGE)
 @hint("Only status is remapped; cmd_vel stays relative, and so in each robot's namespace.")
 @hint("ros2 topic info -v /robot1/cmd_vel names who is at which end.")
 def test_own_commands(launches: Launches, inputs: Inputs) -> None:
@@ -138,7 +138,7 @@ def test_own_commands(launches: Launches, inputs: Inputs) -> None:
     expect(looked > 0, "Two robots, each with driver and reporter in its namespace, were not started.")
 
 
-@check(points=1, holds="fleet-ctrl-c", after=("two_robots",))
+@check(points=1, covers="fleet-ctrl-c", after=("two_robots",))
 @hint("What Node(...) starts, the launch ends.")
 def test_fleet_stop(launches: Launches) -> None:
     """Ctrl-C ends all four nodes cleanly and leaves nothing behind."""

@@ -20,7 +20,7 @@ REFUSE_SECONDS = 15.0  # real time until a launch has ended that refuses an argu
 TYPED = "ParameterValue(LaunchConfiguration(...), value_type=...) says which type the text becomes."
 
 
-@check(points=2, holds=("robot-name", "speed", "report", "described"), doc=contract.SUBSTITUTIONS)
+@check(points=2, covers=("robot-name", "speed", "report", "described"), doc=contract.SUBSTITUTIONS)
 @hint("ros2 launch -s my_robot_bringup robot.launch.py shows what you have declared.")
 @hint("DeclareLaunchArgument('speed', default_value='0.2', description='...') stands in the list, before the nodes.")
 def test_arguments(launches: Launches) -> None:
@@ -30,7 +30,7 @@ def test_arguments(launches: Launches) -> None:
         launch_probe.expect_argument(arguments, name, default)
 
 
-@check(points=2, holds="report", after=("arguments",), doc=contract.SUBSTITUTIONS)
+@check(points=2, covers="report", after=("arguments",), doc=contract.SUBSTITUTIONS)
 @hint("DeclareLaunchArgument takes choices=[...], a list of texts.")
 @hint("A value that is none of the choices ends the launch before anything is started.")
 def test_choices(workspace: Workspace, launches: Launches) -> None:
@@ -49,7 +49,7 @@ def test_choices(workspace: Workspace, launches: Launches) -> None:
             )
 
 
-@check(points=2, holds=("driver", "reporter", "given"), doc=contract.LAUNCH)
+@check(points=2, covers=("driver", "reporter", "given"), doc=contract.LAUNCH)
 @hint("Run the launch file in the notebook and read its first lines that say ERROR.")
 @hint("Node(package='my_robot_bringup', executable='driver', name='driver', ...), and the same for the reporter.")
 def test_starts(workspace: Workspace, launches: Launches) -> None:
@@ -60,7 +60,7 @@ def test_starts(workspace: Workspace, launches: Launches) -> None:
     expect(not others, said, fraction=0.75)
 
 
-@check(points=1, holds=("argument-wins", "robot-name", "speed", "screen"), after=("starts",))
+@check(points=1, covers=("argument-wins", "robot-name", "speed", "screen"), after=("starts",))
 @hint("The arguments' defaults are robot1 and 0.2, and they win over the file.", TYPED)
 @hint("output='screen' is an argument of each Node.")
 def test_defaults(launches: Launches) -> None:
@@ -72,7 +72,7 @@ def test_defaults(launches: Launches) -> None:
         _expect_on_screen(launches.robot(), node, line)
 
 
-@check(points=2, holds=("file", "driver", "reporter"), after=("starts",), doc=contract.LARGE)
+@check(points=2, covers=("file", "driver", "reporter"), after=("starts",), doc=contract.LARGE)
 @hint("config is the path of config/robot.yaml below get_package_share_directory('my_robot_bringup').")
 @hint("parameters=[config, {...}] is a list: first the file, then what has to win over it.")
 def test_parameters_file(launches: Launches, inputs: Inputs) -> None:
@@ -86,7 +86,7 @@ def test_parameters_file(launches: Launches, inputs: Inputs) -> None:
         expect(found is True, said, fraction=0.75)
 
 
-@check(points=2, holds=("speed", "driver"), after=("starts",), doc=contract.SUBSTITUTIONS)
+@check(points=2, covers=("speed", "driver"), after=("starts",), doc=contract.SUBSTITUTIONS)
 @hint("{'speed': LaunchConfiguration('speed')} is read when the launch runs, not when the file is.", TYPED)
 def test_speed(launches: Launches, inputs: Inputs) -> None:
     """The argument speed reaches the driver."""
@@ -95,7 +95,7 @@ def test_speed(launches: Launches, inputs: Inputs) -> None:
     launch_probe.expect_parameters(harness, driver, {"speed": inputs.speed})
 
 
-@check(points=2, holds=("robot-name", "reporter"), after=("starts",), doc=contract.SUBSTITUTIONS)
+@check(points=2, covers=("robot-name", "reporter"), after=("starts",), doc=contract.SUBSTITUTIONS)
 @hint("42 is a number for YAML, and the reporter's robot_name is a text.", TYPED)
 @hint("Quotation marks put around a text by hand end at the first one inside it; value_type=str takes any text.")
 def test_name(launches: Launches, inputs: Inputs) -> None:
@@ -115,7 +115,7 @@ def test_name(launches: Launches, inputs: Inputs) -> None:
     expect(found == inputs.quoted_name, f"{said} {launch_probe.failure(harness.output)}".strip(), fraction=0.75)
 
 
-@check(points=2, holds=("report", "reporter", "driver"), after=("starts",), doc=contract.SUBSTITUTIONS)
+@check(points=2, covers=("report", "reporter", "driver"), after=("starts",), doc=contract.SUBSTITUTIONS)
 @hint("condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.")
 @hint("UnlessCondition is the other way round.")
 def test_quiet(launches: Launches, inputs: Inputs) -> None:
@@ -131,7 +131,7 @@ def test_quiet(launches: Launches, inputs: Inputs) -> None:
     expect(len(nodes) < 2, f"With report:=false, {', '.join(nodes)} run, instead of {DRIVER} alone.", fraction=0.75)
 
 
-@check(points=1, holds=("speed", "screen"), after=("speed",))
+@check(points=1, covers=("speed", "screen"), after=("speed",))
 @hint("Without a type, 1 is an integer, and the driver's speed is a float: the driver dies.", TYPED)
 def test_whole_speed(launches: Launches, inputs: Inputs) -> None:
     """speed:=1, without a point, is a speed too."""
@@ -145,7 +145,7 @@ def test_whole_speed(launches: Launches, inputs: Inputs) -> None:
     _expect_on_screen(harness, driver, "Driving at")
 
 
-@check(points=2, holds="ctrl-c", after=("starts",))
+@check(points=2, covers="ctrl-c", after=("starts",))
 @hint("What a launch file starts with Node(...) ends with the launch.")
 @hint("A program that the launch file starts by other means, such as subprocess, is nobody's child in the end.")
 def test_clean_stop(launches: Launches) -> None:

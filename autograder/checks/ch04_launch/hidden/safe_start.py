@@ -19,7 +19,7 @@ WAITS = "RegisterEventHandler(OnProcessExit(target_action=self_test, on_exit=aft
 FOLLOWS = "RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))"
 
 
-@check(points=3, holds=("self-test", "safe-driver"), doc=contract.EVENTS)
+@check(points=3, covers=("self-test", "safe-driver"), doc=contract.EVENTS)
 @hint("The driver is in no list but the one that after_self_test returns.", WAITS)
 def test_order(launches: Launches, inputs: Inputs) -> None:
     """The driver starts once the self-test has passed, and not before."""
@@ -38,7 +38,7 @@ def test_order(launches: Launches, inputs: Inputs) -> None:
     expect(waits, "The driver was started before the self-test had ended.")
 
 
-@check(points=2, holds="safe-reporter", after=("order",), doc=contract.EVENTS)
+@check(points=2, covers="safe-reporter", after=("order",), doc=contract.EVENTS)
 @hint("The reporter waits for nobody: it stands in the LaunchDescription itself.")
 @hint("What stands in the list is started at once, one thing after the other, without waiting.")
 def test_reporter_first(launches: Launches, inputs: Inputs) -> None:
@@ -50,7 +50,7 @@ def test_reporter_first(launches: Launches, inputs: Inputs) -> None:
     expect("reporter" in launch_probe.started(before), "The reporter was started only after the self-test had ended.")
 
 
-@check(points=2, holds="self-test", doc=contract.EVENTS)
+@check(points=2, covers="self-test", doc=contract.EVENTS)
 @hint("event.returncode is the exit status of the process that has ended; 0 is success.")
 @hint("return [Shutdown(reason='...')] where it is not 0.")
 def test_fails_safe(launches: Launches, inputs: Inputs) -> None:
@@ -58,7 +58,7 @@ def test_fails_safe(launches: Launches, inputs: Inputs) -> None:
     _expect_refusal(launches.safe(battery=inputs.empty), f"With the battery at {inputs.empty} %,")
 
 
-@check(points=1, holds="self-test", after=("fails_safe",), doc=contract.EVENTS)
+@check(points=1, covers="self-test", after=("fails_safe",), doc=contract.EVENTS)
 @hint("The exit status of a process that a signal has killed is the signal's number, below 0.")
 @hint("Only 0 is success: event.returncode == 0.")
 def test_killed(launches: Launches) -> None:
@@ -70,7 +70,7 @@ def test_killed(launches: Launches) -> None:
         expect(not others, f"The self-test is called {', '.join(others)}, not self_test.")
 
 
-@check(points=1, holds="battery", after=("order",))
+@check(points=1, covers="battery", after=("order",))
 @hint("80 is an integer for YAML, and the self-test's battery is a float: the self-test dies, as if it had failed.")
 @hint("ParameterValue(LaunchConfiguration('battery'), value_type=float)")
 def test_whole_battery(launches: Launches, inputs: Inputs) -> None:
@@ -86,7 +86,7 @@ def test_whole_battery(launches: Launches, inputs: Inputs) -> None:
     expect(default == "80", f"The argument battery has {said}, instead of '80'.", fraction=0.5)
 
 
-@check(points=2, holds="safe-reporter", after=("reporter_first",), doc=contract.LAUNCH)
+@check(points=2, covers="safe-reporter", after=("reporter_first",), doc=contract.LAUNCH)
 @hint("Node(..., respawn=True, respawn_delay=0.5)", "Nothing has to be handled: respawn is the node's own.")
 def test_respawns(launches: Launches, inputs: Inputs) -> None:
     """A reporter that dies is started again."""
@@ -98,7 +98,7 @@ def test_respawns(launches: Launches, inputs: Inputs) -> None:
     expect(often, said, fraction=0.75)
 
 
-@check(points=2, holds="safe-driver", after=("order",), doc=contract.EVENTS)
+@check(points=2, covers="safe-driver", after=("order",), doc=contract.EVENTS)
 @hint("The handler's target_action is the very Node that is started.", FOLLOWS)
 def test_driver_crash(launches: Launches, inputs: Inputs) -> None:
     """When the driver crashes, everything ends."""
@@ -117,7 +117,7 @@ def test_driver_crash(launches: Launches, inputs: Inputs) -> None:
     expect(times <= 2, late, fraction=0.75)
 
 
-@check(points=1, holds=("safe-driver", "battery"), after=("whole_battery",), doc=contract.EVENTS)
+@check(points=1, covers=("safe-driver", "battery"), after=("whole_battery",), doc=contract.EVENTS)
 @hint("It does not matter how the driver ends: no look at event.returncode here.", FOLLOWS)
 def test_driver_end(launches: Launches, inputs: Inputs) -> None:
     """The driver has its own defaults; when it ends by itself, with exit status 0, everything ends too."""

@@ -48,7 +48,7 @@ def launches(workspace: Workspace) -> Iterator[Launches]:
         )
 
 
-@check(points=1, holds=("robot-name", "speed", "report"), group="robot", doc=contract.SUBSTITUTIONS)
+@check(points=1, covers=("robot-name", "speed", "report"), group="robot", doc=contract.SUBSTITUTIONS)
 @hint("DeclareLaunchArgument('speed', default_value='0.2', description='...') stands in the list, before the nodes.")
 @hint("The names are robot_name, speed and report.")
 def test_arguments(workspace: Workspace) -> None:
@@ -60,7 +60,7 @@ def test_arguments(workspace: Workspace) -> None:
 
 @check(
     points=1,
-    holds=("driver", "reporter", "speed", "robot-name", "file", "ctrl-c"),
+    covers=("driver", "reporter", "speed", "robot-name", "file", "ctrl-c"),
     group="robot",
     after=("arguments",),
     doc=contract.LAUNCH,
@@ -75,14 +75,14 @@ def test_robot(launches: Launches) -> None:
     launch_probe.expect_clean_stop(launches.robot)
 
 
-@check(points=1, holds="report", group="robot", after=("robot",), doc=contract.SUBSTITUTIONS)
+@check(points=1, covers="report", group="robot", after=("robot",), doc=contract.SUBSTITUTIONS)
 @hint("condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.")
 def test_quiet(launches: Launches) -> None:
     """With report:=false, robot.launch.py starts the driver alone."""
     launch_probe.expect_nodes(launches.quiet, [DRIVER])
 
 
-@check(points=1, holds=("included", "first", "second", "fleet-status"), group="fleet", doc=contract.LARGE)
+@check(points=1, covers=("included", "first", "second", "fleet-status"), group="fleet", doc=contract.LARGE)
 @hint("GroupAction([PushRosNamespace(name), SetRemap('status', '/fleet/status'), IncludeLaunchDescription(...)])")
 @hint("SetRemap stands before the include; launch_arguments={'robot_name': name, 'speed': speed}.items() in it.")
 def test_two_robots(launches: Launches) -> None:
@@ -99,7 +99,7 @@ def test_two_robots(launches: Launches) -> None:
     )
 
 
-@check(points=1, holds=("self-test", "battery"), group="safe_start", doc=contract.EVENTS)
+@check(points=1, covers=("self-test", "battery"), group="safe_start", doc=contract.EVENTS)
 @hint("The driver is in no list but the one that after_self_test returns.")
 @hint("event.returncode is the exit status of the process that has ended; 0 is success.")
 def test_safe_start(launches: Launches) -> None:
@@ -111,14 +111,14 @@ def test_safe_start(launches: Launches) -> None:
     expect(ended, "With the battery at 5 %, the launch did not end by itself.")
 
 
-@check(points=1, holds="safe-reporter", group="safe_start", after=("safe_start",), doc=contract.LAUNCH)
+@check(points=1, covers="safe-reporter", group="safe_start", after=("safe_start",), doc=contract.LAUNCH)
 @hint("Node(..., respawn=True, respawn_delay=0.5)", "Nothing has to be handled: respawn is the node's own.")
 def test_respawn(launches: Launches) -> None:
     """A reporter that dies is started again."""
     expect_respawn(launches.full)
 
 
-@check(points=1, holds="safe-driver", group="safe_start", after=("respawn",), doc=contract.EVENTS)
+@check(points=1, covers="safe-driver", group="safe_start", after=("respawn",), doc=contract.EVENTS)
 @hint("RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))")
 def test_driver_stops(launches: Launches) -> None:
     """When the driver gets SIGTERM and ends, everything shuts down."""

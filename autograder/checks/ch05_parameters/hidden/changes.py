@@ -21,7 +21,7 @@ EXACT = 0.005  # of a rate, in lockstep
 
 @check(
     points=3,
-    holds=("contradiction", "refused", "keep-value"),
+    covers=("contradiction", "refused", "keep-value"),
     needs=("starts",),
     after=("names",),
     doc=contract.PARAMETERS,
@@ -46,7 +46,7 @@ def test_contradiction(robot: Robot, draw: random.Random) -> None:
         expect(not wrong, f"It refused {_values_text(request)}, and yet {'; '.join(wrong)}.")
 
 
-@check(points=1, holds=("reason", "refused", "keep-value"), needs=("starts",), after=("contradiction",))
+@check(points=1, covers=("reason", "refused", "keep-value"), needs=("starts",), after=("contradiction",))
 @hint("SetParametersResult(successful=False, reason=...), with contradiction's sentence.")
 @hint("The distance that a request does not name is the present one: neither the default nor that of the start.")
 def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None:
@@ -72,7 +72,7 @@ def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None
         expect(sentence[:100] in reason, f"{said}; contradiction says “{sentence}”.", fraction=0.5)
 
 
-@check(points=2, holds="validate", needs=("starts",), after=("names",))
+@check(points=2, covers="validate", needs=("starts",), after=("names",))
 @hint("Judge what will be, with all the values of the request; not one value after the other.")
 def test_together(robot: Robot, draw: random.Random) -> None:
     """Two distances that fit each other are taken in one request, in either order and far from the present ones."""
@@ -90,7 +90,7 @@ def test_together(robot: Robot, draw: random.Random) -> None:
         expect(not wrong, f"It took {_values_text(request)}, and yet {'; '.join(wrong)}.")
 
 
-@check(points=2, holds="no-effect", needs=("starts",), after=("contradiction",), doc=contract.PARAMETERS)
+@check(points=2, covers="no-effect", needs=("starts",), after=("contradiction",), doc=contract.PARAMETERS)
 @hint("validate says yes or no and does nothing else: no attribute, no timer, no log of a change.")
 @hint("What is to be done once a request was accepted stands in apply.")
 def test_no_side_effects(fresh_robot: Robot, workspace: Workspace) -> None:
@@ -128,7 +128,7 @@ def test_no_side_effects(fresh_robot: Robot, workspace: Workspace) -> None:
     expect(accepted is not True, f"{told}, though slow_distance is still 1.0.", fraction=0.75)
 
 
-@check(points=2, holds="at-once", needs=("starts",), after=("names",), doc=contract.IN_A_CLASS)
+@check(points=2, covers="at-once", needs=("starts",), after=("names",), doc=contract.IN_A_CLASS)
 @hint("A value that was copied to an attribute in __init__ stays what it was.")
 @hint("speed, which is given, asks self.value(...) at each command: leave it so, or renew your copies in apply.")
 def test_speed_change(robot: Robot, draw: random.Random) -> None:
@@ -139,7 +139,7 @@ def test_speed_change(robot: Robot, draw: random.Random) -> None:
     expect_speed(robot.speed_at(2.5), speed, f"After max_linear_velocity was set to {speed}")
 
 
-@check(points=2, holds=("at-once", "contradiction"), needs=("starts",), after=("names",))
+@check(points=2, covers=("at-once", "contradiction"), needs=("starts",), after=("names",))
 @hint("Both distances decide about the speed at each command, as they are then.")
 def test_distance_change(robot: Robot, draw: random.Random) -> None:
     """New distances decide immediately where it slows down and where it stops."""
@@ -157,7 +157,7 @@ def test_distance_change(robot: Robot, draw: random.Random) -> None:
         _change(robot, {"slow_distance": near}, fraction=0.75)
 
 
-@check(points=1, holds="at-once", needs=("starts",), after=("names",))
+@check(points=1, covers="at-once", needs=("starts",), after=("names",))
 @hint("The threshold is asked for at each command, as it is then.")
 def test_threshold_change(robot: Robot) -> None:
     """A new battery_threshold decides immediately whether it stands still."""
@@ -168,7 +168,7 @@ def test_threshold_change(robot: Robot) -> None:
     expect_speed(robot.speed_at(2.5), 0.0, "After battery_threshold was set to 60, with a charge of 50")
 
 
-@check(points=3, holds="apply-rate", needs=("starts",), after=("names",))
+@check(points=3, covers="apply-rate", needs=("starts",), after=("names",))
 @hint("add_post_set_parameters_callback(self.apply) in __init__, and in apply: self.timer.timer_period_ns = ...")
 @hint("A period is 1e9 / frequency nanoseconds, a whole number; a second timer beside the first adds its commands.")
 def test_rate_change(robot: Robot, draw: random.Random) -> None:
@@ -189,7 +189,7 @@ def test_rate_change(robot: Robot, draw: random.Random) -> None:
 
 @check(
     points=1,
-    holds=("apply-rate", "lets-pass", "refused", "max_linear_velocity"),
+    covers=("apply-rate", "lets-pass", "refused", "max_linear_velocity"),
     needs=("starts",),
     after=("speed_change",),
 )
@@ -209,7 +209,7 @@ def test_undisturbed(robot: Robot) -> None:
     expect_rate(robot.rate_since(began), before, "While max_linear_velocity was changed all the time")
 
 
-@check(points=1, holds="lets-pass", needs=("starts",), after=("names",))
+@check(points=1, covers="lets-pass", needs=("starts",), after=("names",))
 @hint("A request may name no distance at all, or only rclpy's own use_sim_time: let it pass.")
 def test_passes(robot: Robot) -> None:
     """Requests that have nothing to do with the distances pass."""
@@ -226,7 +226,7 @@ def test_passes(robot: Robot) -> None:
 
 @check(
     points=1,
-    holds=("lets-pass", "validate", "apply-rate"),
+    covers=("lets-pass", "validate", "apply-rate"),
     needs=("starts",),
     after=("contradiction", "rate_change", "passes"),
 )

@@ -25,7 +25,7 @@ PER = {"hz", "hertz", "per", "a", "each", "every"}
 
 @check(
     points=1,
-    holds=contract.TABLE_ROWS,
+    covers=contract.TABLE_ROWS,
     doc=contract.IN_A_CLASS,
 )
 @hint("Read the sentence above, then the last lines of the traceback below it.")
@@ -38,7 +38,7 @@ def test_starts(robot: Robot) -> None:
 
 @check(
     points=2,
-    holds=contract.TABLE_ROWS,
+    covers=contract.TABLE_ROWS,
     needs=("starts",),
     doc=contract.PARAMETERS,
 )
@@ -53,7 +53,7 @@ def test_names(robot: Robot) -> None:
 
 @check(
     points=2,
-    holds=contract.TABLE_ROWS,
+    covers=contract.TABLE_ROWS,
     needs=("starts",),
     after=("names",),
     doc=contract.PARAMETERS,
@@ -72,7 +72,7 @@ def test_types(robot: Robot) -> None:
 
 @check(
     points=1,
-    holds=contract.TABLE_ROWS,
+    covers=contract.TABLE_ROWS,
     needs=("starts",),
     after=("names", "types"),
 )
@@ -85,7 +85,7 @@ def test_defaults(robot: Robot) -> None:
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=_share(len(wrong)))
 
 
-@check(points=1, holds="described", needs=("starts",), after=("names",))
+@check(points=1, covers="described", needs=("starts",), after=("names",))
 @hint("ParameterDescriptor(description='...') is declare_parameter's third argument.")
 def test_descriptions(robot: Robot) -> None:
     """Each has a description, which names the unit where there is one."""
@@ -97,7 +97,7 @@ def test_descriptions(robot: Robot) -> None:
 
 @check(
     points=3,
-    holds=(
+    covers=(
         "ranges",
         "max_linear_velocity",
         "safety_distance",
@@ -127,7 +127,7 @@ def test_ranges(robot: Robot, draw: random.Random) -> None:
     expect(not wrong, f"{told}.", fraction=round(0.8 * (1 - len(wrong) / len(limited)), 2))
 
 
-@check(points=1, holds="robot_name", needs=("starts",), after=("names",))
+@check(points=1, covers="robot_name", needs=("starts",), after=("names",))
 @hint("read_only=True in the descriptor of robot_name; the others can be changed.")
 def test_read_only(robot: Robot) -> None:
     """The robot's name is fixed once it has started."""
@@ -141,7 +141,7 @@ def test_read_only(robot: Robot) -> None:
 
 @check(
     points=1,
-    holds=contract.TABLE_ROWS,
+    covers=contract.TABLE_ROWS,
     needs=("starts",),
     after=("names", "types"),
 )
@@ -164,7 +164,7 @@ def test_typed(robot: Robot) -> None:
     expect(not absent, parameters.missing_sentence(WANTED, robot.initial), fraction=_share(len(absent)))
 
 
-@check(points=1, holds="no-others", needs=("starts",), after=("names",))
+@check(points=1, covers="no-others", needs=("starts",), after=("names",))
 @hint("Every declared name has work to do: what is not in the table is not declared.")
 @hint("allow_undeclared_parameters lets every misspelling in: leave it out.")
 def test_no_others(robot: Robot, draw: random.Random) -> None:

@@ -37,7 +37,7 @@ def start_values(workspace: Workspace) -> Values:
     return values
 
 
-@check(points=2, holds="types", needs=(), doc=contract.ARGUMENTS)
+@check(points=2, covers="types", needs=(), doc=contract.ARGUMENTS)
 @hint("Three levels: the node or /**, then ros__parameters with two underscores, then the values; two spaces each.")
 @hint("config/configured_node.yaml is an example for one node.")
 def test_file(fleet: Callable[[], Entries]) -> None:
@@ -45,7 +45,7 @@ def test_file(fleet: Callable[[], Entries]) -> None:
     expect(bool(fleet()), "It names no node.")
 
 
-@check(points=1, holds="types", doc=contract.PARAMETERS)
+@check(points=1, covers="types", doc=contract.PARAMETERS)
 @hint("A name that no node declares is dropped without a word: compare it with the table of exercise 1.")
 def test_file_names(fleet: Callable[[], Entries]) -> None:
     """The file sets declared names only."""
@@ -59,7 +59,7 @@ def test_file_names(fleet: Callable[[], Entries]) -> None:
     expect(not unknown, f"No node declares {', '.join(told)}: it would have no effect.")
 
 
-@check(points=2, holds=(*contract.FLEET_ROWS, "empty-field"), after=("file_names",))
+@check(points=2, covers=(*contract.FLEET_ROWS, "empty-field"), after=("file_names",))
 @hint("What every robot has stands under /**, which fits every name.")
 def test_any_robot(start_values: Values) -> None:
     """A robot that the file does not name gets what every robot has."""
@@ -67,7 +67,7 @@ def test_any_robot(start_values: Values) -> None:
     expect(not wrong, f"For a robot of another name, {'; '.join(wrong)}.")
 
 
-@check(points=2, holds=(*contract.FLEET_ROWS, "empty-field"), after=("file_names", "any_robot"))
+@check(points=2, covers=(*contract.FLEET_ROWS, "empty-field"), after=("file_names", "any_robot"))
 @hint("Of all entries that fit a node the last one wins: /** stands first.")
 @hint("The key is the node's name, scout; its values stand under its own ros__parameters.")
 def test_scout(start_values: Values) -> None:
@@ -75,7 +75,7 @@ def test_scout(start_values: Values) -> None:
     _expect_own(start_values, "scout")
 
 
-@check(points=2, holds=(*contract.FLEET_ROWS, "empty-field"), after=("file_names", "any_robot"))
+@check(points=2, covers=(*contract.FLEET_ROWS, "empty-field"), after=("file_names", "any_robot"))
 @hint("Of all entries that fit a node the last one wins: /** stands first.")
 @hint("20.0 and 1.0 are doubles; 20 and 1 would keep the node from starting.")
 def test_porter(start_values: Values) -> None:
@@ -83,7 +83,7 @@ def test_porter(start_values: Values) -> None:
     _expect_own(start_values, "porter")
 
 
-@check(points=1, holds="once", after=("file_names", "any_robot"))
+@check(points=1, covers="once", after=("file_names", "any_robot"))
 @hint("A robot's entry holds only what is its own: the rest comes from /**.")
 def test_stands_once(fleet: Callable[[], Entries]) -> None:
     """What every robot has stands once, under /**."""

@@ -62,7 +62,7 @@ def configured(workspace: Workspace, shared_robot: Shared[Robot], seed: int) -> 
 
 @check(
     points=2,
-    holds=contract.TABLE_ROWS,
+    covers=contract.TABLE_ROWS,
     needs=("starts",),
     after=("names", "types"),
     doc=contract.ARGUMENTS,
@@ -75,7 +75,7 @@ def test_overrides(configured: Configured) -> None:
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=round(0.8 * (1 - len(wrong) / len(configured.values)), 2))
 
 
-@check(points=2, holds="max_linear_velocity", needs=("starts",), after=("overrides",))
+@check(points=2, covers="max_linear_velocity", needs=("starts",), after=("overrides",))
 @hint("speed, which is given, asks for max_linear_velocity at each command: leave it so.")
 def test_start_speed(configured: Configured) -> None:
     """Where the way is clear, it drives at the speed that it was started with."""
@@ -83,7 +83,7 @@ def test_start_speed(configured: Configured) -> None:
     expect_speed(speed, configured.velocity, f"Started with max_linear_velocity {configured.velocity}")
 
 
-@check(points=2, holds="control_frequency", needs=("starts",), after=("overrides",))
+@check(points=2, covers="control_frequency", needs=("starts",), after=("overrides",))
 @hint("create_timer gets a period in seconds: 1.0 / frequency.")
 def test_start_rate(configured: Configured) -> None:
     """It publishes at the frequency that it was started with."""
@@ -92,7 +92,7 @@ def test_start_rate(configured: Configured) -> None:
     )
 
 
-@check(points=1, holds="battery_threshold", needs=("starts",), after=("overrides",))
+@check(points=1, covers="battery_threshold", needs=("starts",), after=("overrides",))
 @hint("A battery below battery_threshold, in percent, means: stand still.")
 def test_start_threshold(configured: Configured) -> None:
     """It stands still with a battery below its threshold, and drives with one above."""
@@ -106,7 +106,7 @@ def test_start_threshold(configured: Configured) -> None:
     )  # how fast is no matter here
 
 
-@check(points=3, holds="safety_distance", needs=("starts",), after=("overrides", "start_speed"))
+@check(points=3, covers="safety_distance", needs=("starts",), after=("overrides", "start_speed"))
 @hint("Look at the picture: where does it stand, and where should it?")
 @hint("Drive it yourself: drive(..., parameters={'safety_distance': 0.9, 'slow_distance': 1.4}).")
 def test_stops(configured: Configured, draw: Random, gallery: Gallery) -> None:
@@ -125,7 +125,7 @@ def test_stops(configured: Configured, draw: Random, gallery: Gallery) -> None:
     expect(end < configured.safety + NEAR, sentence, fraction=0.5 if ahead[0] - end > NEAR else 0.0)
 
 
-@check(points=2, holds=("contradictory-start", "contradiction", "reason", "ranges"), needs=("starts",))
+@check(points=2, covers=("contradictory-start", "contradiction", "reason", "ranges"), needs=("starts",))
 @hint("After declaring: ask contradiction(...) about the two values, and raise ValueError if it says something.")
 @hint("Equal distances do not fit together, either: it divides by their difference.")
 @hint("At a value outside of a range, declare_parameter raises: let that end the node, too.")

@@ -11,7 +11,7 @@ check = group("changes")
 PAIR: dict[str, parameters.Value] = {"safety_distance": 1.5, "slow_distance": 2.0}
 
 
-@check(points=1, holds=("contradiction", "reason"), needs=("starts",), after=("table",), doc=contract.PARAMETERS)
+@check(points=1, covers=("contradiction", "reason"), needs=("starts",), after=("table",), doc=contract.PARAMETERS)
 @hint("proposed = {parameter.name: parameter.value for parameter in parameters} is what the request asks for.")
 @hint("proposed.get('slow_distance', self.value('slow_distance')) is what it will be.")
 def test_contradiction(robot: Robot) -> None:
@@ -26,7 +26,7 @@ def test_contradiction(robot: Robot) -> None:
     expect(not answer.accepted, "It took 0.7 m for both distances in one request.")
 
 
-@check(points=1, holds=("keep-value", "at-once"), needs=("starts",), after=("contradiction",))
+@check(points=1, covers=("keep-value", "at-once"), needs=("starts",), after=("contradiction",))
 @hint("Judge what will be, with all the values of the request; not one value after the other.")
 @hint("speed, which is given, asks for both distances at each command.")
 def test_together(robot: Robot) -> None:
@@ -39,7 +39,7 @@ def test_together(robot: Robot) -> None:
     expect(answer.accepted, f"With a slow distance of 2.0 m, it refused 1.8 m: “{answer.reason}”.")
 
 
-@check(points=1, holds="apply-rate", needs=("starts",), after=("table",))
+@check(points=1, covers="apply-rate", needs=("starts",), after=("table",))
 @hint("In apply, look for control_frequency among the names of what has changed.")
 @hint("self.timer.timer_period_ns = round(1e9 / frequency)")
 def test_rate(robot: Robot) -> None:
@@ -49,7 +49,7 @@ def test_rate(robot: Robot) -> None:
     expect_rate(robot.command_rate(1.0), 20.0, "After control_frequency was set to 20.0")
 
 
-@check(points=1, holds="no-effect", needs=("starts",), after=("contradiction", "rate"))
+@check(points=1, covers="no-effect", needs=("starts",), after=("contradiction", "rate"))
 @hint("validate only returns an answer. Whatever has to be done stands in apply.")
 def test_refused_whole(robot: Robot) -> None:
     """A request that it refuses, for 30 Hz and a safety distance of 2.5 m, leaves the rate as it was."""
@@ -58,7 +58,7 @@ def test_refused_whole(robot: Robot) -> None:
     expect_rate(robot.command_rate(1.0), 10.0, "After a refused request for 30 Hz")
 
 
-@check(points=1, holds="lets-pass", needs=("starts",), after=("contradiction",))
+@check(points=1, covers="lets-pass", needs=("starts",), after=("contradiction",))
 @hint("Look for the two distances in the request, and for nothing else: other names are not yours to refuse.")
 def test_lets_pass(robot: Robot) -> None:
     """It takes a request for battery_threshold and use_sim_time, which name no distance."""

@@ -13,7 +13,7 @@ check = group("declaration")
 
 @check(
     points=1,
-    holds=contract.TABLE_ROWS,
+    covers=contract.TABLE_ROWS,
     doc=contract.IN_A_CLASS,
 )
 @hint("Read the sentence above, then the last lines of the traceback below it.")
@@ -26,7 +26,7 @@ def test_starts(robot: Robot) -> None:
 
 @check(
     points=1,
-    holds=(*contract.TABLE_ROWS, "no-others"),
+    covers=(*contract.TABLE_ROWS, "no-others"),
     needs=("starts",),
     doc=contract.PARAMETERS,
 )
@@ -46,7 +46,7 @@ def test_table(robot: Robot) -> None:
     expect(not wrong, f"{'; '.join(wrong)}.")
 
 
-@check(points=1, holds=("ranges", "robot_name"), needs=("starts",), after=("table",), doc=contract.PARAMETERS)
+@check(points=1, covers=("ranges", "robot_name"), needs=("starts",), after=("table",), doc=contract.PARAMETERS)
 @hint("floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.")
 @hint("An integer has integer_range=[IntegerRange(...)], a name that is fixed has read_only=True.")
 def test_refuses(robot: Robot) -> None:
@@ -68,7 +68,7 @@ def test_refuses(robot: Robot) -> None:
         expect(bool(answer.reason), f"It refused {parameters.value_text(value)} for {name}, but gave no reason.")
 
 
-@check(points=1, holds="described", needs=("starts",), after=("table",))
+@check(points=1, covers="described", needs=("starts",), after=("table",))
 @hint("ParameterDescriptor(description='...', ...): one sentence for each name, with the unit in it.")
 def test_described(robot: Robot) -> None:
     """Each parameter has a description; that of max_linear_velocity names m/s, that of control_frequency Hz."""
@@ -79,7 +79,7 @@ def test_described(robot: Robot) -> None:
         expect(unit.lower() in described.get(name, "").lower(), f"The description of {name} does not name {unit}.")
 
 
-@check(points=1, holds="contradictory-start", needs=("starts",), after=("table",))
+@check(points=1, covers="contradictory-start", needs=("starts",), after=("table",))
 @hint("After the last declare_parameter: get both values, ask contradiction, and raise ValueError with its sentence.")
 def test_start_refused(workspace: Workspace) -> None:
     """It does not start with a safety distance of 2.2 m and a slow distance of 2.0 m."""

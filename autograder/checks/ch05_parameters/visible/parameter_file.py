@@ -11,7 +11,7 @@ from autograder.checks.ch05_parameters.support.robot import Robot, fleet_path
 check = group("files")
 
 
-@check(points=1, holds="types", doc=contract.ARGUMENTS)
+@check(points=1, covers="types", doc=contract.ARGUMENTS)
 @hint("Three levels: the node or /**, then ros__parameters with two underscores, then the values; two spaces each.")
 @hint("config/configured_node.yaml is an example for one node.")
 def test_file(workspace: Workspace) -> None:
@@ -21,7 +21,7 @@ def test_file(workspace: Workspace) -> None:
 
 @check(
     points=1,
-    holds=(*contract.FLEET_ROWS, "empty-field"),
+    covers=(*contract.FLEET_ROWS, "empty-field"),
     needs=("file", "starts"),
     after=("table",),
     doc=contract.ARGUMENTS,
@@ -38,7 +38,7 @@ def test_robots(workspace: Workspace) -> None:
         expect(not wrong, f"For the robot {name}, {'; '.join(wrong)}.")
 
 
-@check(points=1, holds="once", needs=("file",), after=("robots",))
+@check(points=1, covers="once", needs=("file",), after=("robots",))
 @hint("Under scout and porter stands only what the table gives to them alone.")
 def test_once(workspace: Workspace) -> None:
     """What every robot has stands once: no entry of one robot sets slow_distance again."""

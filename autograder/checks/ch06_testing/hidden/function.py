@@ -12,14 +12,14 @@ check = group("function")
 RIGHT = ("limits_right",)
 
 
-@check(points=2, holds="limits-pass", doc=contract.PYTEST)
+@check(points=2, covers="limits-pass", doc=contract.PYTEST)
 @hint("Run them: colcon test, or python -m pytest test/test_limits.py in the package's folder.", contract.ALL_PASS)
 def test_limits_pass(examination: Examination) -> None:
     """At least six tests in test_limits.py run, and all pass on the package as it is."""
     expect_passed(LIMITS, examination.trial.get(LIMITS))
 
 
-@check(points=1, holds=("limits-pass", "approx"), after=("limits_pass",), doc=contract.APPROX)
+@check(points=1, covers=("limits-pass", "approx"), after=("limits_pass",), doc=contract.APPROX)
 @hint("Other people may write safe_speed in other words: only the contract in its docstring is sure.")
 @hint("Floats that are worked out in another order differ in the last digit: pytest.approx.")
 def test_limits_right(examination: Examination) -> None:
@@ -30,7 +30,7 @@ def test_limits_right(examination: Examination) -> None:
 LINES = (
     Line(
         id="stop",
-        holds=("stop", "function-lines"),
+        covers=("stop", "function-lines"),
         title="A test fails when the robot does not stand still in front of near things.",
         promise="at stop_distance and nearer, the speed is 0.0, not a little more or less.",
         points=1,
@@ -41,7 +41,7 @@ LINES = (
     ),
     Line(
         id="slow",
-        holds=("slow", "function-lines"),
+        covers=("slow", "function-lines"),
         title="A test fails when the speed between the two distances is not on a straight line.",
         promise="between the two distances the speed grows in a straight line.",
         points=2,
@@ -53,7 +53,7 @@ LINES = (
     ),
     Line(
         id="clear",
-        holds=("clear", "function-lines"),
+        covers=("clear", "function-lines"),
         title="A test fails when far things change the speed.",
         promise="at slow_distance and farther, the speed is the wanted one.",
         points=1,
@@ -65,7 +65,7 @@ LINES = (
     ),
     Line(
         id="infinity",
-        holds=("infinity", "function-lines"),
+        covers=("infinity", "function-lines"),
         title='A test fails when "nothing ahead" is not a clear way.',
         promise="a distance of inf is a clear way.",
         points=1,
@@ -77,7 +77,7 @@ LINES = (
     ),
     Line(
         id="unknown",
-        holds=("unknown", "function-lines"),
+        covers=("unknown", "function-lines"),
         title="A test fails when an unknown distance lets the robot go.",
         promise="where the distance is None or nan, the speed is 0.0.",
         points=2,
@@ -88,7 +88,7 @@ LINES = (
     ),
     Line(
         id="back",
-        holds=("back", "function-lines"),
+        covers=("back", "function-lines"),
         title="A test fails when the way back is guarded.",
         promise="a wanted speed of 0 or less is returned as it is, whatever is in front.",
         points=2,
@@ -100,7 +100,7 @@ LINES = (
     ),
     Line(
         id="chosen",
-        holds=("chosen", "function-lines"),
+        covers=("chosen", "function-lines"),
         title="A test fails when a chosen stop_distance or slow_distance has no effect.",
         promise="stop_distance and slow_distance are the ends of the line.",
         points=2,
@@ -112,7 +112,7 @@ LINES = (
     ),
     Line(
         id="refused",
-        holds=("refused", "function-lines"),
+        covers=("refused", "function-lines"),
         title="A test fails when distances that make no sense are accepted.",
         promise="it raises ValueError unless 0 <= stop_distance < slow_distance, whatever is wanted.",
         points=2,

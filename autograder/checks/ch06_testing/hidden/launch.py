@@ -12,14 +12,14 @@ check = group("launch", doc=contract.INTEGRATION)
 RIGHT = ("launch_right",)
 
 
-@check(points=2, holds="write-launch-test")
+@check(points=2, covers="write-launch-test")
 @hint(contract.SAME_DOMAIN, contract.WAIT)
 def test_launch_pass(examination: Examination) -> None:
     """A test in test_launch.py runs, and passes on the package as it is."""
     expect_passed(LAUNCH, examination.trial.get(LAUNCH))
 
 
-@check(points=1, holds=("write-launch-test", "launch-promise"), after=("launch_pass",))
+@check(points=1, covers=("write-launch-test", "launch-promise"), after=("launch_pass",))
 @hint("Find the launch file in the package's share folder, by FindPackageShare or get_package_share_directory.")
 @hint("Ask over topics; what the program prints may be worded otherwise tomorrow.")
 def test_launch_right(examination: Examination) -> None:
@@ -30,7 +30,7 @@ def test_launch_right(examination: Examination) -> None:
 LINES = (
     Line(
         id="configuration",
-        holds="launch-promise",
+        covers="launch-promise",
         title="A test fails when the launched node does not get both distances of its configuration.",
         promise="guard.launch.py starts the node with config/guard.yaml, which has two distances.",
         points=2,
@@ -43,7 +43,7 @@ LINES = (
     ),
     Line(
         id="runs",
-        holds="launch-promise",
+        covers="launch-promise",
         title="A test fails when the launched node dies, or is not where the robot looks for it.",
         promise="guard.launch.py runs the node /speed_guard, on the topics of the contract.",
         points=2,

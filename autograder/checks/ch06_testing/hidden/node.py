@@ -12,14 +12,14 @@ check = group("node")
 RIGHT = ("guard_right",)
 
 
-@check(points=2, holds="guard-pass", doc=contract.PYTEST)
+@check(points=2, covers="guard-pass", doc=contract.PYTEST)
 @hint("Run them: colcon test, or python -m pytest test/test_guard.py in the package's folder.", contract.SPIN)
 def test_guard_pass(examination: Examination) -> None:
     """At least five tests in test_guard.py run, and all pass on the package as it is."""
     expect_passed(GUARD, examination.trial.get(GUARD))
 
 
-@check(points=1, holds=("guard-pass", "over-topics"), after=("guard_pass",), doc=contract.PYTEST)
+@check(points=1, covers=("guard-pass", "over-topics"), after=("guard_pass",), doc=contract.PYTEST)
 @hint("Ask over topics, as another robot would; attributes of the node may have other names tomorrow.")
 @hint("Each test starts its own guard and leaves nothing behind.")
 def test_guard_right(examination: Examination) -> None:
@@ -27,7 +27,7 @@ def test_guard_right(examination: Examination) -> None:
     examination.expect_right(GUARD, BACKWARDS)
 
 
-@check(points=2, holds="own-domain", after=RIGHT, doc=contract.DOMAIN)
+@check(points=2, covers="own-domain", after=RIGHT, doc=contract.DOMAIN)
 @hint("Without a domain of its own, a context listens to whoever is in the default one.")
 @hint("rclpy.init(context=context, domain_id=...): a number that another test process does not use.")
 def test_alone(examination: Examination) -> None:
@@ -39,7 +39,7 @@ def test_alone(examination: Examination) -> None:
     )
 
 
-@check(points=1, holds="guard-pass", after=RIGHT, doc=contract.FIXTURES)
+@check(points=1, covers="guard-pass", after=RIGHT, doc=contract.FIXTURES)
 @hint("What stands after yield in a fixture is done in any case, also when the test fails.")
 @hint("Destroy each node, then rclpy.try_shutdown(context=context).")
 def test_nothing_left(examination: Examination) -> None:
@@ -52,7 +52,7 @@ def test_nothing_left(examination: Examination) -> None:
 LINES = (
     Line(
         id="name",
-        holds=("name", "node-lines"),
+        covers=("name", "node-lines"),
         title="A test fails when the node has another name.",
         promise="the node is called speed_guard.",
         points=1,
@@ -65,7 +65,7 @@ LINES = (
     ),
     Line(
         id="first_distance",
-        holds=("first-distance", "node-lines"),
+        covers=("first-distance", "node-lines"),
         title="A test fails when the robot drives before the first distance has come, or may not drive back then.",
         promise="a distance is not known before the first one has come, and the way back is free all the same.",
         points=1,
@@ -76,7 +76,7 @@ LINES = (
     ),
     Line(
         id="newest",
-        holds=("newest", "node-lines"),
+        covers=("newest", "node-lines"),
         title="A test fails when an earlier distance decides.",
         promise="linear.x becomes the safe_speed for the newest distance.",
         points=2,
@@ -87,7 +87,7 @@ LINES = (
     ),
     Line(
         id="turn",
-        holds=("turn", "node-lines"),
+        covers=("turn", "node-lines"),
         title="A test fails when a turn, or another field, does not come out as it went in.",
         promise="all fields but linear.x stay as they are.",
         points=1,
@@ -99,7 +99,7 @@ LINES = (
     ),
     Line(
         id="one_answer",
-        holds=("one-answer", "node-lines"),
+        covers=("one-answer", "node-lines"),
         title="A test fails when a command is answered more than once.",
         promise="each command is answered with exactly one command.",
         points=1,
@@ -110,7 +110,7 @@ LINES = (
     ),
     Line(
         id="parameters",
-        holds=("parameters", "defaults", "node-lines"),
+        covers=("parameters", "defaults", "node-lines"),
         title="A test fails when a parameter has no effect, or another default.",
         promise="stop_distance (0.5 m), slow_distance (1.5 m) and timeout (0.5 s) are parameters of the node.",
         points=2,
@@ -123,7 +123,7 @@ LINES = (
     ),
     Line(
         id="sensor_qos",
-        holds="node-lines",
+        covers="node-lines",
         title="A test fails when the node cannot hear a sensor that publishes best-effort.",
         promise="distance is subscribed to with qos_profile_sensor_data.",
         points=1,
@@ -135,7 +135,7 @@ LINES = (
     ),
     Line(
         id="stale",
-        holds=("stale", "commands-come", "node-lines"),
+        covers=("stale", "commands-come", "node-lines"),
         title="A test fails when an old distance is still believed.",
         promise="a distance that came more than timeout seconds ago is not known.",
         points=2,
@@ -147,7 +147,7 @@ LINES = (
     ),
     Line(
         id="watchdog",
-        holds=("watchdog", "node-lines"),
+        covers=("watchdog", "node-lines"),
         title="A test fails when the motors are not stopped, just once, after the planner has fallen silent.",
         promise="after timeout seconds without a command, one command of zeros is published, "
         "and none before the first.",

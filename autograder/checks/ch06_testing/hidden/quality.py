@@ -17,7 +17,7 @@ LINTERS = ("test_flake8", "test_pep257")
 EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use pytest, with every version of setuptools."
 
 
-@check(points=1, holds="as-given", after=("limits_pass",), doc=contract.PYTEST)
+@check(points=1, covers="as-given", after=("limits_pass",), doc=contract.PYTEST)
 @hint("The package is right. Where a test fails on it, change the test.")
 @hint("To see whether a test fails, break a copy, or undo the change: take the file from the course's folder again.")
 def test_as_given(workspace: Workspace, examination: Examination) -> None:
@@ -38,7 +38,7 @@ def test_as_given(workspace: Workspace, examination: Examination) -> None:
     )
 
 
-@check(points=1, holds="no-sleep", after=("guard_pass",), doc=contract.PYTEST)
+@check(points=1, covers="no-sleep", after=("guard_pass",), doc=contract.PYTEST)
 @hint(*contract.NO_SLEEP)
 def test_no_sleep(examination: Examination) -> None:
     """No test waits with time.sleep."""
@@ -46,7 +46,7 @@ def test_no_sleep(examination: Examination) -> None:
     expect_no_sleep(examination.source)
 
 
-@check(points=1, holds="no-sleep", after=("guard_right", "launch_right"), doc=contract.PYTEST)
+@check(points=1, covers="no-sleep", after=("guard_right", "launch_right"), doc=contract.PYTEST)
 @hint("Each loop that waits needs a deadline, after which the test fails.")
 @hint("spin_until_future_complete and wait_for_service have a timeout_sec; rclpy.spin has none.")
 def test_ends(examination: Examination) -> None:
@@ -59,7 +59,7 @@ def test_ends(examination: Examination) -> None:
     )
 
 
-@check(points=2, holds="colcon-finds", after=("limits_pass",), doc=contract.CLI)
+@check(points=2, covers="colcon-finds", after=("limits_pass",), doc=contract.CLI)
 @hint("`colcon test-result --all --verbose` says how many tests there were. 0 is no success.", EXTRAS)
 def test_colcon(examination: Examination) -> None:
     """`colcon test` runs the tests of all three files."""
@@ -73,7 +73,7 @@ def test_colcon(examination: Examination) -> None:
     expect(not missing, f"`colcon test` ran {len(verdicts)} tests, but none in {', '.join(missing)}.", fraction=0.5)
 
 
-@check(points=2, holds="linters", after=("colcon",), doc=contract.CLI)
+@check(points=2, covers="linters", after=("colcon",), doc=contract.CLI)
 @hint("A test_depend on a linter does nothing by itself: it needs test/test_flake8.py and test/test_pep257.py.")
 @hint("A test that calls no linter, or asserts nothing, finds nothing: take it as `ros2 pkg create` writes it.")
 @hint("Run `ament_flake8` and `ament_pep257` in the package's folder: they name file and line.")

@@ -113,35 +113,35 @@ def reports(workspace: Workspace, source: student_test_reports.Source) -> Report
     return dict(zip(wanted, student_test_runs.run(workspace, source, list(wanted.values())), strict=True))
 
 
-@check(points=1, holds="limits-pass", group="function", doc=contract.PYTEST)
+@check(points=1, covers="limits-pass", group="function", doc=contract.PYTEST)
 @hint("Run them: shell('cd ws/src/speed_guard && python -m pytest test/test_limits.py').", contract.ALL_PASS)
 def test_limits_pass(reports: Reports) -> None:
     """At least six tests in test_limits.py run, and all pass on the package as it is."""
     expect_passed(LIMITS, reports.get((LIMITS, RIGHT)))
 
 
-@check(points=1, holds="function-lines", group="function", needs=("limits_pass",), doc=contract.PYTEST)
+@check(points=1, covers="function-lines", group="function", needs=("limits_pass",), doc=contract.PYTEST)
 @hint("Which line of the contract says that it stops?", contract.MUTATE)
 def test_limits_notice(reports: Reports) -> None:
     """One of them fails when safe_speed returns what was wanted, whatever is ahead."""
     _expect_objection(reports, LIMITS, ALL_PASS)
 
 
-@check(points=1, holds="unknown", group="function", needs=("limits_pass",), doc=contract.PYTEST)
+@check(points=1, covers="unknown", group="function", needs=("limits_pass",), doc=contract.PYTEST)
 @hint("A distance is unknown in two ways: None and math.nan.", contract.MUTATE)
 def test_limits_unknown(reports: Reports) -> None:
     """One of them fails when safe_speed takes an unknown distance for a clear way."""
     _expect_objection(reports, LIMITS, BLIND)
 
 
-@check(points=1, holds="slow", group="function", needs=("limits_pass",), doc=contract.PYTEST)
+@check(points=1, covers="slow", group="function", needs=("limits_pass",), doc=contract.PYTEST)
 @hint("Half way, half the speed is right. What about a quarter of the way?", contract.MUTATE)
 def test_limits_line(reports: Reports) -> None:
     """One of them fails when safe_speed allows half of what was wanted everywhere between the two distances."""
     _expect_objection(reports, LIMITS, HALF)
 
 
-@check(points=1, holds="guard-pass", group="node", doc=contract.PYTEST)
+@check(points=1, covers="guard-pass", group="node", doc=contract.PYTEST)
 @hint("Run them: shell('cd ws/src/speed_guard && python -m pytest test/test_guard.py').", contract.ALL_PASS)
 @hint(contract.SPIN, "self.test_executor.spin_once(timeout_sec=0.05), as in spin. Then look at the clock.")
 def test_guard_pass(reports: Reports) -> None:
@@ -149,49 +149,49 @@ def test_guard_pass(reports: Reports) -> None:
     expect_passed(GUARD, reports.get((GUARD, RIGHT)))
 
 
-@check(points=1, holds="node-lines", group="node", needs=("guard_pass",), doc=contract.PYTEST)
+@check(points=1, covers="node-lines", group="node", needs=("guard_pass",), doc=contract.PYTEST)
 @hint("robot.see(0.2), and then?", contract.MUTATE)
 def test_guard_notice(reports: Reports) -> None:
     """One of them fails when the guard lets every command pass."""
     _expect_objection(reports, GUARD, ALL_PASS)
 
 
-@check(points=1, holds="turn", group="node", needs=("guard_pass",), doc=contract.PYTEST)
+@check(points=1, covers="turn", group="node", needs=("guard_pass",), doc=contract.PYTEST)
 @hint("robot.ask(0.5, 0.7) returns the whole answer: look at angular.z, too.", contract.MUTATE)
 def test_guard_turn(reports: Reports) -> None:
     """One of them fails when the guard turns to the other side."""
     _expect_objection(reports, GUARD, TURNED)
 
 
-@check(points=1, holds="stale", group="node", needs=("guard_pass",), doc=contract.PYTEST)
+@check(points=1, covers="stale", group="node", needs=("guard_pass",), doc=contract.PYTEST)
 @hint("With guard(timeout=HASTY), see(4.0), then spin for longer than that, then ask(0.8).", contract.MUTATE)
 def test_guard_forgets(reports: Reports) -> None:
     """One of them fails when the guard trusts a distance however old it is."""
     _expect_objection(reports, GUARD, TRUSTING)
 
 
-@check(points=1, holds="own-domain", group="node", needs=("guard_pass",), doc=contract.DOMAIN)
+@check(points=1, covers="own-domain", group="node", needs=("guard_pass",), doc=contract.DOMAIN)
 @hint("rclpy.init(context=context, domain_id=domain) in the fixture, and context=context for each node.")
 def test_alone(reports: Reports) -> None:
     """While test_guard.py runs, none of its nodes is in the default domain."""
     expect(not reports[GUARD, RIGHT].joined_domain, "One of them was: any other robot would hear it.")
 
 
-@check(points=1, holds="no-sleep", group="node", needs=("guard_pass",), doc=contract.PYTEST)
+@check(points=1, covers="no-sleep", group="node", needs=("guard_pass",), doc=contract.PYTEST)
 @hint(*contract.NO_SLEEP)
 def test_no_sleep(source: student_test_reports.Source) -> None:
     """No test waits with time.sleep."""
     expect_no_sleep(source)
 
 
-@check(points=1, holds="write-launch-test", group="launch", doc=contract.INTEGRATION)
+@check(points=1, covers="write-launch-test", group="launch", doc=contract.INTEGRATION)
 @hint(contract.SAME_DOMAIN, contract.WAIT)
 def test_launch_pass(reports: Reports) -> None:
     """A test in test_launch.py runs, and passes on the package as it is."""
     expect_passed(LAUNCH, reports.get((LAUNCH, RIGHT)))
 
 
-@check(points=1, holds="launch-promise", group="launch", needs=("launch_pass",), doc=contract.INTEGRATION)
+@check(points=1, covers="launch-promise", group="launch", needs=("launch_pass",), doc=contract.INTEGRATION)
 @hint("At which distance does a guard with config/guard.yaml answer otherwise than one with the defaults?")
 @hint("At 0.4 m: the defaults say stop, the configuration does not.")
 def test_launch_notice(reports: Reports) -> None:
@@ -199,7 +199,7 @@ def test_launch_notice(reports: Reports) -> None:
     _expect_objection(reports, LAUNCH, UNCONFIGURED)
 
 
-@check(points=1, holds="linters", group="craft", doc=contract.CLI)
+@check(points=1, covers="linters", group="craft", doc=contract.CLI)
 @hint("Run `ament_flake8` and `ament_pep257` in ws/src/speed_guard: they name file and line.")
 def test_linters(workspace: Workspace, source: student_test_reports.Source) -> None:
     """The linters flake8 and pep257 find nothing in the package and in your tests."""

@@ -28,7 +28,7 @@ ALTERNATIONS = 15  # blind scans with a good one after each
 SLOW, SLOW_SECONDS = 9, 0.5  # scans of a slow lidar, and s between two of them
 
 
-@check(points=1, holds=("scan", "scan-filtered", "mean-topic", "processor-name"))
+@check(points=1, covers=("scan", "scan-filtered", "mean-topic", "processor-name"))
 @hint("setup.py must name sensor_processor = my_robot_package.nodes.sensor_processor:main.")
 @hint("create_publisher twice and create_subscription once, in __init__; the names are relative.")
 def test_endpoints(processor: Processor) -> None:
@@ -41,7 +41,7 @@ def test_endpoints(processor: Processor) -> None:
         expect(types == {kind}, f"{topic} is published as {', '.join(types) or 'nothing'} instead of {kind}.")
 
 
-@check(points=1, holds=("scan", "scan-filtered", "mean-topic"), after=("endpoints",), doc=QOS)
+@check(points=1, covers=("scan", "scan-filtered", "mean-topic"), after=("endpoints",), doc=QOS)
 @hint("qos_profile_sensor_data instead of 10, on both ends of the scans.", "A lidar publishes best-effort.")
 def test_sensor_qos(processor: Processor) -> None:
     """It asks for scans as a lidar offers them, and offers its own likewise: best effort; not so the mean."""
@@ -59,7 +59,7 @@ def test_sensor_qos(processor: Processor) -> None:
     expect(not differs, differs, fraction=0.75)
 
 
-@check(points=1, holds="relative", after=("endpoints",))
+@check(points=1, covers="relative", after=("endpoints",))
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'scan' is relative, '/scan' is not.")
 def test_relative(workspace: Workspace) -> None:
@@ -70,7 +70,7 @@ def test_relative(workspace: Workspace) -> None:
     expect(not left, left)
 
 
-@check(points=2, holds=("scan-filtered", "other-fields"), after=("endpoints",))
+@check(points=2, covers=("scan-filtered", "other-fields"), after=("endpoints",))
 @hint("msg.ranges = self.processor.process(...).", "Hand on the message's own range_min and range_max.")
 def test_filtered(workspace: Workspace, processor: Processor, draw: random.Random) -> None:
     """A scan comes out with its phantoms masked, by the lidar's own limits."""
@@ -83,7 +83,7 @@ def test_filtered(workspace: Workspace, processor: Processor, draw: random.Rando
     expect(right, f"{sent} ({low} to {high} m) came out as {[round(r, 3) for r in got]}.")
 
 
-@check(points=1, holds=("all-else", "other-fields"), after=("filtered",))
+@check(points=1, covers=("all-else", "other-fields"), after=("filtered",))
 @hint("Publish the message that came, with other ranges.", "A new LaserScan() has no header and no angles.")
 def test_rest_untouched(workspace: Workspace, processor: Processor, draw: random.Random) -> None:
     """Header, angles, times, limits and intensities come out as they went in."""
@@ -107,7 +107,7 @@ def test_rest_untouched(workspace: Workspace, processor: Processor, draw: random
     expect(right, shown, fraction=0.5)
 
 
-@check(points=2, holds=("mean-of-ten", "mean-topic"), after=("filtered",))
+@check(points=2, covers=("mean-of-ten", "mean-topic"), after=("filtered",))
 @hint("DataProcessor(10), made once in __init__; publish average() after each scan.", "Float32(data=...)")
 def test_mean_of_ten(workspace: Workspace, fresh_processor: Processor, draw: random.Random) -> None:
     """mean_distance is the average of the newest ten scans' means."""
@@ -124,7 +124,7 @@ def test_mean_of_ten(workspace: Workspace, fresh_processor: Processor, draw: ran
     expect(wrong is None, f"After {i + 1} scans with a distance it said {said[i]:.3f} m instead of {wanted[i]:.3f} m.")
 
 
-@check(points=1, holds="blind", after=("filtered",))
+@check(points=1, covers="blind", after=("filtered",))
 @hint("mean_distance(msg.ranges) is None: warn instead of publishing.", "Float32 cannot hold None.")
 def test_blind_scan(processor: Processor) -> None:
     """A scan without a distance comes out masked, and no mean with it."""
@@ -133,7 +133,7 @@ def test_blind_scan(processor: Processor) -> None:
     expect(not means, f"A scan without any distance made it say {means} m.")
 
 
-@check(points=2, holds=("warns", "other-fields"), after=("blind_scan",), doc=LOGGING)
+@check(points=2, covers=("warns", "other-fields"), after=("blind_scan",), doc=LOGGING)
 @hint("self.get_logger().warning(..., throttle_duration_sec=1.0)", "Nobody reads ten lines a second.")
 def test_warns_now_and_then(workspace: Workspace, fresh_processor: Processor) -> None:
     """While the lidar sees nothing, it warns once a second; while it sees something, it does not."""
@@ -165,7 +165,7 @@ def test_warns_now_and_then(workspace: Workspace, fresh_processor: Processor) ->
     expect(masked, f"A blind scan of [inf, nan, -inf, 0.05] (0.12 to 3.5 m) came out as {got}.", fraction=0.75)
 
 
-@check(points=1, holds="any-length", after=("filtered",))
+@check(points=1, covers="any-length", after=("filtered",))
 @hint("Loop over what is there.", "Other lidars have other numbers of beams.")
 def test_any_lidar(processor: Processor) -> None:
     """It takes scans of any length, an empty one too."""

@@ -30,7 +30,7 @@ BY_TURNS = 10  # readings, of which each second one fails
 LIMITS = {"failure_probability": (0.0, 1.0), "seed": (0, 2**31 - 1), "max_errors": (1, 1000)}
 
 
-@check(points=1, holds=("once-a-second", "ok"))
+@check(points=1, covers=("once-a-second", "ok"))
 @hint("create_timer(PERIOD, self.timer_callback) in __init__.", "Publish once in each call of timer_callback.")
 def test_once_a_second(workspace: Workspace) -> None:
     """robust_node publishes its state on status once a second; with a sensor that never fails, ok."""
@@ -42,7 +42,7 @@ def test_once_a_second(workspace: Workspace) -> None:
     expect(set(said) == {"ok"}, f"With a sensor that never fails it said {sorted(set(said))} instead of ok.")
 
 
-@check(points=2, holds=("once-a-second", "robust-relative"), after=("once_a_second",), doc=QOS)
+@check(points=2, covers=("once-a-second", "robust-relative"), after=("once_a_second",), doc=QOS)
 @hint("QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) for the publisher.", "STATUS_QOS, not 10.")
 @hint("'status' is relative, '/status' is not.")
 def test_late_joiners(workspace: Workspace) -> None:
@@ -59,7 +59,7 @@ def test_late_joiners(workspace: Workspace) -> None:
     expect(not left, left, fraction=0.5)
 
 
-@check(points=3, holds=("failed", "ok", "generator", "read-sensor"), after=("once_a_second",))
+@check(points=3, covers=("failed", "ok", "generator", "read-sensor"), after=("once_a_second",))
 @hint(RULE_STATUS, "A success sets the count back to 0.")
 def test_counts(workspace: Workspace, draw: random.Random) -> None:
     """It counts failures in a row, and starts again after a success."""
@@ -94,7 +94,7 @@ def test_counts(workspace: Workspace, draw: random.Random) -> None:
     expect(asked, "In two readings with the probabilities 0 and 1, it did not ask the generator twice.", fraction=0.5)
 
 
-@check(points=1, holds=("seed", "generator"), after=("once_a_second",), doc=RANDOM)
+@check(points=1, covers=("seed", "generator"), after=("once_a_second",), doc=RANDOM)
 @hint("random.Random() without a seed takes one from the operating system.", "seed 0: random.Random().")
 def test_no_seed(workspace: Workspace, draw: random.Random) -> None:
     """Without a seed, two runs differ; and the node's generator is its own."""
@@ -120,7 +120,7 @@ def test_no_seed(workspace: Workspace, draw: random.Random) -> None:
     expect(own, f"{said}: the node's is a random.Random of its own.", fraction=0.5)
 
 
-@check(points=2, holds=("unstable", "max-errors"), after=("once_a_second",))
+@check(points=2, covers=("unstable", "max-errors"), after=("once_a_second",))
 @hint(RULE_STATUS, "More than max_errors, not as many as.")
 def test_unstable(workspace: Workspace, draw: random.Random) -> None:
     """More than max_errors failures in a row are called unstable, and one fewer is not."""
@@ -138,7 +138,7 @@ def test_unstable(workspace: Workspace, draw: random.Random) -> None:
     expect(said == wanted, f"With max_errors 1, {shown} instead of {wanted[wrong or 0]!r}.", fraction=0.5)
 
 
-@check(points=1, holds="error-log", after=("once_a_second",), doc=LOGGING)
+@check(points=1, covers="error-log", after=("once_a_second",), doc=LOGGING)
 @hint("error(..., throttle_duration_sec=5.0).", "A dead sensor fails every second; one line in five is enough.")
 def test_errors_throttled(workspace: Workspace, draw: random.Random) -> None:
     """It logs failures as errors, at most one line in 5 s."""
@@ -163,7 +163,7 @@ def test_errors_throttled(workspace: Workspace, draw: random.Random) -> None:
     expect(errors <= seconds / 5 + 1, said, fraction=0.5)
 
 
-@check(points=1, holds="fatal-log", after=("once_a_second", "counts"), doc=LOGGING)
+@check(points=1, covers="fatal-log", after=("once_a_second", "counts"), doc=LOGGING)
 @hint("fatal only where the count is exactly max_errors + 1.", "It became unstable once.")
 def test_fatal_once(workspace: Workspace, draw: random.Random) -> None:
     """That it became unstable is logged as fatal, once in each row of failures."""
@@ -182,7 +182,7 @@ def test_fatal_once(workspace: Workspace, draw: random.Random) -> None:
     expect(fatal == times, f"It became unstable {times} times, and logged {fatal} fatal messages.", fraction=0.5)
 
 
-@check(points=1, holds="recovery-log", after=("counts",))
+@check(points=1, covers="recovery-log", after=("counts",))
 @hint("Log before the count is set back to 0.", "Only if there were errors: if self.error_count:")
 def test_recovery_logged(workspace: Workspace, draw: random.Random) -> None:
     """Each recovery is logged with the number of errors before it."""
@@ -202,7 +202,7 @@ def test_recovery_logged(workspace: Workspace, draw: random.Random) -> None:
     expect(infos == len(lines), f"It logged {infos} of {len(lines)} recoveries at level INFO.", fraction=0.5)
 
 
-@check(points=2, holds=("catch", "handed-on", "generator"), after=("once_a_second",), doc=ERRORS)
+@check(points=2, covers=("catch", "handed-on", "generator"), after=("once_a_second",), doc=ERRORS)
 @hint("except SensorError, not except Exception.", "Only what you expect; a bug has to be seen.")
 def test_bugs_are_seen(workspace: Workspace) -> None:
     """It catches SensorError and nothing else: a bug ends the node with a traceback."""
@@ -219,7 +219,7 @@ def test_bugs_are_seen(workspace: Workspace) -> None:
     expect(seeded.raised == BUGS[-1], said, fraction=0.75)
 
 
-@check(points=1, holds=("failure-probability", "seed", "max-errors"), after=("once_a_second",))
+@check(points=1, covers=("failure-probability", "seed", "max-errors"), after=("once_a_second",))
 @hint("The table of the exercise names type, default and range of each.")
 @hint("declare_parameter(name, default, descriptor)")
 def test_declared(workspace: Workspace) -> None:
@@ -241,7 +241,7 @@ def test_declared(workspace: Workspace) -> None:
         expect(step <= finest, said, fraction=0.5)
 
 
-@check(points=1, holds=("failure-probability", "max-errors"), after=("once_a_second",))
+@check(points=1, covers=("failure-probability", "max-errors"), after=("once_a_second",))
 @hint("FloatingPointRange(from_value=0.0, to_value=1.0) in the descriptor.", "IntegerRange for max_errors.")
 def test_ranges(workspace: Workspace) -> None:
     """It refuses to start with a probability above 1, or with max_errors below 1."""

@@ -31,7 +31,7 @@ SEQUENCES = {
 }
 
 
-@check(points=1, holds=("mask", "places"), doc=REP_117)
+@check(points=1, covers=("mask", "places"), doc=REP_117)
 @hint(RULE_PLACE, "A list comprehension with a conditional expression.")
 def test_keeps_places(workspace: Workspace, draw: random.Random) -> None:
     """mask_invalid returns as many readings as it was given, each in its place."""
@@ -44,7 +44,7 @@ def test_keeps_places(workspace: Workspace, draw: random.Random) -> None:
     expect(moved is None, f"The good reading in place {moved} came back as {masked[moved or 0]}.")
 
 
-@check(points=2, holds=("phantoms", "mask"), after=("keeps_places",), doc=REP_117)
+@check(points=2, covers=("phantoms", "mask"), after=("keeps_places",), doc=REP_117)
 @hint(RULE_MASK, "0.0, a negative number and one beyond range_max are no distances; nan stays nan.")
 def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
     """mask_invalid puts nan where a number cannot be a measurement."""
@@ -56,7 +56,7 @@ def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
     expect(len(masked) == len(phantoms), said, fraction=0.5)  # where readings belong is another check's matter
 
 
-@check(points=1, holds="mask", after=("keeps_places",))
+@check(points=1, covers="mask", after=("keeps_places",))
 @hint(RULE_MASK, "Both limits belong to the range: <=.")
 def test_limits_count(workspace: Workspace) -> None:
     """A reading of exactly range_min or range_max is a measurement."""
@@ -64,7 +64,7 @@ def test_limits_count(workspace: Workspace) -> None:
     expect(calls.same(masked, [LOW, HIGH]), f"[range_min, range_max] became {masked}.")
 
 
-@check(points=2, holds=("infinities", "mask"), after=("keeps_places",), doc=REP_117)
+@check(points=2, covers=("infinities", "mask"), after=("keeps_places",), doc=REP_117)
 @hint("REP 117: +inf says that nothing came back, -inf that something is too near.", RULE_MASK)
 def test_infinities_stay(workspace: Workspace) -> None:
     """Both infinities are statements of the lidar, and stay."""
@@ -72,7 +72,7 @@ def test_infinities_stay(workspace: Workspace) -> None:
     expect(calls.same(masked, [inf, 1.0, -inf]), f"[inf, 1.0, -inf] became {masked}.")
 
 
-@check(points=2, holds="mask", after=("keeps_places",))
+@check(points=2, covers="mask", after=("keeps_places",))
 @hint("A lidar says its own limits: range_min and range_max are arguments.", "Write no 0.1 and no 10.0.")
 def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> None:
     """The limits are the lidar's own, not fixed numbers."""
@@ -92,7 +92,7 @@ def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> Non
         expect(calls.same(kept, wanted), said, fraction=fraction)
 
 
-@check(points=1, holds=("leave-lists", "mask"), after=("keeps_places",))
+@check(points=1, covers=("leave-lists", "mask"), after=("keeps_places",))
 @hint("Build a new list, leave the one that came as it is.", "ranges[i] = ... changes the caller's list.")
 def test_input_untouched(workspace: Workspace) -> None:
     """What is given to mask_invalid, and to process, is left as it was."""
@@ -115,7 +115,7 @@ def test_input_untouched(workspace: Workspace) -> None:
         expect(itself.value is False, f"{shown} returned the caller's list itself instead of a new one.", fraction=0.75)
 
 
-@check(points=2, holds="mean")
+@check(points=2, covers="mean")
 @hint(RULE_MEAN, "sum(...) / len(...) of the readings that are finite.")
 def test_mean(workspace: Workspace, draw: random.Random) -> None:
     """mean_distance is the mean of the finite readings."""
@@ -131,7 +131,7 @@ def test_mean(workspace: Workspace, draw: random.Random) -> None:
     expect(mean == 0.0, f"mean_distance([0.0, nan]) returned {mean} instead of 0.0.", fraction=0.5)
 
 
-@check(points=1, holds="mean", after=("mean",))
+@check(points=1, covers="mean", after=("mean",))
 @hint("Ask whether there is a finite reading before you divide.", "None says: not known. 0.0 says: touching.")
 def test_no_mean(workspace: Workspace) -> None:
     """Without a finite reading, mean_distance is None."""
@@ -141,7 +141,7 @@ def test_no_mean(workspace: Workspace) -> None:
         expect(mean is None, f"mean_distance({readings}) returned {mean} instead of None.")
 
 
-@check(points=1, holds=("sequences", "mask"), after=("keeps_places", "mean"))
+@check(points=1, covers=("sequences", "mask"), after=("keeps_places", "mean"))
 @hint("Go through it by `for`, and make a list of your own.", "A numpy array is neither true nor false, and not `[]`.")
 def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
     """The readings may come as a tuple, as an array.array or as a numpy array."""
@@ -175,7 +175,7 @@ def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
         expect(returned.value == "list", said, fraction=0.75)
 
 
-@check(points=2, holds=("history", "process"), after=("keeps_places", "mean"), doc=DEQUE)
+@check(points=2, covers=("history", "process"), after=("keeps_places", "mean"), doc=DEQUE)
 @hint("deque(maxlen=history).", "The oldest mean goes when a new one comes and there is no room.")
 def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
     """DataProcessor remembers the means of as many scans as it was told, the newest ones."""
@@ -195,7 +195,7 @@ def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
     expect(calls.same(average, wanted), said, fraction=0.75)
 
 
-@check(points=1, holds=("process", "average"), after=("bounded_history", "no_mean"))
+@check(points=1, covers=("process", "average"), after=("bounded_history", "no_mean"))
 @hint("Append the mean only if it is not None.", "A scan without a distance says nothing about distances.")
 def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
     """A scan without a finite distance leaves no trace in the history, and without history there is no average."""
@@ -213,7 +213,7 @@ def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
     expect(calls.same(seen, 1.0), f"After scans of 0 m and 2 m the average is {seen} instead of 1.0.", fraction=0.5)
 
 
-@check(points=1, holds="silent", after=("masks_phantoms", "mean", "bounded_history"))
+@check(points=1, covers="silent", after=("masks_phantoms", "mean", "bounded_history"))
 @hint("A library returns data; who calls it decides what is logged.", "Remove print().")
 def test_prints_nothing(workspace: Workspace) -> None:
     """The utilities print nothing: what to say, and how often, is the node's business."""

@@ -14,7 +14,7 @@ from autograder.checks.ch07_best_practices.support.robot import STATUS, Processo
 BLIND_SECONDS = 6  # of scans without a distance
 
 
-@check(points=1, holds=("mask", "places", "phantoms"), group="utils", doc=contract.REP_117)
+@check(points=1, covers=("mask", "places", "phantoms"), group="utils", doc=contract.REP_117)
 @hint(contract.RULE_PLACE, contract.RULE_MASK)
 def test_mask_invalid(workspace: Workspace) -> None:
     """mask_invalid replaces what is no measurement by nan, and keeps every reading's place."""
@@ -27,7 +27,7 @@ def test_mask_invalid(workspace: Workspace) -> None:
     expect(not outcome.printed, f"{shown} printed {outcome.printed[:80]!r}.")
 
 
-@check(points=1, holds="mean", group="utils")
+@check(points=1, covers="mean", group="utils")
 @hint(contract.RULE_MEAN, "Without a finite reading there is no mean: return None, not 0.0.")
 def test_mean_distance(workspace: Workspace) -> None:
     """mean_distance takes the mean of the finite readings, and says None when there is none."""
@@ -42,7 +42,7 @@ def test_mean_distance(workspace: Workspace) -> None:
 
 @check(
     points=1,
-    holds=("history", "average", "leave-lists"),
+    covers=("history", "average", "leave-lists"),
     group="utils",
     after=("mask_invalid", "mean_distance"),
     doc=contract.DEQUE,
@@ -61,7 +61,7 @@ def test_data_processor(workspace: Workspace) -> None:
     expect(calls.same(list(first.arguments[:1]), [[1.0, 0.0]]), "process changed the list that it was given.")
 
 
-@check(points=1, holds="scan-filtered", group="processor", after=("mask_invalid", "data_processor"), doc=contract.QOS)
+@check(points=1, covers="scan-filtered", group="processor", after=("mask_invalid", "data_processor"), doc=contract.QOS)
 @hint("msg.ranges = self.processor.process(msg.ranges, msg.range_min, msg.range_max), then publish msg.")
 @hint("Both ends of scan and scan_filtered use qos_profile_sensor_data.")
 def test_filters_scans(processor: Processor) -> None:
@@ -77,7 +77,7 @@ def test_filters_scans(processor: Processor) -> None:
     expect(intensities == [4.0, 0.0, 2.0], f"intensities went in as [4.0, 0.0, 2.0] and came out as {intensities}.")
 
 
-@check(points=1, holds=("scan", "scan-filtered"), group="processor", after=("filters_scans",), doc=contract.QOS)
+@check(points=1, covers=("scan", "scan-filtered"), group="processor", after=("filters_scans",), doc=contract.QOS)
 @hint("qos_profile_sensor_data for scan and for scan_filtered, 10 for mean_distance; no name begins with a slash.")
 def test_sensor_profile(processor: Processor) -> None:
     """It takes scan and offers scan_filtered best effort, as a lidar does."""
@@ -91,7 +91,7 @@ def test_sensor_profile(processor: Processor) -> None:
         expect(not reliable, f"{topic} is reliable.")
 
 
-@check(points=1, holds=("mean-of-ten", "blind", "warns"), group="processor", after=("data_processor", "filters_scans"))
+@check(points=1, covers=("mean-of-ten", "blind", "warns"), group="processor", after=("data_processor", "filters_scans"))
 @hint("One DataProcessor(HISTORY), made in __init__; after each scan publish its average().")
 @hint("mean_distance(masked) is None: warn, with throttle_duration_sec, and publish no mean.")
 def test_means(fresh_processor: Processor) -> None:
@@ -107,7 +107,7 @@ def test_means(fresh_processor: Processor) -> None:
     expect(int(BLIND_SECONDS / contract.SILENT_SECONDS) <= warnings <= BLIND_SECONDS + 2, said)
 
 
-@check(points=1, holds=("failed", "once-a-second"), group="robust", doc=contract.ERRORS)
+@check(points=1, covers=("failed", "once-a-second"), group="robust", doc=contract.ERRORS)
 @hint(contract.RULE_STATUS, "One call of read_sensor(self.generator, self.failure_probability) a period.")
 @hint("read_sensor asks the generator that it is given: generator.random(). random.random() asks another one.")
 def test_counts_failures(workspace: Workspace) -> None:
@@ -120,7 +120,7 @@ def test_counts_failures(workspace: Workspace) -> None:
 
 @check(
     points=1,
-    holds=("failure-probability", "seed", "max-errors"),
+    covers=("failure-probability", "seed", "max-errors"),
     group="robust",
     after=("counts_failures",),
     doc=contract.QOS,
@@ -143,7 +143,7 @@ def test_declares(workspace: Workspace) -> None:
 
 @check(
     points=1,
-    holds=("unstable", "fatal-log", "error-log"),
+    covers=("unstable", "fatal-log", "error-log"),
     group="robust",
     after=("counts_failures",),
     doc=contract.LOGGING,
@@ -161,7 +161,7 @@ def test_dead_sensor(workspace: Workspace) -> None:
     expect(0 < errors <= 4, f"In 12 s it logged {errors} errors instead of one in 5 s.")
 
 
-@check(points=1, holds="recovery-log", group="robust", after=("counts_failures",), doc=contract.LOGGING)
+@check(points=1, covers="recovery-log", group="robust", after=("counts_failures",), doc=contract.LOGGING)
 @hint("Log 'Recovered after N errors' before you set the count back to 0.")
 def test_recovers(workspace: Workspace) -> None:
     """It logs each recovery, with the number of failures before it."""
@@ -172,7 +172,7 @@ def test_recovers(workspace: Workspace) -> None:
     expect(lines[0].endswith("Recovered after 2 errors"), f"The first recovery comes after 2 failures: {lines[0]}")
 
 
-@check(points=1, holds=("catch", "generator"), group="robust", after=("counts_failures",), doc=contract.ERRORS)
+@check(points=1, covers=("catch", "generator"), group="robust", after=("counts_failures",), doc=contract.ERRORS)
 @hint("except SensorError as error: nothing wider. The generator that is handed in is the one that is used.")
 def test_shows_bugs(workspace: Workspace) -> None:
     """It does not catch a bug: with range(3) for a generator, timer_callback raises AttributeError."""

@@ -24,7 +24,7 @@ check = group("step_2")
 
 @check(
     points=2,
-    holds=("sector", "processor", "clearance-header", "front", "left", "right"),
+    covers=("sector", "processor", "clearance-header", "front", "left", "right"),
     needs=("build",),
     after=("processor",),
     doc=contract.SCAN_DOC,
@@ -60,7 +60,7 @@ def test_sectors(seeing: System, draw: random.Random) -> None:
 
 @check(
     points=3,
-    holds=("readings", "no-reading", "valid-field", "sector", "processor", "clearance-header"),
+    covers=("readings", "no-reading", "valid-field", "sector", "processor", "clearance-header"),
     needs=("build",),
     after=("sectors",),
     doc=contract.REP_117,

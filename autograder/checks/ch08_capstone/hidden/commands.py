@@ -38,7 +38,7 @@ BLIND = scan(Part(-35.0, 35.0, math.nan))
 
 @check(
     points=2,
-    holds=("drive", "ten-hertz", "stand-or-go"),
+    covers=("drive", "ten-hertz", "stand-or-go"),
     needs=("build",),
     after=("sectors", "controller"),
     doc=contract.NODES_DOC,
@@ -60,7 +60,10 @@ def test_drives(judge_driving: JudgeDriving, draw: random.Random) -> None:
 
 
 @check(
-    points=3, holds=("turn", "more-room", "keeps-turn", "starts-turn", "ends-turn"), needs=("build",), after=("drives",)
+    points=3,
+    covers=("turn", "more-room", "keeps-turn", "starts-turn", "ends-turn"),
+    needs=("build",),
+    after=("drives",),
 )
 @hint("Compare left with right when the turn begins, and remember the choice.")
 @hint("The remembered turn ends when the way is clear again, not when the sides look different.")
@@ -99,7 +102,7 @@ def _expect_turns(driving: System, rooms: Mapping[str, tuple[float, float]]) -> 
     expect_turn_kept(driving, lambda: driving.see(BLIND), "When it saw again after nan from every beam ahead")
 
 
-@check(points=3, holds=("untrusted", "newest"), needs=("build",), after=("drives",))
+@check(points=3, covers=("untrusted", "newest"), needs=("build",), after=("drives",))
 @hint("No clearance yet, one that is not valid, one that is too old: publish Twist() as it is.")
 @hint("Its age is self.get_clock().now() - Time.from_msg(clearance.header.stamp), however late it came.")
 def test_stops(judge_driving: JudgeDriving, slow_system: SharedSystem) -> None:
@@ -130,7 +133,7 @@ def _expect_stops(driving: System, slow_system: SharedSystem) -> None:
         expect_still(still, f"More than {STALE} s of ROS time after the last scan", fraction=0.75)
 
 
-@check(points=1, holds="untrusted", needs=("build",), after=("drives", "stops"))
+@check(points=1, covers="untrusted", needs=("build",), after=("drives", "stops"))
 @hint("The lidar's computer has a clock of its own. A stamp that is ahead of yours gives an age below 0.")
 @hint("An age below 0 is not more than data_timeout: no abs().")
 def test_stamp_ahead(judge_driving: JudgeDriving) -> None:
@@ -141,7 +144,7 @@ def test_stamp_ahead(judge_driving: JudgeDriving) -> None:
 
 @check(
     points=2,
-    holds=("enable", "disabled", "keeps-turn", "ten-hertz"),
+    covers=("enable", "disabled", "keeps-turn", "ten-hertz"),
     needs=("build",),
     after=("controller", "drives"),
     doc=contract.SERVICE_DOC,

@@ -38,7 +38,7 @@ PHASE, PHASE_END = 0.25, 0.35
 
 @check(
     points=3,
-    holds=("monitor", "level", "silent", "silent-field", "health-header"),
+    covers=("monitor", "level", "silent", "silent-field", "health-header"),
     needs=("build",),
     after=("processor", "controller", "monitor", "readings"),
     doc=contract.NODES_DOC,
@@ -76,7 +76,7 @@ def test_health_levels(system: System, lone_monitor: SharedSystem) -> None:
 
 
 @check(
-    points=3, holds=("silent", "silent-field", "monitor", "health-header"), needs=("build",), after=("health_levels",)
+    points=3, covers=("silent", "silent-field", "monitor", "health-header"), needs=("build",), after=("health_levels",)
 )
 @hint("Remember when each topic was last heard, by self.get_clock().now(), and compare in the timer's callback.")
 @hint("A callback of the dead topic cannot tell that it is dead: only a timer can.")

@@ -95,7 +95,7 @@ def launched(workspace: Workspace, seed: int) -> Iterator[Launched]:
         yield Launched(harness, values, {name: lines[name] for name in scripts})
 
 
-@check(points=1, holds="launch-arguments", needs=("build",), after=SHARED)
+@check(points=1, covers="launch-arguments", needs=("build",), after=SHARED)
 @hint("ros2 launch -s robot_navigation_tutorial navigation.launch.py shows what you have declared.")
 @hint("DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.")
 def test_launch_arguments(workspace: Workspace) -> None:
@@ -125,7 +125,7 @@ def _expect_starts_without(workspace: Workspace, name: str) -> None:
     expect(begun, f"Without {name}:=..., the launch starts nothing: the argument has no default. {why}", fraction=0.5)
 
 
-@check(points=2, holds="launches", needs=("build",), after=STARTS)
+@check(points=2, covers="launches", needs=("build",), after=STARTS)
 @hint(*HINTS)
 def test_launch_starts(launched: Launched) -> None:
     """The launch file starts the three nodes under their names, and nothing else."""
@@ -136,7 +136,7 @@ def test_launch_starts(launched: Launched) -> None:
     expect(len(programs) <= len(PROGRAMS), said, fraction=0.5)
 
 
-@check(points=2, holds=("launch-arguments", "launches", "relative"), needs=("build",), after=("launch_starts",))
+@check(points=2, covers=("launch-arguments", "launches", "relative"), needs=("build",), after=("launch_starts",))
 @hint(*HINTS)
 @hint("A robot in a namespace has topics of its own: no remapping to a name with a slash in front, no namespace='/'.")
 def test_launch_configures(launched: Launched, workspace: Workspace) -> None:
@@ -157,7 +157,7 @@ def test_launch_configures(launched: Launched, workspace: Workspace) -> None:
     expect(not absolute, said, fraction=0.75)
 
 
-@check(points=2, holds="launch-ctrl-c", needs=("build",), after=("launch_starts",))
+@check(points=2, covers="launch-ctrl-c", needs=("build",), after=("launch_starts",))
 @hint("Each program's main goes through run(...), which ends without a traceback.")
 @hint("except (KeyboardInterrupt, ExternalShutdownException): pass, and rclpy.try_shutdown() in finally.")
 def test_launch_stops(launched: Launched) -> None:

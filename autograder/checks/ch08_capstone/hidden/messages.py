@@ -19,21 +19,21 @@ NEEDS = {
 TABLES = ("Compare with the table of step 3, letter by letter; comments are yours.",)
 
 
-@check(points=2, holds=("definitions", "clearance-header", "valid-field", "front", "left", "right"))
+@check(points=2, covers=("definitions", "clearance-header", "valid-field", "front", "left", "right"))
 @hint(*TABLES)
 def test_clearance_message(workspace: Workspace) -> None:
     """Clearance.msg has the fields of the contract, in its order, with its types."""
     _expect_like(workspace, CLEARANCE)
 
 
-@check(points=2, holds=("definitions", "levels", "health-header", "level-field", "silent-field"))
+@check(points=2, covers=("definitions", "levels", "health-header", "level-field", "silent-field"))
 @hint(*TABLES)
 def test_health_message(workspace: Workspace) -> None:
     """Health.msg has the constants and fields of the contract, in its order, with its types."""
     _expect_like(workspace, HEALTH)
 
 
-@check(points=2, holds=("interfaces-manifest", "interfaces-cmake"))
+@check(points=2, covers=("interfaces-manifest", "interfaces-cmake"))
 @hint('rosidl_generate_interfaces(${PROJECT_NAME} "msg/Clearance.msg" "msg/Health.msg" DEPENDENCIES std_msgs)')
 @hint("package.xml: buildtool_depend on the generators, exec_depend on the runtime, and member_of_group.")
 def test_interface_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:

@@ -19,21 +19,21 @@ ENDS = (
 )
 
 
-@check(points=1, holds="processor-name", needs=("build",), after=MESSAGES, doc=contract.NODES_DOC)
+@check(points=1, covers="processor-name", needs=("build",), after=MESSAGES, doc=contract.NODES_DOC)
 @hint(*ENDS)
 def test_processor(shared_system: SharedSystem) -> None:
     """The node sensor_processor has its name, and its topics with their types."""
     expect_endpoints(shared_system.get(PROCESSOR).harness, PROCESSOR)
 
 
-@check(points=1, holds="controller-name", needs=("build",), after=MESSAGES, doc=contract.NODES_DOC)
+@check(points=1, covers="controller-name", needs=("build",), after=MESSAGES, doc=contract.NODES_DOC)
 @hint(*ENDS)
 def test_controller(shared_system: SharedSystem) -> None:
     """The node navigation_controller has its name, and its topics and its service with their types."""
     expect_endpoints(shared_system.get(CONTROLLER).harness, CONTROLLER)
 
 
-@check(points=1, holds="monitor-name", needs=("build",), after=(*MESSAGES, "health_message"), doc=contract.NODES_DOC)
+@check(points=1, covers="monitor-name", needs=("build",), after=(*MESSAGES, "health_message"), doc=contract.NODES_DOC)
 @hint(*ENDS)
 def test_monitor(shared_system: SharedSystem) -> None:
     """The node status_monitor has its name, and its topics with their types."""
@@ -41,7 +41,7 @@ def test_monitor(shared_system: SharedSystem) -> None:
 
 
 @check(
-    points=1, holds="relative", needs=("build",), after=("processor", "controller", "monitor"), doc=contract.NODES_DOC
+    points=1, covers="relative", needs=("build",), after=("processor", "controller", "monitor"), doc=contract.NODES_DOC
 )
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'scan' is relative, '/scan' is not.")
@@ -56,7 +56,11 @@ def test_relative(workspace: Workspace) -> None:
 
 
 @check(
-    points=2, holds=("processor", "late-joiner"), needs=("build",), after=("processor", "monitor"), doc=contract.QOS_DOC
+    points=2,
+    covers=("processor", "late-joiner"),
+    needs=("build",),
+    after=("processor", "monitor"),
+    doc=contract.QOS_DOC,
 )
 @hint("A lidar publishes best-effort: whoever subscribes to scan takes qos_profile_sensor_data.")
 @hint("QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) keeps the last report for late joiners.")

@@ -16,7 +16,7 @@ FOR_LAUNCH = ("ament_index_python", "launch", "launch_ros")
 FOR_TESTS = ("ament_flake8", "ament_pep257", "launch_pytest")
 
 
-@check(points=2, holds=("manifest", "interfaces-facts"))
+@check(points=2, covers=("manifest", "interfaces-facts"))
 @hint("The order of the tags is name, version, description, maintainer, license, then the dependencies, then export.")
 @hint("<export><build_type>ament_python</build_type></export>; ament_cmake for the messages.")
 def test_manifests(workspace: Workspace) -> None:
@@ -36,7 +36,7 @@ def test_manifests(workspace: Workspace) -> None:
         )
 
 
-@check(points=2, holds=("imports", "depend", "exec-depend", "test-depend"), after=("manifests",))
+@check(points=2, covers=("imports", "depend", "exec-depend", "test-depend"), after=("manifests",))
 @hint(
     "rosdep installs what package.xml names, before anything runs: what is missing there is missing on every other "
     "machine."
@@ -60,7 +60,7 @@ def test_dependencies(workspace: Workspace) -> None:
         expect(not absent, f"package.xml has no {kind}_depend on {', '.join(absent)}.", fraction=0.5)
 
 
-@check(points=1, holds="installs")
+@check(points=1, covers="installs")
 @hint("Run colcon build --packages-up-to robot_navigation_tutorial in a terminal: its last lines name file and line.")
 @hint("setup.py needs the name, packages=find_packages(exclude=['test']), data_files with files that are there.")
 def test_build(builds: Mapping[str, Diagnosis]) -> None:
@@ -68,7 +68,7 @@ def test_build(builds: Mapping[str, Diagnosis]) -> None:
     require_built(builds, PACKAGE)
 
 
-@check(points=1, holds=("processor-executable", "controller-executable", "monitor-executable"), needs=("build",))
+@check(points=1, covers=("processor-executable", "controller-executable", "monitor-executable"), needs=("build",))
 @hint("entry_points={'console_scripts': ['sensor_processor = robot_navigation_tutorial.sensor_processor:main', ...]}")
 @hint("install_scripts in setup.cfg says where they go; packages=find_packages(exclude=['test']) what they import.")
 def test_executables(workspace: Workspace) -> None:
@@ -84,7 +84,7 @@ def test_executables(workspace: Workspace) -> None:
     )
 
 
-@check(points=1, holds="installs", needs=("build",))
+@check(points=1, covers="installs", needs=("build",))
 @hint("data_files holds pairs: a folder below share/, and the files that go there.")
 @hint("('share/' + package_name + '/launch', glob('launch/*.launch.py')), and config likewise.")
 def test_shares(workspace: Workspace) -> None:
@@ -95,7 +95,7 @@ def test_shares(workspace: Workspace) -> None:
     expect(not absent, f"share/{PACKAGE} has no {', '.join(absent)}: look at data_files.")
 
 
-@check(points=1, holds="installs", needs=("build",), after=("shares",))
+@check(points=1, covers="installs", needs=("build",), after=("shares",))
 @hint("A list of names written by hand is wrong on the day when somebody adds a file.")
 @hint("glob('launch/*.launch.py') and glob('config/*.yaml') look at what is there when the package is built.")
 def test_grows(workspace: Workspace, draw: random.Random) -> None:
@@ -109,7 +109,7 @@ def test_grows(workspace: Workspace, draw: random.Random) -> None:
 
 @check(
     points=1,
-    holds=(
+    covers=(
         "agree",
         "installs",
         "interfaces-cmake",

@@ -25,7 +25,7 @@ check = group("step_5", doc=contract.PARAMETERS_DOC)
 
 @check(
     points=2,
-    holds=(
+    covers=(
         "double",
         "declares",
         "half_angle",
@@ -52,7 +52,7 @@ def test_declared(system: System) -> None:
 
 @check(
     points=2,
-    holds=(
+    covers=(
         "declares",
         "half_angle",
         "forward_speed",
@@ -83,7 +83,7 @@ def test_ranges(system: System) -> None:
             expect(refused, f"{node}: {name} can be set to {bounds.highest * 2:g}.")
 
 
-@check(points=3, holds="declares", needs=("build",), after=("declared", "drives", "turns", "sectors", "dead_sensor"))
+@check(points=3, covers="declares", needs=("build",), after=("declared", "drives", "turns", "sectors", "dead_sensor"))
 @hint("A value that is read once in __init__ never changes: self.get_parameter(name).value where it is needed.")
 @hint("Every parameter of the table is used: a number in the code that stands for one makes it a decoration.")
 def test_used(system: System) -> None:
@@ -94,7 +94,7 @@ def test_used(system: System) -> None:
         raise CheckFailed(" ".join(wrong[:2]), fraction=round(1.0 - len(wrong) / (len(_CASES) + 1), 2))
 
 
-@check(points=2, holds="config", needs=("build",), after=("shares",))
+@check(points=2, covers="config", needs=("build",), after=("shares",))
 @hint("By node, then ros__parameters, then name and value, each level indented by two blanks.")
 @hint("A name that no node declares is ignored without a word: compare letter by letter.")
 def test_config(workspace: Workspace) -> None:

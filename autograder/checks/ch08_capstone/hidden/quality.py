@@ -21,7 +21,7 @@ def tested(workspace: Workspace) -> student_test_reports.Report:
     return colcon_test.colcon_test(workspace, PACKAGE)
 
 
-@check(points=2, holds="pytest", needs=("build",), after=("interface_package",))
+@check(points=2, covers="pytest", needs=("build",), after=("interface_package",))
 @hint("Without extras_require={'test': ['pytest']} in setup.py, colcon runs no test and ends with status 0.")
 @hint("test_flake8.py, test_pep257.py and test_integration.py are in test/, too.")
 def test_colcon_finds_tests(tested: student_test_reports.Report) -> None:
@@ -38,7 +38,7 @@ def test_colcon_finds_tests(tested: student_test_reports.Report) -> None:
         )
 
 
-@check(points=2, holds="linters", needs=("build",), after=("colcon_finds_tests",))
+@check(points=2, covers="linters", needs=("build",), after=("colcon_finds_tests",))
 @hint("Run colcon test in a terminal, then colcon test-result --all --verbose.")
 @hint("The linters name a file, a line and a rule: fix them one by one.")
 def test_linters_pass(workspace: Workspace, tested: student_test_reports.Report) -> None:
@@ -54,7 +54,7 @@ def test_linters_pass(workspace: Workspace, tested: student_test_reports.Report)
 
 @check(
     points=2,
-    holds=("integration", "sector-tests"),
+    covers=("integration", "sector-tests"),
     needs=("build",),
     after=(
         "colcon_finds_tests",

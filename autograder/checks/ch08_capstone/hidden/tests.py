@@ -42,7 +42,7 @@ def examined(workspace: Workspace, seed: int) -> Examined:
     return Examined(by_version[0], tuple((fault, by_version[i]) for i, fault in enumerate(FAULTS, 1)))
 
 
-@check(points=2, holds="sector-tests", doc=contract.TESTING_DOC)
+@check(points=2, covers="sector-tests", doc=contract.TESTING_DOC)
 @hint("Run pytest on test/test_sectors.py in a terminal, in the package's folder.")
 @hint("Import nothing of the package but robot_navigation_tutorial.sectors: the tests meet other versions of it.")
 def test_sector_tests_pass(examined: Examined) -> None:
@@ -58,7 +58,7 @@ def test_sector_tests_pass(examined: Examined) -> None:
     expect(len(report.executed) >= MIN_TESTS, few, fraction=0.5)
 
 
-@check(points=4, holds="sector-tests", after=("sector_tests_pass",), doc=contract.REP_117)
+@check(points=4, covers="sector-tests", after=("sector_tests_pass",), doc=contract.REP_117)
 @hint("One test a line of the contract: nan, +inf, -inf, a phantom, an empty sector, left and right, angle_min.")
 @hint("Put the odd reading before a wall and after it: the order of the beams must not matter.")
 def test_sector_tests_find_faults(examined: Examined) -> None:

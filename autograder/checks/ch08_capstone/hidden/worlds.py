@@ -34,7 +34,7 @@ SECTOR = 35.0  # degrees to each side of a middle, a little more than half_angle
 PICTURE = ("Look at the picture: what did the lidar see at the marked instant, and at which bearing?",)
 
 
-@check(points=3, holds=("turn", "starts-turn"), needs=("build",), after=("drives", "turns"))
+@check(points=3, covers=("turn", "starts-turn"), needs=("build",), after=("drives", "turns"))
 @hint(*PICTURE)
 def test_touches_nothing(drives: Drives, driving: System, gallery: Gallery) -> None:
     """It drives through a furnished room for twenty seconds and touches nothing."""
@@ -56,7 +56,7 @@ def test_touches_nothing(drives: Drives, driving: System, gallery: Gallery) -> N
     _expect_no_touch(driving)
 
 
-@check(points=2, holds=("more-room", "ends-turn"), needs=("build",), after=("drives", "turns"))
+@check(points=2, covers=("more-room", "ends-turn"), needs=("build",), after=("drives", "turns"))
 @hint("A turn that has begun keeps its direction until the way is clear.")
 @hint("self.turn remembers it; the sides are compared only when a turn begins.")
 def test_keeps_its_mind(drives: Drives, gallery: Gallery) -> None:
@@ -74,7 +74,7 @@ def test_keeps_its_mind(drives: Drives, gallery: Gallery) -> None:
     expect(turned, "It never turned, neither in a room nor in a corridor with a bend.")
 
 
-@check(points=3, holds=("drive", "more-room"), needs=("build",), after=("drives", "turns"))
+@check(points=3, covers=("drive", "more-room"), needs=("build",), after=("drives", "turns"))
 @hint("At the bend it has to turn towards the side with more room, and then drive on.")
 @hint("A robot that turns too far looks back to where it came from: a turn ends when the way is clear.")
 def test_gets_on(drives: Drives, driving: System, gallery: Gallery) -> None:
@@ -88,7 +88,7 @@ def test_gets_on(drives: Drives, driving: System, gallery: Gallery) -> None:
     _expect_drive_between(driving)
 
 
-@check(points=3, holds="untrusted", needs=("build",), after=("drives", "stops"))
+@check(points=3, covers="untrusted", needs=("build",), after=("drives", "stops"))
 @hint("Data older than data_timeout mean stop: how far does the robot get until it sees that they are old?")
 @hint("A clearance that is not valid means stop at once.")
 def test_stops_in_time(drives: Drives, driving: System, gallery: Gallery) -> None:
@@ -115,7 +115,7 @@ def test_stops_in_time(drives: Drives, driving: System, gallery: Gallery) -> Non
     _expect_half_blind_stop(driving)
 
 
-@check(points=2, holds="drive", needs=("build",), after=("drives", "stops_in_time"))
+@check(points=2, covers="drive", needs=("build",), after=("drives", "stops_in_time"))
 @hint("Look at the newest clearance every time: a stop is no state to be stuck in.")
 def test_drives_again(drives: Drives, gallery: Gallery) -> None:
     """Within 2 s of its lidar's return it drives again."""

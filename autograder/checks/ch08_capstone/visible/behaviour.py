@@ -29,7 +29,7 @@ OPEN = scan(fill=3.0)
 
 @check(
     points=1,
-    holds=("processor-name", "controller-name", "monitor-name"),
+    covers=("processor-name", "controller-name", "monitor-name"),
     group="step_2",
     needs=("package", "definitions", "interfaces_build"),
     doc=contract.NODES_DOC,
@@ -42,7 +42,7 @@ def test_starts(system: System) -> None:
     expect(not absent, f"No node is called {' or '.join(absent)}; there is: {', '.join(nodes) or 'none'}.")
 
 
-@check(points=1, holds=("processor", "sector"), group="step_2", needs=("starts",), doc=contract.SCAN_DOC)
+@check(points=1, covers=("processor", "sector"), group="step_2", needs=("starts",), doc=contract.SCAN_DOC)
 @hint("scan comes best-effort: qos_profile_sensor_data.")
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]; left is positive.")
 def test_sees(system: System) -> None:
@@ -64,7 +64,7 @@ def test_sees(system: System) -> None:
     expect(bool(blind) and not blind[-1].message.valid, "With nan from every beam ahead, the clearance was valid.")
 
 
-@check(points=1, holds=("drive", "turn", "untrusted"), group="step_2", needs=("sees",), doc=contract.NODES_DOC)
+@check(points=1, covers=("drive", "turn", "untrusted"), group="step_2", needs=("sees",), doc=contract.NODES_DOC)
 @hint("No clearance, one that is not valid, one whose stamp is old: publish Twist() as it is.")
 @hint("Way clear: linear.x = forward_speed. Something ahead: angular.z towards the side with more room.")
 def test_moves(system: System) -> None:
@@ -83,7 +83,7 @@ def test_moves(system: System) -> None:
     expect_still(system.messages(began + 1.0).commands, "A second after the last scan")
 
 
-@check(points=1, holds=("enable", "disabled"), group="step_2", needs=("moves",), doc=contract.SERVICE_DOC)
+@check(points=1, covers=("enable", "disabled"), group="step_2", needs=("moves",), doc=contract.SERVICE_DOC)
 @hint("self.create_service(SetBool, 'enable', self.enable_callback); the callback returns the response.")
 def test_enable(system: System) -> None:
     """Step 2: the service enable holds the robot still and lets it go; success is true each time."""
@@ -93,7 +93,7 @@ def test_enable(system: System) -> None:
         expect_it(system.see(OPEN).commands, f"After enable with data {data}")
 
 
-@check(points=1, holds="level", group="step_2", needs=("sees",), doc=contract.NODES_DOC)
+@check(points=1, covers="level", group="step_2", needs=("sees",), doc=contract.NODES_DOC)
 @hint("FAILED if any topic is silent; else DEGRADED if the newest clearance is not valid; else OK.")
 @hint("Remember when each topic was last heard; only a timer can hear the silence.")
 def test_watches(system: System) -> None:
@@ -116,7 +116,7 @@ def test_watches(system: System) -> None:
 
 @check(
     points=1,
-    holds=("half_angle", "forward_speed", "turn_speed", "safety_distance", "data_timeout", "silence_timeout"),
+    covers=("half_angle", "forward_speed", "turn_speed", "safety_distance", "data_timeout", "silence_timeout"),
     group="step_5",
     needs=("starts",),
     doc=contract.PARAMETERS_DOC,
@@ -138,7 +138,7 @@ def test_parameters(system: System) -> None:
             )
 
 
-@check(points=1, holds="declares", group="step_5", needs=("parameters", "moves"), doc=contract.PARAMETERS_DOC)
+@check(points=1, covers="declares", group="step_5", needs=("parameters", "moves"), doc=contract.PARAMETERS_DOC)
 @hint("self.get_parameter('forward_speed').value where the command is made, and no copy of it in __init__.")
 def test_changed(system: System) -> None:
     """Step 5: forward_speed, set to 0.12 m/s while the system runs, has an effect immediately."""

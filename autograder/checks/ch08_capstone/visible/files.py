@@ -12,7 +12,7 @@ from autograder.checks.ch08_capstone.support.messages import CLEARANCE, HEALTH, 
 from autograder.checks.ch08_capstone.support.sources import require_built, source_of
 
 
-@check(points=1, holds=("installs", "imports"), group="step_1", doc=contract.PACKAGES_DOC)
+@check(points=1, covers=("installs", "imports"), group="step_1", doc=contract.PACKAGES_DOC)
 @hint("The tags stand in this order: name, version, description, maintainer, license, dependencies, export.")
 @hint("setup(name=..., version=..., packages=find_packages(exclude=['test']), entry_points={...}, ...)")
 def test_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
@@ -28,7 +28,7 @@ def test_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     expect(not missing["exec"], f"{imports.describe(missing['exec'])}: package.xml does not declare it.")
 
 
-@check(points=1, holds="definitions", group="step_3", doc=contract.INTERFACES_DOC)
+@check(points=1, covers="definitions", group="step_3", doc=contract.INTERFACES_DOC)
 @hint("Compare with the tables of step 3, letter by letter.", "float32 front, bool valid, std_msgs/Header header.")
 def test_definitions(workspace: Workspace) -> None:
     """Step 3: both messages have the fields and constants of the contract."""
@@ -37,7 +37,7 @@ def test_definitions(workspace: Workspace) -> None:
     expect(not wrong, " ".join(wrong[:3]))
 
 
-@check(points=1, holds="interfaces-manifest", group="step_3", doc=contract.INTERFACES_DOC)
+@check(points=1, covers="interfaces-manifest", group="step_3", doc=contract.INTERFACES_DOC)
 @hint('rosidl_generate_interfaces(${PROJECT_NAME} "msg/Clearance.msg" "msg/Health.msg" DEPENDENCIES std_msgs)')
 @hint("find_package for ament_cmake, rosidl_default_generators and std_msgs before, ament_package() at the end.")
 def test_interfaces_build(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:

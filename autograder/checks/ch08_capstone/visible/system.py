@@ -62,7 +62,7 @@ def reports(workspace: Workspace) -> Iterator[Future[Reports]]:
         yield beside.submit(run)
 
 
-@check(points=1, holds=("launches", "launch-arguments"), group="step_4", needs=("starts",), doc=contract.LAUNCH_DOC)
+@check(points=1, covers=("launches", "launch-arguments"), group="step_4", needs=("starts",), doc=contract.LAUNCH_DOC)
 @hint("Node(package='robot_navigation_tutorial', executable=name, name=name, output='screen', parameters=[...])")
 @hint("DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.")
 def test_launch(workspace: Workspace) -> None:
@@ -76,7 +76,7 @@ def test_launch(workspace: Workspace) -> None:
         launch_probe.expect_clean_stop(harness)
 
 
-@check(points=1, holds="config", group="step_5", needs=("package",), doc=contract.PARAMETERS_DOC)
+@check(points=1, covers="config", group="step_5", needs=("package",), doc=contract.PARAMETERS_DOC)
 @hint("A node's name, then ros__parameters, then name and value, each level indented by two blanks.")
 def test_config_file(workspace: Workspace) -> None:
     """Step 5: the installed configuration holds every parameter of every node, with its default."""
@@ -89,7 +89,7 @@ def test_config_file(workspace: Workspace) -> None:
         expect(not wrong, f"{CONFIG}: {'; '.join(wrong)}.")
 
 
-@check(points=1, holds="sector-tests", group="step_6", needs=("package",), doc=contract.TESTING_DOC)
+@check(points=1, covers="sector-tests", group="step_6", needs=("package",), doc=contract.TESTING_DOC)
 @hint("The cell below test_sectors.py runs it: read its last lines.")
 @hint("Import nothing of the package but robot_navigation_tutorial.sectors.")
 def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
@@ -107,7 +107,7 @@ def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
     expect(len(report.executed) >= 4, f"{len(report.executed)} tests ran. {report.output.strip()[-300:]}")
 
 
-@check(points=1, holds="sector-tests", group="step_6", needs=("sector_tests",), doc=contract.TESTING_DOC)
+@check(points=1, covers="sector-tests", group="step_6", needs=("sector_tests",), doc=contract.TESTING_DOC)
 @hint("Put something near on the left, and ask for the front.", "Change nearest yourself: which test fails?")
 def test_sector_tests_notice(reports: Future[Reports]) -> None:
     """Step 6: one of them fails on a sectors.py that looks all around instead of into the sector."""
@@ -115,7 +115,7 @@ def test_sector_tests_notice(reports: Future[Reports]) -> None:
     expect(said[MUTANT].detects_fault(said[TESTS]), "All of them pass on that mutant, too.")
 
 
-@check(points=1, holds=("linters", "pytest"), group="step_7", needs=("package",), doc=contract.TESTING_DOC)
+@check(points=1, covers=("linters", "pytest"), group="step_7", needs=("package",), doc=contract.TESTING_DOC)
 @hint("The linters name a file, a line and a rule; `colcon test-result --all --verbose` shows all of them.")
 @hint("Without extras_require={'test': ['pytest']} in setup.py, colcon runs no test and ends with status 0.")
 def test_quality(workspace: Workspace, reports: Future[Reports]) -> None:

@@ -24,7 +24,7 @@ CHOICES = [
         hints=asked.hints,
         doc=asked.doc,
         question=asked,
-        holds="choices",
+        covers="choices",
     )
     for name, asked in QUESTIONS.items()
 ]

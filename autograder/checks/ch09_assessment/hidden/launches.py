@@ -55,7 +55,7 @@ def hot(seed: int) -> int:
 
 @check(
     points=3,
-    holds=("launch", "set-up", "thermometer-topics", "smoother-topics", "guard-topics"),
+    covers=("launch", "set-up", "thermometer-topics", "smoother-topics", "guard-topics"),
     after=("installs",),
 )
 @hint("Node(package='motor_guard', executable='guard', name='guard', output='screen'), and two more.")
@@ -68,7 +68,7 @@ def test_launches(launched: Launched) -> None:
     expect(came, f"All three run, and no decision came in {FIRST_SECONDS:.0f} s.", fraction=0.5)
 
 
-@check(points=2, holds=("hot-argument", "hot-cool"), after=("launches",))
+@check(points=2, covers=("hot-argument", "hot-cool"), after=("launches",))
 @hint("DeclareLaunchArgument('hot', default_value='60.0')")
 @hint("ParameterValue(LaunchConfiguration('hot'), value_type=float): else 55 becomes an integer.")
 def test_argument(workspace: Workspace, launched: Launched, hot: int) -> None:
@@ -85,7 +85,7 @@ def test_argument(workspace: Workspace, launched: Launched, hot: int) -> None:
         raise CheckFailed(f"Launched with hot:={hot} and nothing else: {failed.message}", fraction=0.75) from failed
 
 
-@check(points=1, holds="ctrl-c", after=("launches",))
+@check(points=1, covers="ctrl-c", after=("launches",))
 @hint("Each main() catches KeyboardInterrupt and ExternalShutdownException: running.py does it for you.")
 @hint("A node that never ends by itself has to be killed: look at loops of your own.")
 def test_stops(launched: Launched) -> None:

@@ -43,7 +43,7 @@ SLOW = 0.25  # of ROS time: how fast the machine's clocks run for a node that mu
 
 @check(
     points=2,
-    holds=("reading", "formula", "period", "mean-swing", "thermometer-topics"),
+    covers=("reading", "formula", "period", "mean-swing", "thermometer-topics"),
     after=BUILT,
     doc=contract.NODES_DOC,
 )
@@ -55,7 +55,7 @@ def test_readings(start: Start) -> None:
         harness.expect_readings(30)
 
 
-@check(points=2, holds=("period", "mean-swing", "at-start"), after=("readings",), doc=contract.PARAMETERS_DOC)
+@check(points=2, covers=("period", "mean-swing", "at-start"), after=("readings",), doc=contract.PARAMETERS_DOC)
 @hint("self.declare_parameter('mean', 50.0).value, and use it.", "create_timer takes the parameter period.")
 def test_thermometer_parameters(start: Start, draw: Random) -> None:
     """Thermometer measures by its parameters period, mean and swing."""
@@ -66,7 +66,7 @@ def test_thermometer_parameters(start: Start, draw: Random) -> None:
         _expect_measured(start, period, mean, swing, _own_reading(start))
 
 
-@check(points=1, holds=("reading", "formula"), after=("readings",), doc=contract.NODES_DOC)
+@check(points=1, covers=("reading", "formula"), after=("readings",), doc=contract.NODES_DOC)
 @hint("stamp=self.get_clock().now().to_msg()", "time.time() knows nothing of ROS time.")
 @hint("The timer starts in __init__, and its callback does not ask who listens.")
 def test_stamps(start: Start) -> None:
@@ -95,7 +95,7 @@ def test_stamps(start: Start) -> None:
         expect(near(celsius, wanted), f"{said}; {wish}", fraction=0.5)
 
 
-@check(points=2, holds=("smoother", "window", "smoother-topics"), after=BUILT, doc=contract.NODES_DOC)
+@check(points=2, covers=("smoother", "window", "smoother-topics"), after=BUILT, doc=contract.NODES_DOC)
 @hint("sum(...) / len(...) of what the window holds now; at the start that is less.", "Publish for each reading.")
 def test_average(start: Start, draw: Random) -> None:
     """Smoother publishes, for each reading, the average of the newest five, with the stamp of the newest."""
@@ -113,7 +113,7 @@ def test_average(start: Start, draw: Random) -> None:
     expect(len(told) == QUEUE, said, fraction=0.75)
 
 
-@check(points=2, holds=("smoother", "window", "at-start"), after=("average",), doc=contract.PARAMETERS_DOC)
+@check(points=2, covers=("smoother", "window", "at-start"), after=("average",), doc=contract.PARAMETERS_DOC)
 @hint("deque(maxlen=window)", "IntegerRange(from_value=1, to_value=100) in the descriptor.")
 def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
     """The parameter window says how many readings count, from 1 to 100; 0, 101 and 2.5 are refused at the start."""
@@ -136,7 +136,7 @@ def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) 
     _expect_averages([message.celsius for message in told], cold, 1, where, fraction=0.75)
 
 
-@check(points=2, holds=("not-finite", "window"), after=("average",))
+@check(points=2, covers=("not-finite", "window"), after=("average",))
 @hint("math.isfinite(reading.celsius)", "A reading that does not count gets no average either.")
 def test_no_number(start: Start, draw: Random) -> None:
     """A reading that is nan or infinite does not count, and nothing is published for it."""
@@ -156,7 +156,7 @@ def test_no_number(start: Start, draw: Random) -> None:
     )
 
 
-@check(points=4, holds=("hysteresis", "guard-topics"), after=BUILT, doc=contract.NODES_DOC)
+@check(points=4, covers=("hysteresis", "guard-topics"), after=BUILT, doc=contract.NODES_DOC)
 @hint("Two thresholds, and a decision that is remembered.", "elif: from hot on True, down to cool False.")
 def test_hysteresis(start: Start, draw: Random) -> None:
     """Guard switches the fan on when it is hot, off when it is cool, and leaves it as it was between the two."""
@@ -171,7 +171,7 @@ def test_hysteresis(start: Start, draw: Random) -> None:
         _expect_decisions(harness, between[:1], "At the start the fan is off: ", fraction=0.75)
 
 
-@check(points=2, holds=("hot-cool", "hysteresis", "at-start"), after=("hysteresis",), doc=contract.PARAMETERS_DOC)
+@check(points=2, covers=("hot-cool", "hysteresis", "at-start"), after=("hysteresis",), doc=contract.PARAMETERS_DOC)
 @hint("self.declare_parameter('hot', 60.0).value, and cool likewise.", "raise ValueError(...) in __init__.")
 @hint("self.hot = ... in __init__ is read once; get_parameter in a callback is not.")
 def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
@@ -195,7 +195,7 @@ def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Rand
         expect(refused, f"guard started with hot {high} and cool {low}.", fraction=0.5)
 
 
-@check(points=1, holds="unknown", after=("hysteresis",))
+@check(points=1, covers="unknown", after=("hysteresis",))
 @hint("nan >= 60.0 is False, and so is nan <= 50.0.", "Ask math.isfinite first.")
 def test_unknown(start: Start) -> None:
     """When the temperature is no finite number, it is not known, and the fan runs."""
@@ -205,7 +205,7 @@ def test_unknown(start: Start) -> None:
             _expect_decisions(harness, [20.0, unknown, 20.0, 70.0, unknown, 20.0], "")
 
 
-@check(points=1, holds=("guard", "guard-topics"), after=("hysteresis",))
+@check(points=1, covers=("guard", "guard-topics"), after=("hysteresis",))
 @hint("stamp=average.stamp", "Who reads a decision wants to know of when and of what it was.")
 def test_passes_on(start: Start, draw: Random) -> None:
     """Each average gets a decision, which carries the stamp and the temperature that it was made of."""
@@ -232,7 +232,7 @@ def test_passes_on(start: Start, draw: Random) -> None:
     expect(made == QUEUE, said, fraction=0.5)
 
 
-@check(points=1, holds="relative", after=("installs", "readings", "average", "hysteresis"), doc=contract.NODES_DOC)
+@check(points=1, covers="relative", after=("installs", "readings", "average", "hysteresis"), doc=contract.NODES_DOC)
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'temperature' is relative, '/temperature' is not.")
 def test_relative(workspace: Workspace) -> None:

@@ -14,7 +14,7 @@ from autograder.checks.ch09_assessment.support.robot import expect_executables, 
 check = group("packages")
 
 
-@check(points=2, holds=("temperature", "decision"), doc=contract.INTERFACES_DOC)
+@check(points=2, covers=("temperature", "decision"), doc=contract.INTERFACES_DOC)
 @hint("Compare with the table of the messages, letter by letter.", "The order of the fields counts, too.")
 @hint("The table has no default, which is a value behind the name of a field.")
 def test_definitions(workspace: Workspace) -> None:
@@ -22,7 +22,7 @@ def test_definitions(workspace: Workspace) -> None:
     expect_definitions(workspace)
 
 
-@check(points=2, holds="packages", after=("definitions",), doc=contract.INTERFACES_DOC)
+@check(points=2, covers="packages", after=("definitions",), doc=contract.INTERFACES_DOC)
 @hint('rosidl_generate_interfaces(${PROJECT_NAME} "msg/Decision.msg" "msg/Temperature.msg" DEPENDENCIES ...)')
 @hint("find_package for what you use; in package.xml a buildtool_depend on the generators, and member_of_group.")
 def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
@@ -33,7 +33,7 @@ def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagn
     expect(not absent, f"The build made no code for {' and '.join(absent)}: CMakeLists.txt does not list it.")
 
 
-@check(points=1, holds=("interfaces-manifest", "licence", "stamp-package"), doc=contract.INTERFACES_DOC)
+@check(points=1, covers=("interfaces-manifest", "licence", "stamp-package"), doc=contract.INTERFACES_DOC)
 @hint("Which tool installs what the generated code needs when it runs?")
 @hint("Two buildtool_depends, a depend, an exec_depend, a member_of_group, and the build type: 03_interfaces has them.")
 def test_interface_manifest(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
@@ -47,7 +47,7 @@ def test_interface_manifest(workspace: Workspace, builds: Mapping[str, Diagnosis
         expect(installed.look(workspace.install, INTERFACES).marker, said, fraction=0.5)
 
 
-@check(points=2, holds="packages", after=("messages_are_generated",), doc=contract.PACKAGES_DOC)
+@check(points=2, covers="packages", after=("messages_are_generated",), doc=contract.PACKAGES_DOC)
 @hint("entry_points={'console_scripts': ['thermometer = motor_guard.thermometer:main', ...]}")
 @hint("install_scripts in setup.cfg says where programs go; ros2 pkg create has written it.")
 def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
@@ -59,7 +59,7 @@ def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None
 
 @check(
     points=1,
-    holds=("dependencies", "licence", "same-facts", "set-up", "test-depends"),
+    covers=("dependencies", "licence", "same-facts", "set-up", "test-depends"),
     after=("installs",),
     doc=contract.PACKAGES_DOC,
 )

@@ -7,7 +7,7 @@ from autograder.checks.ch09_assessment.support.contract import QUESTIONS
 from autograder.checks.ch09_assessment.support.sheet import answers, expect_letter
 
 
-@check(points=1, holds="sheet", group="choices")
+@check(points=1, covers="sheet", group="choices")
 @hint("A line is `q1: a`: the question, a colon, a space, one letter.", "A guess costs nothing; a gap earns nothing.")
 def test_answered(workspace: Workspace) -> None:
     """Question 1: each question has an answer, one of four letters; whether it is right is not looked at."""

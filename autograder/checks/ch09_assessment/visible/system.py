@@ -20,14 +20,14 @@ from autograder.checks.ch09_assessment.support.definitions import expect_definit
 from autograder.checks.ch09_assessment.support.robot import Start, expect_executables, require_built, source_of
 
 
-@check(points=1, holds=("temperature", "decision"), group="packages", doc=contract.INTERFACES_DOC)
+@check(points=1, covers=("temperature", "decision"), group="packages", doc=contract.INTERFACES_DOC)
 @hint("Two files in msg/, a field a line: type, space, name.", "builtin_interfaces/Time stamp stands first.")
 def test_definitions(workspace: Workspace) -> None:
     """Question 3: both messages have the fields of the contract."""
     expect_definitions(workspace)
 
 
-@check(points=1, holds="packages", group="packages", after=("definitions",), doc=contract.PACKAGES_DOC)
+@check(points=1, covers="packages", group="packages", after=("definitions",), doc=contract.PACKAGES_DOC)
 @hint("rosidl_generate_interfaces names both .msg files, and builtin_interfaces behind DEPENDENCIES.")
 @hint("console_scripts in setup.py: thermometer = motor_guard.thermometer:main, and so on.")
 def test_builds(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
@@ -42,7 +42,7 @@ def test_builds(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     expect(not missing, f"{imports.describe(missing)}: package.xml does not declare it.")
 
 
-@check(points=1, holds="formula", group="nodes", after=("builds",), doc=contract.NODES_DOC)
+@check(points=1, covers="formula", group="nodes", after=("builds",), doc=contract.NODES_DOC)
 @hint("super().__init__('thermometer'), a publisher and a timer.", "The first reading has the number 0.")
 def test_measures(start: Start) -> None:
     """Question 3: thermometer publishes its readings, also with another period, mean and swing."""
@@ -53,7 +53,7 @@ def test_measures(start: Start) -> None:
         harness.expect_readings(6, 0.25, 10.0, 2.0)
 
 
-@check(points=1, holds=("smoother", "window"), group="nodes", after=("builds",), doc=contract.NODES_DOC)
+@check(points=1, covers=("smoother", "window"), group="nodes", after=("builds",), doc=contract.NODES_DOC)
 @hint("deque(maxlen=window) forgets the oldest reading by itself.", "One average for each reading that is finite.")
 def test_smooths(start: Start) -> None:
     """Question 3: smoother publishes the mean of the newest finite readings, by its window, and the newest stamp."""
@@ -71,7 +71,7 @@ def test_smooths(start: Start) -> None:
     )
 
 
-@check(points=1, holds=("hysteresis", "unknown"), group="nodes", after=("builds",), doc=contract.NODES_DOC)
+@check(points=1, covers=("hysteresis", "unknown"), group="nodes", after=("builds",), doc=contract.NODES_DOC)
 @hint(
     "Remember the last decision in self.",
     "Between the two thresholds nothing changes.",
@@ -91,7 +91,7 @@ def test_decides(start: Start) -> None:
 
 @check(
     points=1,
-    holds=("launch", "hot-argument", "ctrl-c"),
+    covers=("launch", "hot-argument", "ctrl-c"),
     group="launch",
     after=("builds", "measures", "smooths", "decides"),
     doc=contract.LAUNCH_DOC,

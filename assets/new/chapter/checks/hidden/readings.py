@@ -11,7 +11,7 @@ check = group("readings")  # the points of this group count for the cell grade('
 NO_DISTANCE = (math.nan, math.inf, 0.0, 0.05, 3.9)  # failed, nothing there, and three outside of the lidar's range
 
 
-@check(points=2, holds="nearest")
+@check(points=2, covers="nearest")
 @hint("on_scan gets each scan. What it publishes is a Float32, whose number is called data.")
 def test_nearest(robot: Robot, draw: random.Random) -> None:
     """Of each scan, it publishes the smallest reading."""
@@ -20,7 +20,7 @@ def test_nearest(robot: Robot, draw: random.Random) -> None:
     expect_nearest(robot, readings, nearest)
 
 
-@check(points=2, holds="counts", after=("nearest",))
+@check(points=2, covers="counts", after=("nearest",))
 @hint("A comparison with nan is always false.")
 @hint("A reading counts if range_min <= reading <= range_max.")
 def test_counts(robot: Robot, draw: random.Random) -> None:
@@ -33,7 +33,7 @@ def test_counts(robot: Robot, draw: random.Random) -> None:
         expect_nearest(robot, [math.nan, limit], limit)
 
 
-@check(points=1, holds="silent", after=("nearest",))
+@check(points=1, covers="silent", after=("nearest",))
 @hint("min() of an empty list is an error, unless it has a default.")
 def test_silent(robot: Robot, draw: random.Random) -> None:
     """It publishes nothing if no reading counts."""

@@ -6,7 +6,7 @@ from autograder.checks.chNEW_CHAPTER.support.robot import Robot, expect_nearest
 check = group("readings")
 
 
-@check(points=1, holds="nearest")
+@check(points=1, covers="nearest")
 @hint("on_scan gets each scan. What it publishes is a Float32, whose number is called data.")
 def test_one_scan(robot: Robot) -> None:
     """It publishes the nearest reading of one scan."""

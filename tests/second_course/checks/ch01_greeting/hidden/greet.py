@@ -9,7 +9,7 @@ check = group("greet")
 NAMES = ("Karel", "Grace", "Unimate", "Elektro")
 
 
-@check(points=2, holds="greets")
+@check(points=2, covers="greets")
 @hint("An f-string puts a name into a text.")
 def test_greets(workspace: Workspace, draw: random.Random) -> None:
     """It greets each robot by its name."""
@@ -17,7 +17,7 @@ def test_greets(workspace: Workspace, draw: random.Random) -> None:
     expect_greeting(workspace, name, f"Hello, {name}!")
 
 
-@check(points=1, holds="strips", after=("greets",))
+@check(points=1, covers="strips", after=("greets",))
 @hint("str.strip() takes the spaces away.")
 def test_strips(workspace: Workspace, draw: random.Random) -> None:
     """It takes the spaces around a name away."""

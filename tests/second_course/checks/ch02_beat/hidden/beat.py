@@ -8,7 +8,7 @@ from autograder.checks.ch02_beat.support.beating import expect_beats
 check = group("beat")
 
 
-@check(points=3, holds="counts")
+@check(points=3, covers="counts")
 @hint("self.publisher.publish(UInt32(data=...))")
 def test_beats(workspace: Workspace, draw: random.Random) -> None:
     """It counts its beats."""
