@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path, PurePosixPath
 
 from autograder.notebook.written_record import digest, read_record
@@ -14,7 +14,9 @@ from autograder.submission.intake.notebooks import read_cells
 from autograder.submission.intake.writefile import same_text, written_file
 
 
-def differences(assignment: str, workspace: Path, packages: Sequence[str]) -> tuple[str, ...]:
+def differences(
+    assignment: str, workspace: Path, packages: Sequence[str], later: Collection[str] = ()
+) -> tuple[str, ...]:
     """Return a sentence for each file that differs from its cell.
 
     The saved notebook may be older than the cells on the screen. It is therefore only compared with files that no cell
@@ -24,13 +26,15 @@ def differences(assignment: str, workspace: Path, packages: Sequence[str]) -> tu
         assignment: the name of the chapter.
         workspace: the workspace, with `src`. The notebook is beside it.
         packages: the folders of `src` to compare.
+        later: files that are not compared, because they belong to a later exercise.
     """
     notebook = _notebook(workspace.resolve().parent, assignment)
     cells = {} if notebook is None else _texts(notebook)
     record = {PurePosixPath(name): value for name, value in read_record(workspace).items()}
     written = {path.relative_to("src"): value for path, value in record.items() if path.is_relative_to("src")}
     sentences = []
-    for path in sorted(p for p in cells.keys() | written.keys() if p.parts and p.parts[0] in packages):
+    compared = [path for path in cells.keys() | written.keys() if str(SOURCE / path) not in later]
+    for path in sorted(p for p in compared if p.parts and p.parts[0] in packages):
         file, cell, last = workspace / "src" / path, cells.get(path), written.get(path)
         is_answered = cell is not None and STILL_TO_BE_WRITTEN not in cell
         if not file.is_file():

@@ -38,6 +38,13 @@ class Part:
     name: str = ""
     exercises: tuple[Exercise, ...] = ()
 
+    @property
+    def later(self) -> frozenset[str]:
+        """The files of the exercises that come after this one in the notebook."""
+        names = [each.name for each in self.exercises]
+        after = self.exercises[names.index(self.name) + 1 :] if self.name in names else ()
+        return frozenset(file for each in after for file in each.files)
+
 
 @dataclass(frozen=True)
 class CheckReport:
@@ -205,7 +212,7 @@ def _report(part: Part, workspace: Path, answer: dict[str, Any], since: str = ""
     lines = tuple(structure(CheckResult, result) for result in answer["checks"])
     path = layout.judged_later(part.assignment)
     later = json.loads(path.read_text(encoding="utf-8")) if path.is_file() and not part.name else ()
-    notices = differences(part.assignment, workspace, answer["sources"])
+    notices = differences(part.assignment, workspace, answer["sources"], part.later)
     return CheckReport(part.assignment, lines, trouble, tuple(later), notices, part.name, since)
 
 

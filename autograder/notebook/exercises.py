@@ -10,13 +10,14 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import mistune
 
 from autograder import layout
 from autograder.exceptions import UsageError
+from autograder.submission.intake.writefile import written_file
 from autograder.suite.declaration import Check
 
 KINDS = ("exercise", "step", "question")
@@ -34,6 +35,7 @@ class Exercise:
         title: the rest of the heading.
         sentences: the ids of the requirements in it.
         groups: the groups of checks that the notebook's objectives assign only to this exercise.
+        files: the files that its cells write, such as `ws/src/robot/setup.py`.
     """
 
     kind: str
@@ -41,6 +43,7 @@ class Exercise:
     title: str
     sentences: tuple[str, ...] = ()
     groups: tuple[str, ...] = ()
+    files: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -104,6 +107,7 @@ def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]
             given.setdefault(group, set()).add(objective["exercise"])
     found: dict[str, Exercise] = {}
     sentences: dict[str, dict[str, Any]] = {}
+    files: dict[str, list[str]] = {}
     level, now = 0, ""
     for cell in cells:
         for depth, text in _headings(cell):
@@ -116,9 +120,11 @@ def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]
                 level, now = 0, ""
         if now:
             sentences.setdefault(now, {}).update(cell["metadata"].get("course", {}).get("contract", {}))
+            if cell["cell_type"] == "code" and (written := written_file("".join(cell["source"]))):
+                files.setdefault(now, []).append(written[0].as_posix())
     for name, each in found.items():
         if named := sentences.get(name):  # a question that a person grades has no requirements that a check could cover
-            yield Exercise(each.kind, each.number, each.title, tuple(named), each.groups)
+            yield replace(each, sentences=tuple(named), files=tuple(files.get(name, ())))
 
 
 def _headings(cell: Any) -> Iterator[tuple[int, str]]:

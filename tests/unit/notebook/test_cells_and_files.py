@@ -79,6 +79,12 @@ def test_a_cell_that_was_never_run_is_named(tmp_path: Path) -> None:
     assert write(tmp_path, "a = 1", None) == ("ws/src/robot/robot/node.py is missing: run the cell that writes it.",)
 
 
+@pytest.mark.parametrize("file", [None, "a = 0\n"])
+def test_a_file_of_a_later_exercise_is_not_compared(tmp_path: Path, file: str | None) -> None:
+    assert write(tmp_path, "a = 1", file) != ()
+    assert differences("02_nodes", tmp_path / "ws", ("robot",), later=(f"ws/{FILE}",)) == ()
+
+
 def test_a_package_that_is_not_checked_and_a_broken_notebook_say_nothing(tmp_path: Path) -> None:
     write(tmp_path, "a = 1", "a = 0\n")
     assert differences("02_nodes", tmp_path / "ws", ("other",)) == ()

@@ -87,6 +87,19 @@ def test_an_exercise_ends_with_the_next_heading_of_its_rank_and_no_heading_is_on
     assert exercises("x") == (Exercise("exercise", 1, "the only one", ("first", "second", "third")),)
 
 
+def test_the_files_of_the_exercises_after_a_part_in_the_notebook_are_later() -> None:
+    def later(exercise: int) -> set[str]:
+        names = part_of("05_parameters", exercise, None, None).later
+        return {name.rpartition("/")[2] for name in names}
+
+    assert [later(exercise) for exercise in (1, 2, 3)] == [
+        {"configured_node.py", "fleet_params.yaml"},
+        {"fleet_params.yaml"},
+        set(),
+    ]
+    assert part_of("05_parameters", None, None, None).later == frozenset()
+
+
 @pytest.mark.parametrize("text", ['{"cells": [{"cell_type": "mark', "[]", '{"cells": [1], "metadata": {}}'])
 def test_a_notebook_that_cannot_be_read_is_named(text: str, chapter: Path) -> None:
     chapter.write_text(text)
