@@ -87,7 +87,7 @@ class Student:
         cells: those of the released notebook.
         first: the code cells in front of the first one to write.
         exercises: a list for each heading: the code cells down to the last one to write, or that writes a given file.
-        check: the cell that runs the visible checks.
+        check: the cell that runs all visible checks.
     """
 
     def __init__(self, bundle: Path, chapter: Chapter) -> None:
@@ -96,7 +96,7 @@ class Student:
         self.cells: list[NotebookNode] = self.notebook.cells
         begins = next(index for index, cell in enumerate(self.cells) if is_solution(cell))
         self.first = [cell for cell in self.cells[:begins] if cell.cell_type == "code"]
-        self.check = next(cell for cell in self.cells if cell.source.startswith("check("))
+        self.check = next(cell for cell in self.cells if cell.source == f"check('{chapter.assignment}')")
         self.exercises: list[list[NotebookNode]] = [[]]
         for cell in self.cells[begins:]:
             if cell.cell_type == "markdown" and re.search("^## ", cell.source, re.MULTILINE):

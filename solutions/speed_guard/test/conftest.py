@@ -105,7 +105,7 @@ def domain():
 
 @pytest.fixture
 def context(domain):
-    """Give the test a context of its own in this domain; shut it down behind the test."""
+    """Give the test a context of its own in this domain; shut it down after the test."""
     context = Context()
     rclpy.init(context=context, domain_id=domain)
     yield context
@@ -114,7 +114,7 @@ def context(domain):
 
 @pytest.fixture
 def robot(context):
-    """Give the test a robot; end its nodes behind the test."""
+    """Give the test a robot; end its nodes after the test."""
     robot = Robot(context)
     yield robot
     robot.leave()

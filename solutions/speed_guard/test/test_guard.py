@@ -20,7 +20,7 @@ from rclpy.parameter import Parameter
 from speed_guard.guard import SpeedGuard
 
 PATIENT = 60.0  # s: nothing becomes old while a test runs
-# With HASTY, what has just come may be old already: machines are busy.
+# With HASTY, even a new distance may be old: the computer may be busy.
 HASTY = 0.1  # s
 
 

@@ -166,7 +166,7 @@ def test_errors_throttled(workspace: Workspace, draw: random.Random) -> None:
 @check(points=1, covers="fatal-log", after=("once_a_second", "counts"), doc=LOGGING)
 @hint("fatal only where the count is exactly max_errors + 1.", "It became unstable once.")
 def test_fatal_once(workspace: Workspace, draw: random.Random) -> None:
-    """That it became unstable is logged as fatal, once in each row of failures."""
+    """That it became unstable is logged as fatal, once in each series of failures."""
     with Robust(workspace, failure_probability=1.0, max_errors=3) as harness:
         harness.receive(3)
         early = logged(harness.output, "FATAL")

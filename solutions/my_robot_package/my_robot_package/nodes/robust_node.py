@@ -59,7 +59,7 @@ class RobustNode(Node):
         Declare the parameters, create the publisher (STATUS_QOS) and the timer (PERIOD).
 
         failure_probability: float, 0.1, from 0 to 1. seed: int, 0, from 0 to 2**31 - 1.
-        max_errors: int, 10, from 1 to 1000. The generator is the one that is handed in;
+        max_errors: int, 10, from 1 to 1000. The generator is the one that is passed in;
         without one it is random.Random(seed), and with the seed 0 random.Random(), which
         is different each time. kwargs are handed on to Node.
         """
