@@ -25,7 +25,7 @@ from autograder.harness import (
 from autograder.harness.drive import COMMAND_TOPICS, SCAN_SECONDS, SENSOR_TOPICS
 from autograder.harness.launch import LaunchHarness, RunningProgram
 from autograder.layout import solution_path, world_path
-from autograder.result.artifacts import Gallery
+from autograder.result.artifacts import Artifacts
 from autograder.run.sandbox import Process
 from autograder.run.time_record import LOCKSTEP, REAL
 from autograder.submission.exercise_stubs import STILL_TO_BE_WRITTEN, explain
@@ -41,11 +41,11 @@ __all__ = [
     "SCAN_SECONDS",
     "SENSOR_TOPICS",
     "STILL_TO_BE_WRITTEN",
+    "Artifacts",
     "AutoHarness",
     "CheckFailed",
     "CheckRow",
     "Diagnosis",
-    "Gallery",
     "Goal",
     "GraderError",
     "Harness",

@@ -24,7 +24,7 @@ import pytest
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import AutograderError, DoubtfulError, StudentError
 from autograder.grade.job import ALL, Scope
-from autograder.result.artifacts import Gallery
+from autograder.result.artifacts import Artifacts
 from autograder.result.model import CheckResult
 from autograder.run import patience
 from autograder.run.workspace import Workspace
@@ -38,7 +38,7 @@ class GradingPlugin:
     Args:
         workspace: the student's built workspace.
         seed: every hidden input of the run is drawn from it.
-        gallery: keeps the pictures; each check gets one of its own.
+        artifacts: saves the pictures; each check gets its own.
         builds: what became of each package, for checks of a build that may fail.
         scope: how much of the suite is run.
         last: whether no other try of this grading follows.
@@ -54,7 +54,7 @@ class GradingPlugin:
         self,
         workspace: Workspace,
         seed: int,
-        gallery: Gallery,
+        artifacts: Artifacts,
         builds: Mapping[str, Diagnosis] | None = None,
         scope: Scope = ALL,
         last: bool = False,
@@ -64,7 +64,7 @@ class GradingPlugin:
         self._scope = scope
         self._last = last
         self._seed = seed
-        self._gallery = gallery
+        self._artifacts = artifacts
         self.results: dict[str, CheckResult] = {}
         self.diagnosis: Diagnosis = OK
         self.failures: list[str] = []
@@ -98,10 +98,10 @@ class GradingPlugin:
         return random.Random(f"{self._seed}:{request.function.__name__}")
 
     @pytest.fixture
-    def gallery(self, request: pytest.FixtureRequest) -> Gallery:
+    def artifacts(self, request: pytest.FixtureRequest) -> Artifacts:
         """Keeps pictures for the feedback, under the running check's name."""
         check = check_of(request.function)
-        return self._gallery.of("" if check is None else check.id)
+        return self._artifacts.of("" if check is None else check.id)
 
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[Any]) -> None:
         check = _declared_by(item)

@@ -24,7 +24,7 @@ from autograder.exceptions import GraderError, StudentError
 from autograder.grade.job import Job
 from autograder.grade.plugin import GradingPlugin, run
 from autograder.grade.store import LOG, NOTEBOOK, RESULT
-from autograder.result.artifacts import Gallery
+from autograder.result.artifacts import Artifacts
 from autograder.result.model import Build, CheckResult, Result, Status, write_json
 from autograder.ros import activate
 from autograder.ros.domains import Domain
@@ -56,7 +56,7 @@ class Grading:
         # Without a network namespace, a domain of its own is the least that keeps two submissions apart.
         domain = 0 if job.tier is Tier.BUBBLEWRAP else Domain().number
         self._workspace = Workspace(job.scratch / "ws", activate(), home, domain=domain)
-        self._gallery = Gallery(job.out, disabled=not job.scope.pictures, recordings=job.scope.recordings)
+        self._artifacts = Artifacts(job.out, disabled=not job.scope.pictures, recordings=job.scope.recordings)
         self._phases: dict[str, float] = {}
         self._sha256 = _NO_DIGEST
         self._status = Status.UNCLEAR  # until what was handed in has been read
@@ -99,7 +99,7 @@ class Grading:
             seconds=round(time.monotonic() - began, 2),
             diagnosis=diagnosis,
             build=self._build,
-            artifacts=tuple(self._gallery.artifacts),
+            artifacts=tuple(self._artifacts.saved),
             status=self._status,
             phases=self._phases,
             notices=self._notices,
@@ -158,7 +158,7 @@ class Grading:
 
     def _check(self, results: dict[str, CheckResult]) -> Diagnosis:
         plugin = GradingPlugin(
-            self._workspace, self._job.seed, self._gallery, self._builds, self._job.scope, self._job.last
+            self._workspace, self._job.seed, self._artifacts, self._builds, self._job.scope, self._job.last
         )
         with self._phase("checks"):
             run(self._suite.files, plugin)

@@ -139,7 +139,7 @@ def _check(
     from autograder.grade.job import Scope
     from autograder.grade.plugin import GradingPlugin, run
     from autograder.notebook.exercises import Exercise, checks_of
-    from autograder.result.artifacts import Gallery
+    from autograder.result.artifacts import Artifacts
     from autograder.result.model import CheckResult
     from autograder.suite import Outcome, suites
 
@@ -170,7 +170,7 @@ def _check(
         for ids in filter(None, (early, others)):
             is_all = len(ids) == len(suite.checks)
             scope = Scope(only=() if is_all else suite.with_dependencies(*ids))
-            plugin = GradingPlugin(workspace, SEED, Gallery(out), observed.diagnoses, scope)
+            plugin = GradingPlugin(workspace, SEED, Artifacts(out), observed.diagnoses, scope)
             run(suite.files, plugin)
             if plugin.failures:
                 raise GraderError("\n".join(plugin.failures))

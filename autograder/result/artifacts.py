@@ -17,18 +17,18 @@ DPI = 96
 
 
 @dataclass(frozen=True)
-class Gallery:
+class Artifacts:
     """Saves the pictures of one check."""
 
     folder: Path  # folder that gets the pictures
     check: str = ""  # id of the check, the first part of the file names
     disabled: bool = False  # whether nothing is saved
     recordings: bool = False  # whether whole recordings are saved, too
-    # Records of the pictures that were saved. The galleries of all checks share this list.
-    artifacts: list[Artifact] = field(default_factory=list)
+    # Records of the pictures that were saved. The artifacts of all checks share this list.
+    saved: list[Artifact] = field(default_factory=list)
 
-    def of(self, check: str) -> Gallery:
-        """Return a gallery for another check, in the same folder."""
+    def of(self, check: str) -> Artifacts:
+        """Return the artifacts of another check, in the same folder."""
         return replace(self, check=check)
 
     def track(
@@ -68,4 +68,4 @@ class Gallery:
             recording.save(self.folder / f"{stem}.npz")
         run = f"{stem}.run.json"
         (self.folder / run).write_text(sim.view.encode(recording, caption, margins), encoding="utf-8")
-        self.artifacts.append(Artifact(f"{stem}.png", "track", recording.sha256(), self.check, caption, run))
+        self.saved.append(Artifact(f"{stem}.png", "track", recording.sha256(), self.check, caption, run))

@@ -1,15 +1,16 @@
-"""The contract of a chapter: the sentences of its notebook that oblige a student, each with an id.
+"""The contract of a chapter: the requirements that its notebook states, each with an id.
 
-A sentence stands where the student reads it. The metadata of its cell name it, or a part of it, word for word; a
-table's row has its bars, and a wrapped line is one line:
+A requirement is written where the student reads it. The metadata of its cell name it, or a part of it, word for word. A
+row of a table is named with its bars, and a wrapped line as one line:
 
     {"course": {"contract": {"stale-scan": "| the newest scan arrived more than 0.5 s ago, in ROS time | 0 | 0 |",
                              "keeps-pace": "always"},
                 "unchecked": {"keeps-pace": "why no check can cover it"},
-                "explains": ["- a row, a bullet or a docstring that obliges to nothing"]}}
+                "explains": ["- a row, a bullet or a docstring that requires nothing"]}}
 
-An id that stands in two cells is said twice; a list of texts is said in several sentences. A check names the ids that
-it covers. Feedback quotes the whole sentence or row, as it is read (`autograder.suite.quotation`).
+The same id in two cells is one requirement that is stated twice. A list of texts is a requirement in several sentences.
+A check names the ids that it covers. Feedback quotes the whole sentence or row, as it is read
+(`autograder.suite.quotation`).
 """
 
 from __future__ import annotations
@@ -24,11 +25,11 @@ from autograder.suite.quotation import quote
 
 
 @dataclass(frozen=True)
-class Sentence:
-    """A sentence that obliges a student.
+class Requirement:
+    """A requirement of a chapter.
 
     Attributes:
-        id: its name in its chapter.
+        id: its name in the chapter.
         text: the whole sentence, or the row of a table, as a student reads it.
         unchecked: why no check covers it. It is empty if checks do.
     """
@@ -38,30 +39,30 @@ class Sentence:
     unchecked: str = ""
 
 
-def contract(assignment: str) -> dict[str, Sentence]:
-    """Return the sentences of a chapter's contract by their ids, cell by cell.
+def contract(assignment: str) -> dict[str, Requirement]:
+    """Return a chapter's requirements by their ids, cell by cell.
 
     Raises:
         UsageError: there is no such chapter.
     """
     notebook = json.loads(layout.source_notebook(assignment).read_text(encoding="utf-8"))
-    return sentences(notebook["cells"])
+    return requirements(notebook["cells"])
 
 
 def counts(assignments: Iterable[str]) -> dict[str, int]:
-    """Return how many sentences the contracts of chapters have, and how many of them no check covers."""
-    found = [sentence for name in assignments for sentence in contract(name).values()]
-    return {"contract_sentences": len(found), "contract_unchecked": sum(bool(each.unchecked) for each in found)}
+    """Return how many requirements chapters have, and how many of them no check covers."""
+    every = [requirement for name in assignments for requirement in contract(name).values()]
+    return {"contract_sentences": len(every), "contract_unchecked": sum(bool(each.unchecked) for each in every)}
 
 
-def sentences(cells: Iterable[Mapping[str, Any]]) -> dict[str, Sentence]:
-    """Return the sentences that the metadata of a notebook's cells name. The first cell of an id counts."""
-    found: dict[str, Sentence] = {}
+def requirements(cells: Iterable[Mapping[str, Any]]) -> dict[str, Requirement]:
+    """Return the requirements that the metadata of a notebook's cells name. The first cell of an id counts."""
+    by_id: dict[str, Requirement] = {}
     for cell in cells:
         course = cell["metadata"].get("course", {})
         for name, texts in course.get("contract", {}).items():
             named = [texts] if isinstance(texts, str) else texts
             whole = dict.fromkeys(quote(cell, text) or text for text in named)
             unchecked = course.get("unchecked", {}).get(name, "")
-            found.setdefault(name, Sentence(name, " ".join(whole), unchecked))
-    return found
+            by_id.setdefault(name, Requirement(name, " ".join(whole), unchecked))
+    return by_id

@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from autograder.report import feedback
-from autograder.result.artifacts import Gallery
+from autograder.result.artifacts import Artifacts
 from autograder.result.model import Artifact, CheckResult, Result
 from autograder.suite import Check, Outcome
 from tests.browser.wall_run import keep_run
@@ -97,10 +97,10 @@ def test_consequences_unfold_below_their_cause(
 def test_the_run_of_a_failed_check_plays(
     page: Page, make_result: Callable[..., Result], tmp_path: Path, complaints: list[str], screenshots: Path
 ) -> None:
-    gallery = Gallery(tmp_path)
+    artifacts = Artifacts(tmp_path)
     for check in ("starts", "turns"):
-        keep_run(gallery, check)
-    path = feedback.write(make_result(artifacts=tuple(gallery.artifacts)), tmp_path)
+        keep_run(artifacts, check)
+    path = feedback.write(make_result(artifacts=tuple(artifacts.saved)), tmp_path)
     page.goto(f"{path.as_uri()}#t=2.5")
     player = page.locator("#run-turns-track")
     expect(player.locator("output")).to_have_text("2.50 s")  # of the failed check, not of the one that passed

@@ -15,7 +15,7 @@ from autograder.author.course.cells import metadata
 from autograder.author.course.findings import Finding
 from autograder.author.course.forms import Form, in_form
 from autograder.suite import Check
-from autograder.suite.contract import sentences
+from autograder.suite.contract import requirements
 from autograder.suite.quotation import quote
 
 
@@ -40,13 +40,14 @@ def broken_holding(
 
     `places` maps `VISIBILITY ID` of a check to its file and line. A check without one is attributed to the notebook.
     """
-    known = sentences(notebook.cells)
-    covered = {sentence for check in checks for sentence in check.covers}
-    for sentence in known.values():
-        if not sentence.unchecked and sentence.id not in covered:
-            yield Finding(name, None, f"no check covers the requirement {sentence.id!r}")
-        if sentence.unchecked and sentence.id in covered:
-            yield Finding(name, None, f"the requirement {sentence.id!r} is marked as unchecked, but a check covers it")
+    known = requirements(notebook.cells)
+    covered = {name for check in checks for name in check.covers}
+    for requirement in known.values():
+        if not requirement.unchecked and requirement.id not in covered:
+            yield Finding(name, None, f"no check covers the requirement {requirement.id!r}")
+        if requirement.unchecked and requirement.id in covered:
+            message = f"the requirement {requirement.id!r} is marked as unchecked, but a check covers it"
+            yield Finding(name, None, message)
     for check in checks:
         unknown = ", ".join(repr(each) for each in check.covers if each not in known)
         if unknown or not check.covers:

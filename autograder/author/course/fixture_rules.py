@@ -13,7 +13,7 @@ from autograder.author.course.findings import Finding
 from autograder.author.course.python_files import Function, PythonFile, declaration, decorators, literal, read_python
 from autograder.author.course.schema_sentences import meant
 
-OF_EVERY_CHAPTER = ("workspace", "builds", "seed", "draw", "gallery")  # of `autograder.grade.plugin`
+OF_EVERY_CHAPTER = ("workspace", "builds", "seed", "draw", "artifacts")  # of `autograder.grade.plugin`
 OF_PYTEST = ("request", "tmp_path", "tmp_path_factory", "monkeypatch", "capsys", "capfd", "caplog", "recwarn")
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from autograder.author.course.markdown_table import table
 from autograder.author.verification.mutants import Mutant, mutants
 from autograder.suite import Check, suites
-from autograder.suite.contract import Sentence, contract
+from autograder.suite.contract import Requirement, contract
 
 HEAD = """# The hidden checks and their mutants
 
@@ -29,17 +29,17 @@ def checks_page() -> str:
 
 def _chapter(name: str) -> list[str]:
     checks, flawed = suites.hidden(name).checks, mutants(name)
-    sentences = [_sentence(sentence, checks, flawed) for sentence in contract(name).values()]
-    return [*table(COLUMNS, _rows(checks, flawed)), f"### The requirements of {name}\n", *table(CONTRACT, sentences)]
+    requirements = [_requirement(each, checks, flawed) for each in contract(name).values()]
+    return [*table(COLUMNS, _rows(checks, flawed)), f"### The requirements of {name}\n", *table(CONTRACT, requirements)]
 
 
-def _sentence(sentence: Sentence, checks: Sequence[Check], flawed: Sequence[Mutant]) -> tuple[str, ...]:
+def _requirement(requirement: Requirement, checks: Sequence[Check], flawed: Sequence[Mutant]) -> tuple[str, ...]:
     """Return the row of a requirement."""
-    if sentence.unchecked:
-        return sentence.text, f"no check: {sentence.unchecked}", ""
-    covering = [check for check in checks if sentence.id in check.covers]
+    if requirement.unchecked:
+        return requirement.text, f"no check: {requirement.unchecked}", ""
+    covering = [check for check in checks if requirement.id in check.covers]
     broken_by = dict.fromkeys(m.id for check in covering for m in flawed if _fails(m, check))
-    return sentence.text, ", ".join(f"`{check.id}`" for check in covering), ", ".join(broken_by)
+    return requirement.text, ", ".join(f"`{check.id}`" for check in covering), ", ".join(broken_by)
 
 
 def _rows(checks: Sequence[Check], flawed: Sequence[Mutant]) -> Iterator[tuple[str, ...]]:

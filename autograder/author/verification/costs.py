@@ -37,7 +37,7 @@ class Cost:
         check: the check for which it was written.
         points: the points of that check.
         lost: all points that it loses.
-        sentences: ids of the requirements that the failed checks cover.
+        requirements: ids of the requirements that the failed checks cover.
         reason: why it loses more than `MAX_RATIO` times `points`; empty if it does not, or if there is no reason.
     """
 
@@ -46,7 +46,7 @@ class Cost:
     check: str
     points: float
     lost: float
-    sentences: tuple[str, ...]
+    requirements: tuple[str, ...]
     reason: str = ""
 
     @property
@@ -88,14 +88,14 @@ def report(costs: Sequence[Cost]) -> str:
 
 def _cells(cost: Cost) -> Iterator[str]:
     yield from (cost.assignment[:2], cost.mutant, cost.check, f"{cost.points:g}", f"{cost.lost:g}")
-    yield ", ".join(cost.sentences)
+    yield ", ".join(cost.requirements)
     yield cost.reason or ("**no reason**" if cost.is_expensive else "")
 
 
 def _cost(mutant: Mutant, result: Result) -> Cost:
     lost = [check for check in result.checks if check.outcome is not Outcome.PASSED]
     own = next(check for check in result.checks if check.id == mutant.check)
-    broken = {sentence: None for check in lost if check.outcome is Outcome.FAILED for sentence in check.holds}
+    broken = {name: None for check in lost if check.outcome is Outcome.FAILED for name in check.holds}
     cost = Cost(result.assignment, mutant.id, own.id, own.max_points, _points(lost), tuple(broken))
     return replace(cost, reason=_reason(mutant, result, own, lost)) if cost.is_expensive else cost
 

@@ -12,7 +12,7 @@ from autograder.report.feedback.pictures import Picture, read_picture
 from autograder.result.causes import Cause, causes, dearest
 from autograder.result.model import CheckResult, Result, Status
 from autograder.suite import Outcome
-from autograder.suite.contract import Sentence
+from autograder.suite.contract import Requirement
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ class PageView:
         return int(self.result.percent + 1e-9)
 
 
-def page_view(result: Result, folder: Path | None, contract: Mapping[str, Sentence] = {}) -> PageView:
+def page_view(result: Result, folder: Path | None, contract: Mapping[str, Requirement] = {}) -> PageView:
     """Return the content of the page of a result.
 
     Args:
@@ -149,8 +149,8 @@ def page_view(result: Result, folder: Path | None, contract: Mapping[str, Senten
 
     def view(check: CheckResult, cause: Cause | None = None, quoted: tuple[str, ...] = ()) -> CheckView:
         judged = check.outcome is Outcome.FAILED and check.message != result.diagnosis.sentence
-        held = check.holds if judged else ()  # a program that does not run breaks no particular requirement
-        sentences = dict.fromkeys(contract[name].text for name in held if name in contract)
+        covered = check.holds if judged else ()  # a program that does not run breaks no particular requirement
+        sentences = dict.fromkeys(contract[name].text for name in covered if name in contract)
         new = tuple(sentence for sentence in sentences if sentence not in quoted)
         plain = CheckView(check, new, tuple(pictures.get(check.id, ())))
         if cause is None:

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 from autograder import cli
 from autograder.exceptions import UsageError
-from autograder.result.artifacts import Gallery
+from autograder.result.artifacts import Artifacts
 from autograder.result.model import Result, write_json
 from sim import Command, Simulation, World, box, run
 
@@ -20,10 +20,10 @@ RECORDING = run(Simulation(World.from_segments(box(4.0, 3.0))), lambda state, sc
 @pytest.fixture
 def stored(make_result: Callable[..., Result], tmp_path: Path) -> Path:
     """The folder of a result with runs of two checks."""
-    gallery = Gallery(tmp_path)
+    artifacts = Artifacts(tmp_path)
     for check in ("starts", "turns"):
-        gallery.of(check).track("track", RECORDING, f"The run of {check}.")
-    write_json(tmp_path / "result.json", make_result(artifacts=tuple(gallery.artifacts)).to_json())
+        artifacts.of(check).track("track", RECORDING, f"The run of {check}.")
+    write_json(tmp_path / "result.json", make_result(artifacts=tuple(artifacts.saved)).to_json())
     return tmp_path
 
 

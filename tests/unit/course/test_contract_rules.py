@@ -10,7 +10,7 @@ from nbformat import NotebookNode
 from autograder.author.course.contract_rules import broken_contract
 from autograder.author.course.sync import chapters
 from autograder.suite import Check, Visibility, suites
-from autograder.suite.contract import contract, sentences
+from autograder.suite.contract import contract, requirements
 
 from .notebooks import code, notebook, prose, solution
 
@@ -40,20 +40,20 @@ def messages(book: NotebookNode, *checks: Check) -> list[str]:
 
 
 def test_a_table_row_is_quoted_with_its_heading_and_a_bullet_without_its_dash() -> None:
-    found = sentences(made().cells)
-    assert found["waits"].text == "no scan yet: speed 0, turn 0"
-    assert found["ends"].text == "It ends with exit status 0."
+    stated = requirements(made().cells)
+    assert stated["waits"].text == "no scan yet: speed 0, turn 0"
+    assert stated["ends"].text == "It ends with exit status 0."
 
 
 def test_a_complete_contract_has_no_findings() -> None:
     assert messages(made(), check("stops", "waits", "ends")) == []
 
 
-def test_a_sentence_without_a_check_is_found() -> None:
+def test_a_requirement_without_a_check_is_found() -> None:
     assert messages(made(), check("stops", "waits")) == ["no check covers the requirement 'ends'"]
 
 
-def test_a_check_without_a_sentence_is_found() -> None:
+def test_a_check_without_a_requirement_is_found() -> None:
     found = messages(made(), check("stops", "waits", "ends"), check("bare"), check("other", "flies"))
     assert found == [
         "the hidden check 'bare' covers no requirement",

@@ -12,7 +12,7 @@ import pytest
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.grade.job import ALL, Scope
 from autograder.grade.plugin import GradingPlugin, run
-from autograder.result.artifacts import Gallery
+from autograder.result.artifacts import Artifacts
 from autograder.ros import activate
 from autograder.run.workspace import Workspace
 from autograder.suite import Outcome
@@ -40,7 +40,7 @@ def grade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Grade:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(HEAD + textwrap.dedent(text))
         workspace = Workspace(tmp_path / "ws", activate(), tmp_path)
-        plugin = GradingPlugin(workspace, seed, Gallery(tmp_path / "out"), scope=scope, last=last)
+        plugin = GradingPlugin(workspace, seed, Artifacts(tmp_path / "out"), scope=scope, last=last)
         run((path,), plugin)
         return plugin
 
@@ -345,12 +345,12 @@ def test_a_test_that_declares_no_check_counts_for_nothing(grade: Grade) -> None:
     assert plugin.failures == []
 
 
-def test_a_check_gets_the_workspace_the_seed_and_a_separate_gallery(grade: Grade) -> None:
+def test_a_check_gets_the_workspace_the_seed_and_its_own_artifacts(grade: Grade) -> None:
     plugin = grade("""
         @check(points=1, group="g")
-        def test_it(workspace, seed, gallery):
+        def test_it(workspace, seed, artifacts):
             '''It is so.'''
-            expect(seed == 7 and gallery.check == "it" and workspace.install.name == "install", "wrong fixtures")
+            expect(seed == 7 and artifacts.check == "it" and workspace.install.name == "install", "wrong fixtures")
         """)
     assert _outcomes(plugin) == {"it": (Outcome.PASSED, 1.0)}
 
@@ -414,7 +414,7 @@ def test_checks_get_the_build_result_of_each_package(tmp_path: Path, monkeypatch
     )
     broken = Diagnosis(Kind.BUILD_FAILED, "It does not build.")
     workspace = Workspace(tmp_path / "ws", activate(), tmp_path)
-    plugin = GradingPlugin(workspace, 7, Gallery(tmp_path / "out"), {"good": OK, "bad": broken})
+    plugin = GradingPlugin(workspace, 7, Artifacts(tmp_path / "out"), {"good": OK, "bad": broken})
     run((path,), plugin)
     assert _outcomes(plugin) == {"builds": (Outcome.FAILED, 0.0), "reads": (Outcome.PASSED, 1.0)}
     assert plugin.diagnosis == broken

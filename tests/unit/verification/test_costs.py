@@ -54,7 +54,7 @@ def cost_of(
 
 def test_a_mutant_that_loses_little_needs_no_reason(make_result: MakeResult, monkeypatch: pytest.MonkeyPatch) -> None:
     cost = cost_of(make_result, monkeypatch, "turns", "edges")
-    assert (cost.points, cost.lost, cost.sentences) == (2.0, 3.0, ("near", "left", "edge"))
+    assert (cost.points, cost.lost, cost.requirements) == (2.0, 3.0, ("near", "left", "edge"))
     assert not cost.is_expensive
     assert costs.unexplained([cost]) == []
 

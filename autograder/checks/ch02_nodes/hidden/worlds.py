@@ -8,9 +8,9 @@ import random
 from autograder.checking import (
     COMMAND_TOPICS,
     SENSOR_TOPICS,
+    Artifacts,
     AutoHarness,
     CheckFailed,
-    Gallery,
     Workspace,
     drive,
     expect,
@@ -38,26 +38,26 @@ HINTS = (
 
 @check(points=3, covers=("near", "clear", "sector"), needs=TALKS, after=REACTS)
 @hint(*HINTS)
-def test_room(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
+def test_room(workspace: Workspace, draw: random.Random, artifacts: Artifacts) -> None:
     """It drives for a minute in a furnished room and touches nothing."""
-    _expect_safe_drive(workspace, world_generation.furnished_room(draw), draw, gallery)
+    _expect_safe_drive(workspace, world_generation.furnished_room(draw), draw, artifacts)
 
 
 @check(points=3, covers=("near", "clear", "sector"), needs=TALKS, after=REACTS)
 @hint(*HINTS)
-def test_pillars(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
+def test_pillars(workspace: Workspace, draw: random.Random, artifacts: Artifacts) -> None:
     """It drives for a minute in a hall of pillars and touches nothing."""
-    _expect_safe_drive(workspace, world_generation.hall_of_pillars(draw), draw, gallery)
+    _expect_safe_drive(workspace, world_generation.hall_of_pillars(draw), draw, artifacts)
 
 
 @check(points=3, covers=("near", "clear", "sector"), needs=TALKS, after=REACTS)
 @hint(*HINTS)
-def test_corridor(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
+def test_corridor(workspace: Workspace, draw: random.Random, artifacts: Artifacts) -> None:
     """It drives for a minute in a bent corridor and touches nothing."""
-    _expect_safe_drive(workspace, world_generation.bent_corridor(draw), draw, gallery)
+    _expect_safe_drive(workspace, world_generation.bent_corridor(draw), draw, artifacts)
 
 
-def _expect_safe_drive(workspace: Workspace, world: World, draw: random.Random, gallery: Gallery) -> None:
+def _expect_safe_drive(workspace: Workspace, world: World, draw: random.Random, artifacts: Artifacts) -> None:
     simulation = Simulation(world, (RobotSpec(radius=RADIUS),), seed=draw.randrange(2**31))
     with AutoHarness(workspace, PACKAGE, EXECUTABLE, publishes=SENSOR_TOPICS, subscribes=COMMAND_TOPICS) as harness:
         recording = drive(harness, simulation, SECONDS).recording
@@ -68,11 +68,11 @@ def _expect_safe_drive(workspace: Workspace, world: World, draw: random.Random, 
         what = _nearest(recording, when)
         sentence = f"It touched {what} at t = {when:.1f} s."
         caption = f"The robot's track in {world.name}. {sentence}"
-        gallery.track("track", recording, caption, mark=when, note=f"touches {what}", rules=rules)
+        artifacts.track("track", recording, caption, mark=when, note=f"touches {what}", rules=rules)
         raise CheckFailed(sentence, fraction=round(when / SECONDS, 2))
     path = _path_length(recording)
     caption = f"The robot's track in {world.name}: {path:.1f} m in {SECONDS:.0f} s, nothing touched."
-    gallery.track("track", recording, caption, rules=rules)
+    artifacts.track("track", recording, caption, rules=rules)
     expect(path >= MIN_PATH, f"It touched nothing, but drove only {path:.1f} m in a minute: it hardly moved.")
 
 

@@ -8,7 +8,7 @@ from random import Random
 
 import pytest
 
-from autograder.checking import CheckFailed, Gallery, Shared, Workspace, drive, expect, group, hint, temporal
+from autograder.checking import Artifacts, CheckFailed, Shared, Workspace, drive, expect, group, hint, temporal
 from autograder.checking.probes import calls, parameters
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, refusal
@@ -109,7 +109,7 @@ def test_start_threshold(configured: Configured) -> None:
 @check(points=3, covers="safety_distance", needs=("starts",), after=("overrides", "start_speed"))
 @hint("Look at the picture: where does it stand, and where should it?")
 @hint("Drive it yourself: drive(..., parameters={'safety_distance': 0.9, 'slow_distance': 1.4}).")
-def test_stops(configured: Configured, draw: Random, gallery: Gallery) -> None:
+def test_stops(configured: Configured, draw: Random, artifacts: Artifacts) -> None:
     """In the simulator, it drives up to a wall and stops at its safety distance."""
     recording = drive(configured.robot, _towards_a_wall(draw), SECONDS).recording
     ahead = (recording.simulation.world.bounds[2] - recording.poses[:, 0, 0]).tolist()
@@ -119,7 +119,7 @@ def test_stops(configured: Configured, draw: Random, gallery: Gallery) -> None:
         "gap > 0", recording.times.tolist(), {"gap": [x - configured.safety + NEAR for x in ahead]}
     )
     rules = {f"the distance to the wall, in m, is above {configured.safety - NEAR:.2f}": verdict}
-    gallery.track("track", recording, sentence, mark=SECONDS, note=f"{end:.2f} m", rules=rules)
+    artifacts.track("track", recording, sentence, mark=SECONDS, note=f"{end:.2f} m", rules=rules)
     if verdict.violated_at is not None:
         raise CheckFailed(f"It came nearer than {configured.safety} m at t = {verdict.violated_at:.1f} s. {sentence}")
     expect(end < configured.safety + NEAR, sentence, fraction=0.5 if ahead[0] - end > NEAR else 0.0)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from autograder.checking import LOCKSTEP, CheckFailed, Gallery, expect, group, hint, temporal
+from autograder.checking import LOCKSTEP, Artifacts, CheckFailed, expect, group, hint, temporal
 from autograder.checks.ch02_nodes.support.robot import describe_command
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden import tracks
@@ -36,7 +36,7 @@ PICTURE = ("Look at the picture: what did the lidar see at the marked instant, a
 
 @check(points=3, covers=("turn", "starts-turn"), needs=("build",), after=("drives", "turns"))
 @hint(*PICTURE)
-def test_touches_nothing(drives: Drives, driving: System, gallery: Gallery) -> None:
+def test_touches_nothing(drives: Drives, driving: System, artifacts: Artifacts) -> None:
     """It drives through a furnished room for twenty seconds and touches nothing."""
     driven = drives.room
     recording = driven.recording
@@ -45,9 +45,10 @@ def test_touches_nothing(drives: Drives, driving: System, gallery: Gallery) -> N
     if verdict.violated_at is not None:
         when = verdict.violated_at
         what = clearance(recording.simulation, state_at(recording, row_at(recording, when))).what
-        _fail(gallery, driven, f"It touched {what} at t = {when:.1f} s.", when, "touches", when / driven.seconds, rules)
+        sentence = f"It touched {what} at t = {when:.1f} s."
+        _fail(artifacts, driven, sentence, when, "touches", when / driven.seconds, rules)
     metres = float(tracks.path(recording)[-1])
-    _keep(gallery, driven, f"{metres:.1f} m in {driven.seconds:.0f} s, nothing touched.", rules)
+    _keep(artifacts, driven, f"{metres:.1f} m in {driven.seconds:.0f} s, nothing touched.", rules)
     speeds = tracks.speeds(recording)
     moving = speeds[speeds > STANDS]
     pace = min(SPEED, float(moving.mean())) if moving.size else 0.0
@@ -59,7 +60,7 @@ def test_touches_nothing(drives: Drives, driving: System, gallery: Gallery) -> N
 @check(points=2, covers=("more-room", "ends-turn"), needs=("build",), after=("drives", "turns"))
 @hint("A turn that has begun keeps its direction until the way is clear.")
 @hint("self.turn remembers it; the sides are compared only when a turn begins.")
-def test_keeps_its_mind(drives: Drives, gallery: Gallery) -> None:
+def test_keeps_its_mind(drives: Drives, artifacts: Artifacts) -> None:
     """It does not swing to and fro between left and right."""
     turned = False
     for driven in (drives.room, drives.corridor):
@@ -70,28 +71,28 @@ def test_keeps_its_mind(drives: Drives, gallery: Gallery) -> None:
         if verdict.violated_at is not None:
             when, rules = verdict.violated_at, {f"at most three changes of mind in {MEMORY:.0f} s": verdict}
             sentence = f"It changed its mind more than three times in {MEMORY:.0f} s, up to t = {when:.1f} s."
-            _fail(gallery, driven, sentence, when, "to and fro", when / driven.seconds, rules)
+            _fail(artifacts, driven, sentence, when, "to and fro", when / driven.seconds, rules)
     expect(turned, "It never turned, neither in a room nor in a corridor with a bend.")
 
 
 @check(points=3, covers=("drive", "more-room"), needs=("build",), after=("drives", "turns"))
 @hint("At the bend it has to turn towards the side with more room, and then drive on.")
 @hint("A robot that turns too far looks back to where it came from: a turn ends when the way is clear.")
-def test_gets_on(drives: Drives, driving: System, gallery: Gallery) -> None:
+def test_gets_on(drives: Drives, driving: System, artifacts: Artifacts) -> None:
     """It finds its way round the bend of a corridor."""
     driven = drives.corridor
     share = drives.share_of_corridor(driven.recording)
     caption = f"{100 * share:.0f} % of the way to the far end of the corridor in {driven.seconds:.0f} s."
     if share < 1.0:
-        _fail(gallery, driven, f"It came {caption}", driven.seconds, "no further", 0.9 * share)
-    _keep(gallery, driven, caption)
+        _fail(artifacts, driven, f"It came {caption}", driven.seconds, "no further", 0.9 * share)
+    _keep(artifacts, driven, caption)
     _expect_drive_between(driving)
 
 
 @check(points=3, covers="untrusted", needs=("build",), after=("drives", "stops"))
 @hint("Data older than data_timeout mean stop: how far does the robot get until it sees that they are old?")
 @hint("A clearance that is not valid means stop at once.")
-def test_stops_in_time(drives: Drives, driving: System, gallery: Gallery) -> None:
+def test_stops_in_time(drives: Drives, driving: System, artifacts: Artifacts) -> None:
     """When its lidar dies, or is blocked, it stands within 0.3 m, and stays where it is."""
     driven, rules = drives.faulty, {}
     metres = float(np.interp(DARK.start, driven.recording.times, tracks.path(driven.recording)))
@@ -109,15 +110,15 @@ def test_stops_in_time(drives: Drives, driving: System, gallery: Gallery) -> Non
                 f"the robot had driven {most:.2f} m since then and had not stopped."
             )
             fraction = 0.0 if trouble is DARK else 0.5
-            _fail(gallery, driven, sentence, verdict.violated_at, "still drives", fraction, rules)
+            _fail(artifacts, driven, sentence, verdict.violated_at, "still drives", fraction, rules)
     caption = "the lidar died and came back, was blocked and came free; the robot stood still meanwhile."
-    _keep(gallery, driven, caption, rules)
+    _keep(artifacts, driven, caption, rules)
     _expect_half_blind_stop(driving)
 
 
 @check(points=2, covers="drive", needs=("build",), after=("drives", "stops_in_time"))
 @hint("Look at the newest clearance every time: a stop is no state to be stuck in.")
-def test_drives_again(drives: Drives, gallery: Gallery) -> None:
+def test_drives_again(drives: Drives, artifacts: Artifacts) -> None:
     """Within 2 s of its lidar's return it drives again."""
     driven = drives.faulty
     times, speed = driven.recording.times, tracks.speeds(driven.recording)
@@ -128,7 +129,7 @@ def test_drives_again(drives: Drives, gallery: Gallery) -> None:
             sentence = (
                 f"The lidar was {trouble.name} until t = {trouble.end:.0f} s; {BACK_WITHIN:.0f} s later it still stood."
             )
-            _fail(gallery, driven, sentence, trouble.end, "could drive", 0.0 if trouble is DARK else 0.5)
+            _fail(artifacts, driven, sentence, trouble.end, "could drive", 0.0 if trouble is DARK else 0.5)
 
 
 def _expect_no_touch(system: System) -> None:
@@ -170,13 +171,13 @@ def _expect_drive_between(system: System) -> None:
 Rules = Mapping[str, temporal.Verdict]
 
 
-def _keep(gallery: Gallery, driven: Driven, caption: str, rules: Rules | None = None) -> None:
+def _keep(artifacts: Artifacts, driven: Driven, caption: str, rules: Rules | None = None) -> None:
     world = driven.recording.simulation.world.name
-    gallery.track("track", driven.recording, f"The robot's track in {world}: {caption}", rules=rules)
+    artifacts.track("track", driven.recording, f"The robot's track in {world}: {caption}", rules=rules)
 
 
 def _fail(
-    gallery: Gallery,
+    artifacts: Artifacts,
     driven: Driven,
     sentence: str,
     when: float,
@@ -185,7 +186,7 @@ def _fail(
     rules: Rules | None = None,
 ) -> None:
     world = driven.recording.simulation.world.name
-    gallery.track(
+    artifacts.track(
         "track",
         driven.recording,
         f"The robot's track in {world}. {sentence}",
