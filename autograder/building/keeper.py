@@ -27,7 +27,7 @@ from autograder.building.interfaces.prefix import identity
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.ros import find
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.cell import ended, in_cell
 from autograder.run.sandbox.limits import BUILD, GRADING_CELL, KEPT, RESULT_FILES, SOURCES
 from autograder.run.sandbox.parcel import (
@@ -46,7 +46,9 @@ _TICK = 0.25  # s between two looks whether a silent worker still runs
 _MARGIN = 60.0  # s for the start and the end of a worker that builds
 
 
-def attend(line: Connection, tier: Tier, is_over: Callable[[], bool]) -> tuple[dict[str, bytes], dict[str, Any]]:
+def attend(
+    line: Connection, isolation: Isolation, is_over: Callable[[], bool]
+) -> tuple[dict[str, bytes], dict[str, Any]]:
     """Serve a worker until it is done; return the files of its result, and its last message.
 
     It asks to have interface packages built, leaves its result, and may say that it is done. A worker that ends without
@@ -66,7 +68,7 @@ def attend(line: Connection, tier: Tier, is_over: Callable[[], bool]) -> tuple[d
             if message.get("do") == "result":
                 files = {entry.path: data for entry, data in receive_tree(line, RESULT_FILES).items()}
             elif message.get("do") == "build":
-                _answer(line, receive_tree(line, SOURCES), tier)
+                _answer(line, receive_tree(line, SOURCES), isolation)
             elif message.get("do") == "done":
                 return files, message
             else:
@@ -111,9 +113,9 @@ def key(sources: Mapping[Entry, bytes]) -> str:
     return digest.hexdigest()[:40]
 
 
-def _answer(line: Connection, sources: Mapping[Entry, bytes], tier: Tier) -> None:
+def _answer(line: Connection, sources: Mapping[Entry, bytes], isolation: Isolation) -> None:
     try:
-        with Cache.default(CACHE).use(key(sources), partial(_make_once, time.time(), sources, tier)) as entry:
+        with Cache.default(CACHE).use(key(sources), partial(_make_once, time.time(), sources, isolation)) as entry:
             built = read_tree(entry, KEPT)
     except StudentError as error:
         send_message(line, refused(error))
@@ -124,7 +126,7 @@ def _answer(line: Connection, sources: Mapping[Entry, bytes], tier: Tier) -> Non
         send_tree(line, built)
 
 
-def _make_once(asked: float, sources: Mapping[Entry, bytes], tier: Tier, entry: Path) -> None:
+def _make_once(asked: float, sources: Mapping[Entry, bytes], isolation: Isolation, entry: Path) -> None:
     """Fill a new entry, unless a limit has ended a build of it since somebody asked, at a time of the system's clock.
 
     Who brings the same sources meanwhile has waited for that build; to wait for another one would use up their time.
@@ -136,13 +138,13 @@ def _make_once(asked: float, sources: Mapping[Entry, bytes], tier: Tier, entry: 
             raise _refusal(told)
         note.unlink()
     try:
-        _make(sources, tier, entry)
+        _make(sources, isolation, entry)
     except StoppedBuildError as error:
         note.write_text(json.dumps({**refused(error), "ended": time.time()}))
         raise
 
 
-def _make(sources: Mapping[Entry, bytes], tier: Tier, entry: Path) -> None:
+def _make(sources: Mapping[Entry, bytes], isolation: Isolation, entry: Path) -> None:
     """Fill a new entry with what a worker in a cell of its own makes of some sources."""
     ours, theirs = Pipe()
 
@@ -152,7 +154,7 @@ def _make(sources: Mapping[Entry, bytes], tier: Tier, entry: Path) -> None:
     limits = replace(GRADING_CELL, wall_seconds=BUILD.wall_seconds + _MARGIN)
     with ours, ExitStack() as stack:
         with theirs:
-            process, _ = stack.enter_context(in_cell(command, tier, limits, pass_fds=(theirs.fileno(),)))
+            process, _ = stack.enter_context(in_cell(command, isolation, limits, pass_fds=(theirs.fileno(),)))
         try:
             send_tree(ours, sources)
             reply = receive_message(ours)

@@ -15,7 +15,7 @@ from autograder.cli.options import isolation_option, jobs_option, json_option
 from autograder.grade import DEFAULT_SEED
 from autograder.grade.batch import grade_all
 from autograder.result.model import write_json
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.suite import suites
 
 
@@ -46,7 +46,7 @@ def demo(jobs: int, isolation: str, json_file: Path | None) -> None:
                 seed=DEFAULT_SEED,
                 out=out,
                 jobs=jobs,
-                isolation=Tier(isolation),
+                isolation=Isolation(isolation),
                 on_result=progress.show,
             )
     write_json(out / "results.json", [result.to_json() for result in results])

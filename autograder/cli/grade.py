@@ -29,7 +29,7 @@ from autograder.report import feedback
 from autograder.report.export import load
 from autograder.report.export.earlier import EarlierMarks
 from autograder.result.model import Result, Status, write_json
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.suite import suites
 
 INTERRUPTED = 130  # the exit status of a shell after Ctrl-C
@@ -97,7 +97,8 @@ def grade(
     if dry_run:
         with find_submissions(paths, assignment, roster) as (submissions, all_fit):
             jobs_to_do = [
-                Job(path, assignment, name, seed, out / name, Tier(isolation)) for name, path in submissions.items()
+                Job(path, assignment, name, seed, out / name, Isolation(isolation))
+                for name, path in submissions.items()
             ]
             sys.exit(0 if _preview(jobs_to_do, resume) and all_fit else 1)
     with (
@@ -113,7 +114,7 @@ def grade(
                     seed=seed,
                     out=out,
                     jobs=jobs,
-                    isolation=Tier(isolation),
+                    isolation=Isolation(isolation),
                     resume=resume,
                     on_result=progress.show,
                     grade_each=grade_each,
@@ -160,7 +161,7 @@ def _preview(submissions: Sequence[Job], resume: bool) -> bool:
     for job in submissions:
         effect = _effect(job, resume)
         try:
-            preview = read_preview(job.path, job.assignment, job.tier)
+            preview = read_preview(job.path, job.assignment, job.isolation)
         except StudentError as error:
             rows.append((job.student, effect, "unclear", on_line(str(error))))
             all_clear = False

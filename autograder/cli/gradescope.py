@@ -9,7 +9,7 @@ import click
 from autograder.cli.options import isolation_option
 from autograder.cli.terminal import echo
 from autograder.lms.gradescope_autograder import write_autograder
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 
 
 @click.command()
@@ -26,5 +26,5 @@ def gradescope(assignment: str, out: Path, isolation: str) -> None:
 
     It contains the hidden checks and the reference. Gradescope builds an image from it and runs it for each submission.
     """
-    write_autograder(assignment, out, Tier(isolation))
+    write_autograder(assignment, out, Isolation(isolation))
     echo(f"{out}: upload it at Gradescope, under Configure Autograder")

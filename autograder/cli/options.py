@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from autograder.grade import DEFAULT_SEED
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 
 json_option = click.option(
     "--json", "json_file", type=click.Path(path_type=Path, dir_okay=False), help="Also write the results as JSON."
@@ -30,8 +30,8 @@ seed_option = click.option(
 )
 isolation_option = click.option(
     "--isolation",
-    type=click.Choice([tier.value for tier in Tier]),
-    default=Tier.BUBBLEWRAP.value,
+    type=click.Choice([isolation.value for isolation in Isolation]),
+    default=Isolation.BUBBLEWRAP.value,
     show_default=True,
     help="The isolation level of submissions. Use `process` only for code that you trust.",
 )

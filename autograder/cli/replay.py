@@ -19,7 +19,7 @@ from autograder.grade.pipeline import grade_submission
 from autograder.report import feedback
 from autograder.report.export.stored import load
 from autograder.result.model import Result, Status
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.suite import suites
 
 
@@ -54,7 +54,7 @@ def replay(stored: Path, check: str, submission: Path | None, mcap: bool, show: 
     folder = original.folder / "replay" / check
     with tempfile.TemporaryDirectory(prefix="replay-") as scratch:
         if submission is not None:
-            original = _grade_again(original, check, submission, Path(scratch), Tier(isolation), mcap)
+            original = _grade_again(original, check, submission, Path(scratch), Isolation(isolation), mcap)
         result = original.only(check) if original.status is Status.GRADED else original
         page = feedback.write(result, folder, artifacts=result.folder)
         echo(f"The run of {check!r}: {page}")
@@ -71,10 +71,12 @@ def _one(path: Path) -> Result:
     return results[0]
 
 
-def _grade_again(result: Result, check: str, submission: Path, out: Path, tier: Tier, recordings: bool) -> Result:
+def _grade_again(
+    result: Result, check: str, submission: Path, out: Path, isolation: Isolation, recordings: bool
+) -> Result:
     """Grade a check and its dependencies again with the seed of its result."""
     scope = Scope(only=suites.hidden(result.assignment).with_dependencies(check), recordings=recordings)
-    graded = grade_submission(Job(submission, result.assignment, result.student, result.seed, out, tier, scope))
+    graded = grade_submission(Job(submission, result.assignment, result.student, result.seed, out, isolation, scope))
     if graded.status is Status.GRADED and graded.submission_sha256 != result.submission_sha256:
         echo(f"Note: {submission} differs from the graded submission, so the run may differ.", err=True)
     return graded

@@ -13,7 +13,7 @@ from autograder.cli.terminal import echo
 from autograder.exceptions import UsageError
 from autograder.lms.serve.grading import Way
 from autograder.lms.serve.settings import read_settings
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 
 
 @click.command()
@@ -50,4 +50,4 @@ def serve(settings: Path, data: Path, jobs: int, check: bool, seed: int, isolati
             raise
         raise UsageError("serve needs JupyterHub, which is not installed here: run `make hub-setup`") from None
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(message)s")
-    service.serve(read, data, Way(jobs, seed, Tier(isolation)), service.address(os.environ))
+    service.serve(read, data, Way(jobs, seed, Isolation(isolation)), service.address(os.environ))

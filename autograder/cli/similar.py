@@ -18,7 +18,7 @@ from autograder.cli.terminal import echo, on_line
 from autograder.exceptions import AutograderError, StudentError, UsageError
 from autograder.grade.apart import code, read_code
 from autograder.result.model import write_json
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.submission.intake import read_submission
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def _codes(submissions: Mapping[str, Path], assignment: str) -> tuple[dict[str, 
     codes, all_read = {}, True
     for path, names in students.items():
         try:
-            codes[" + ".join(names)] = read_code(path, assignment, Tier.BUBBLEWRAP)
+            codes[" + ".join(names)] = read_code(path, assignment, Isolation.BUBBLEWRAP)
         except StudentError as error:
             echo(f"Not compared: {on_line(' + '.join(names))}: {on_line(error)}", err=True)
             all_read = False

@@ -27,7 +27,7 @@ from autograder.cli.options import isolation_option, jobs_option, json_option, s
 from autograder.cli.terminal import echo
 from autograder.cli.text_tables import score_text, table
 from autograder.result.model import Status, write_atomically, write_json
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.suite import suites
 from autograder.suite.contract import counts
 
@@ -112,7 +112,7 @@ def verify(
     }
     if not chosen and not any(mutants.values()):
         raise click.UsageError(f"there is no submission called {' or '.join(names)}")
-    with Progress(len(chosen)) as progress, WorkerPool(Tier(isolation), jobs) as workers:
+    with Progress(len(chosen)) as progress, WorkerPool(Isolation(isolation), jobs) as workers:
 
         def show(verdict: Verdict) -> None:
             progress.show(verdict.result, _name(verdict), _marks(verdict))

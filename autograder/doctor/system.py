@@ -20,7 +20,7 @@ from autograder.ros import find
 from autograder.ros.launch_packages import describe_launch
 from autograder.ros.patch_wheels import baked_files
 from autograder.run.sandbox import cgroup
-from autograder.run.sandbox.tiers import namespaces_failure
+from autograder.run.sandbox.isolation import namespaces_failure
 
 COMMAND_TIMEOUT_SECONDS = 60.0
 

@@ -56,7 +56,7 @@ def _result(data: bytes, job: Job, sha256: str) -> Result:
     suite, graded = job.suite, result.status is Status.GRADED
     versions, theirs = (suite.version, suite.files_digest), (result.suite_version, result.files_digest)
     found = (result.assignment, result.student, *theirs, result.seed, result.isolation, result.max_score)
-    wanted = (suite.assignment, job.student, *versions, job.seed, job.tier.value, suite.max_score)
+    wanted = (suite.assignment, job.student, *versions, job.seed, job.isolation.value, suite.max_score)
     if found != wanted:
         raise AnswerError(f"a worker graded {found} instead of {wanted}")
     if graded and sha256 and result.submission_sha256 not in (sha256, _UNREAD):

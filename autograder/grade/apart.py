@@ -20,7 +20,7 @@ from autograder.exceptions import AutograderError, StudentError
 from autograder.grade.bounded_json import RESULT_VALUES, read_json
 from autograder.plain_text import clean
 from autograder.result.model import structure
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.cell import run_in_cell
 from autograder.run.sandbox.limits import READING_CELL
 from autograder.run.sandbox.spec import View
@@ -50,24 +50,24 @@ class Preview:
     unused: tuple[str, ...]  # files that play no part
 
 
-def read_digests(path: Path, assignment: str, tier: Tier) -> Digests | None:
+def read_digests(path: Path, assignment: str, isolation: Isolation) -> Digests | None:
     """Return the digests of a submission, None if it cannot be read."""
     try:
-        found: Digests = structure(Digests, _read("digests", path, assignment, tier))
+        found: Digests = structure(Digests, _read("digests", path, assignment, isolation))
     except (OSError, AutograderError):
         return None
     return found
 
 
-def read_preview(path: Path, assignment: str, tier: Tier) -> Preview:
+def read_preview(path: Path, assignment: str, isolation: Isolation) -> Preview:
     """Return what counts of a submission. Raises StudentError if it cannot be read, or is unclear."""
-    found: Preview = structure(Preview, _read("preview", path, assignment, tier))
+    found: Preview = structure(Preview, _read("preview", path, assignment, isolation))
     return found
 
 
-def read_code(path: Path, assignment: str, tier: Tier) -> str:
+def read_code(path: Path, assignment: str, isolation: Isolation) -> str:
     """Return the Python of a submission, `MAX_CODE` characters at most. Raises StudentError if it cannot be read."""
-    return str(_read("code", path, assignment, tier))
+    return str(_read("code", path, assignment, isolation))
 
 
 def code(submission: Submission) -> str:
@@ -100,8 +100,8 @@ READERS: dict[str, Callable[[Submission], Any]] = {
 }
 
 
-def _read(reader: str, path: Path, assignment: str, tier: Tier) -> Any:
-    if os.geteuid() == 0 and tier is Tier.BUBBLEWRAP and path.exists():
+def _read(reader: str, path: Path, assignment: str, isolation: Isolation) -> Any:
+    if os.geteuid() == 0 and isolation is Isolation.BUBBLEWRAP and path.exists():
         return _in_cell(reader, path.resolve(), assignment)
     return READERS[reader](intake.read_submission(path, assignment))
 
@@ -110,7 +110,7 @@ def _in_cell(reader: str, path: Path, assignment: str) -> Any:
     command = [sys.executable, "-m", "autograder.grade.apart", reader, str(path), assignment]
     chapter = layout.CHAPTERS / assignment  # a course directory of nbgrader may have others
     view = View(shown=(chapter,) if chapter.is_dir() else (), submitted=(path,))
-    report = run_in_cell(lambda scratch: command, Tier.BUBBLEWRAP, READING_CELL, view=view)
+    report = run_in_cell(lambda scratch: command, Isolation.BUBBLEWRAP, READING_CELL, view=view)
     try:
         answer = read_json(report.output.rpartition("\n")[2].encode(), RESULT_VALUES)
         if "refused" in answer:
@@ -126,7 +126,7 @@ def main() -> None:
     reader, path, assignment = sys.argv[1:]
     answer: dict[str, Any]
     try:
-        answer = {"read": _read(reader, Path(path), assignment, Tier.PROCESS)}
+        answer = {"read": _read(reader, Path(path), assignment, Isolation.PROCESS)}
     except StudentError as error:
         answer = {"refused": asdict(error.diagnosis)}
     sys.stdout.buffer.write(json.dumps(answer, ensure_ascii=False).encode("utf-8", "backslashreplace"))

@@ -15,7 +15,7 @@ from autograder.grade.pipeline import grade_submission
 from autograder.grade.store import LOG, NOTEBOOK, RESULT, remove_unfinished, write_result
 from autograder.result.class_folder import why_not_a_folder
 from autograder.result.model import Result, Status, from_json
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.submission.intake.exercises import exercises_of
 from autograder.submission.intake.ignored import is_ignored
 from autograder.submission.intake.names import is_archive, is_notebook, stem
@@ -99,7 +99,7 @@ def grade_all(
     seed: int,
     out: Path,
     jobs: int,
-    isolation: Tier = Tier.BUBBLEWRAP,
+    isolation: Isolation = Isolation.BUBBLEWRAP,
     resume: bool = False,
     on_result: OnResult = lambda result: None,
     grade_each: GradeEach | None = None,
@@ -114,7 +114,7 @@ def grade_all(
         seed: every hidden input is drawn from it, the same for all.
         out: the folder of the results.
         jobs: how many are graded at once; the results do not depend on it.
-        isolation: the sandbox's tier.
+        isolation: The isolation level.
         resume: keep a stored result whose submission, suite, seed and isolation are the same.
         on_result: called for each result as it comes, in any order.
         grade_each: grades them in place of `jobs` workers of this machine.
@@ -158,7 +158,7 @@ def stored(job: Job) -> Result | None:
         return None
     digest = job.digests and job.digests.sha256
     found = (result.student, result.submission_sha256, result.suite_version, result.seed, result.isolation)
-    same = found == (job.student, digest, job.suite.version, job.seed, job.tier.value)
+    same = found == (job.student, digest, job.suite.version, job.seed, job.isolation.value)
     return result if same and result.status is Status.GRADED else None
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from autograder.grade.apart import Digests, read_digests
 from autograder.result.model import structure
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.limits import GRADING_CELL
 from autograder.suite import suites
 from autograder.suite.suites import Suite
@@ -39,7 +39,7 @@ class Job:
     seed: int  # every hidden input is drawn from it; the same seed gives the same inputs
     # The folder that gets `result.json`, `notebook.ipynb` and the pictures; `grader.log` if the grader failed.
     out: Path
-    tier: Tier = Tier.BUBBLEWRAP  # how the submission is isolated
+    isolation: Isolation = Isolation.BUBBLEWRAP  # how the submission is isolated
     scope: Scope = ALL  # how much of the suite is run
     seconds: float = GRADING_CELL.wall_seconds  # real time for all of it: a second grading has what the first has left
     # Who starts the worker sets the rest.
@@ -55,7 +55,7 @@ class Job:
     @cached_property
     def digests(self) -> Digests | None:
         """The digests of what was handed in, None if it cannot be read. What they are of is not kept."""
-        return read_digests(self.path, self.assignment, self.tier)
+        return read_digests(self.path, self.assignment, self.isolation)
 
     def to_json(self) -> str:
         """Return the job as one line of JSON."""

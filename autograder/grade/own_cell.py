@@ -25,16 +25,16 @@ def in_own_cell(job: Job) -> CellReport:
     ours, theirs = Pipe()
 
     def command(scratch: Path) -> list[str]:
-        path = place_of(job.path, job.tier, scratch)
+        path = place_of(job.path, job.isolation, scratch)
         return _worker(replace(job, path=path, scratch=scratch, out=scratch / "out"), theirs.fileno())
 
     limits = replace(GRADING_CELL, wall_seconds=job.seconds + GRACE)
     with ours, ExitStack() as stack:
         with theirs:
-            cell = in_cell(command, job.tier, limits, view=view(job), pass_fds=(theirs.fileno(),))
+            cell = in_cell(command, job.isolation, limits, view=view(job), pass_fds=(theirs.fileno(),))
             process, _ = stack.enter_context(cell)
         try:
-            files, _ = attend(ours, job.tier, lambda: process.ending is not None)
+            files, _ = attend(ours, job.isolation, lambda: process.ending is not None)
             return replace(ended(process), files=files)
         except ParcelError as error:
             process.kill()

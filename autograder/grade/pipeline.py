@@ -50,7 +50,7 @@ def grade_submission(job: Job, run_job: RunJob = in_own_cell) -> Result:
     suites.hidden(job.assignment)
     if not job.path.exists():
         raise UsageError(f"{job.path}: there is no such file or folder")
-    require(job.tier)
+    require(job.isolation)
     job.out.mkdir(parents=True, exist_ok=True)
     job, budget = replace(job, path=job.path.resolve()), Budget(job.seconds)
     with _machine.shared():
@@ -128,7 +128,7 @@ def refused(job: Job, diagnosis: Diagnosis) -> Result:
         files_digest=suite.files_digest,
         launch=describe_launch(),
         seed=job.seed,
-        isolation=job.tier.value,
+        isolation=job.isolation.value,
         checks=tuple(CheckResult.not_checked(check, diagnosis.sentence) for check in suite.checks),
         max_score=suite.max_score,
         started=datetime.now(timezone.utc).isoformat(timespec="seconds"),

@@ -31,10 +31,10 @@ from autograder.ros.domains import Domain
 from autograder.ros.launch_packages import describe_launch
 from autograder.run import patience
 from autograder.run.sandbox import line
+from autograder.run.sandbox.isolation import Isolation
 from autograder.run.sandbox.launcher import restore_sigint
 from autograder.run.sandbox.limits import RESULT_FILES
 from autograder.run.sandbox.parcel import send_message, send_tree
-from autograder.run.sandbox.tiers import Tier
 from autograder.run.sandbox.trees import read_tree
 from autograder.run.time_record import REAL
 from autograder.run.workspace import Workspace
@@ -54,7 +54,7 @@ class Grading:
         home = job.scratch / "home"
         home.mkdir(parents=True)
         # Without a network namespace, a domain of its own is the least that keeps two submissions apart.
-        domain = 0 if job.tier is Tier.BUBBLEWRAP else Domain().number
+        domain = 0 if job.isolation is Isolation.BUBBLEWRAP else Domain().number
         self._workspace = Workspace(job.scratch / "ws", activate(), home, domain=domain)
         self._artifacts = Artifacts(job.out, disabled=not job.scope.pictures, recordings=job.scope.recordings)
         self._phases: dict[str, float] = {}
@@ -89,7 +89,7 @@ class Grading:
             files_digest=self._suite.files_digest,
             launch=describe_launch(),
             seed=self._job.seed,
-            isolation=self._job.tier.value,
+            isolation=self._job.isolation.value,
             checks=tuple(
                 results.get(check.id) or CheckResult.not_checked(check, diagnosis.sentence)
                 for check in self._suite.checks

@@ -14,7 +14,7 @@ from pathlib import Path
 from autograder import layout
 from autograder.author.course.release import copy_course, copy_tool
 from autograder.exceptions import UsageError
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.suite import suites
 
 SCRIPTS = layout.ROOT / "assets" / "gradescope"  # both are executable, also in the zip
@@ -22,8 +22,8 @@ SCRIPTS = layout.ROOT / "assets" / "gradescope"  # both are executable, also in 
 COPIED = ("autograder", "sim", "assets", "pyproject.toml", "requirements.lock", "Makefile")
 
 
-def write_autograder(assignment: str, out: Path, tier: Tier) -> None:
-    """Write the zip `out`, which grades an assignment on Gradescope with the isolation level `tier`.
+def write_autograder(assignment: str, out: Path, isolation: Isolation) -> None:
+    """Write the zip `out`, which grades an assignment on Gradescope with the isolation level `isolation`.
 
     Raises UsageError if the assignment has no hidden checks, or if `out` already exists.
     """
@@ -35,7 +35,11 @@ def write_autograder(assignment: str, out: Path, tier: Tier) -> None:
         copy_tool(COPIED, folder / "course")
         copy_course(layout.course().parts, folder / "course")
         for script in SCRIPTS.iterdir():
-            text = script.read_text(encoding="utf-8").replace("ASSIGNMENT", assignment).replace("ISOLATION", tier.value)
+            text = (
+                script.read_text(encoding="utf-8")
+                .replace("ASSIGNMENT", assignment)
+                .replace("ISOLATION", isolation.value)
+            )
             shutil.copy2(script, folder)
             (folder / script.name).write_text(text, encoding="utf-8")
         with zipfile.ZipFile(out, "x", zipfile.ZIP_DEFLATED) as archive:

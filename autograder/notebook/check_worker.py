@@ -26,8 +26,8 @@ from autograder.result.model import structure, write_json
 from autograder.ros import activate
 from autograder.ros.domains import Domain
 from autograder.run.sandbox import line
-from autograder.run.sandbox.launcher import current_tier, restore_sigint
-from autograder.run.sandbox.tiers import Tier
+from autograder.run.sandbox.isolation import Isolation
+from autograder.run.sandbox.launcher import current_isolation, restore_sigint
 from autograder.submission import intake
 from autograder.submission.reading import reading
 
@@ -49,7 +49,7 @@ def main() -> None:
     scratch, out = Path(request["scratch"]), Path(request["out"])
     home = scratch / "home"
     home.mkdir(parents=True)
-    domain = 0 if current_tier() is Tier.BUBBLEWRAP else Domain().number
+    domain = 0 if current_isolation() is Isolation.BUBBLEWRAP else Domain().number
     workspace = Workspace(scratch / "ws", ros, home, domain=domain)
     try:
         _fill(workspace, Path(request["source"]), request["arguments"])

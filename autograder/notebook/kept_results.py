@@ -26,7 +26,7 @@ from autograder.result.model import structure, write_json
 from autograder.ros import find
 from autograder.ros.environment import LOGS_TO_STDOUT, path_with_scripts, without_wheel_bootstrap
 from autograder.ros.launch_packages import describe_launch
-from autograder.run.sandbox import best_tier
+from autograder.run.sandbox import best_isolation
 from autograder.run.sandbox.cell import passed_variables
 from autograder.suite import fingerprint
 
@@ -175,7 +175,7 @@ def _environment() -> Mapping[str, Any]:
         "installed": sorted(installed),
         "launch": describe_launch(),
         "system": os.uname()[::2],
-        "tier": best_tier().value,
+        "isolation": best_isolation().value,
         "variables": kept,
     }
 

@@ -14,7 +14,7 @@ from typing import Any
 from autograder import layout
 from autograder.building import keeper
 from autograder.exceptions import GraderError, UsageError
-from autograder.run.sandbox import Tier, best_tier
+from autograder.run.sandbox import Isolation, best_isolation
 from autograder.run.sandbox.cell import ended, in_cell, place_of
 from autograder.run.sandbox.limits import NOTEBOOK_CELL
 from autograder.run.sandbox.spec import View
@@ -59,20 +59,25 @@ def run_in_worker(
     source = workspace / "src"
     if not source.is_dir():
         raise UsageError(f"there is no folder {source}: run this in the assignment's folder, which contains ws/src")
-    with run_on(source.resolve(), best_tier(), verb, early=early, **arguments) as reply:
+    with run_on(source.resolve(), best_isolation(), verb, early=early, **arguments) as reply:
         yield reply
 
 
 @contextmanager
 def run_on(
-    source: Path, tier: Tier, verb: str, *, early: Callable[[dict[str, Any]], None] | None = None, **arguments: Any
+    source: Path,
+    isolation: Isolation,
+    verb: str,
+    *,
+    early: Callable[[dict[str, Any]], None] | None = None,
+    **arguments: Any,
 ) -> Iterator[tuple[dict[str, Any], Path]]:
-    """Do as `run_in_worker` in a tier. `source` is a source tree, or, for a check, an answer as it was handed in."""
+    """Do as `run_in_worker` at an isolation level. `source` is a source tree or, for a check, a whole submission."""
     ours, theirs = Pipe()
     with tempfile.TemporaryDirectory(prefix="request-") as folder, ours:
 
         def command(scratch: Path) -> list[str]:
-            place = place_of(source, tier, scratch)
+            place = place_of(source, isolation, scratch)
             request = {"verb": verb, "source": place, "out": folder, "scratch": scratch}
             request["arguments"] = arguments
             file = Path(folder) / REQUEST  # a large map does not fit on a command line
@@ -83,11 +88,11 @@ def run_on(
         if source.is_file():
             visible_paths.append(layout.chapter(arguments["assignment"]))  # from which its reader knows what was given
         view = View(shown=tuple(visible_paths), submitted=(source,), writable=(Path(folder),))
-        with theirs, in_cell(command, tier, NOTEBOOK_CELL, view=view, pass_fds=(theirs.fileno(),)) as (process, _):
+        with theirs, in_cell(command, isolation, NOTEBOOK_CELL, view=view, pass_fds=(theirs.fileno(),)) as (process, _):
             theirs.close()  # once the worker has ended, nobody holds its end
             tell = _Early(Path(folder) / EARLY_FILE, early)
             # It asks for interface packages. Between its questions, it is looked after.
-            keeper.attend(ours, tier, lambda: tell.has_looked() and process.ending is not None)
+            keeper.attend(ours, isolation, lambda: tell.has_looked() and process.ending is not None)
             report = ended(process)
         reply = Path(folder) / REPLY_FILE
         if report.returncode != 0 or not reply.is_file():

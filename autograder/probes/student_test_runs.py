@@ -35,8 +35,8 @@ from autograder.probes.rtps_sniffer import RtpsSniffer
 from autograder.probes.student_test_reports import MAX_BYTES, Claims, Report, Source, TestRun, parse_claims
 from autograder.probes.versions import write_version
 from autograder.ros.domains import Domain
-from autograder.run.sandbox import Limits, Mount, Process, Sandbox, Tier
-from autograder.run.sandbox.launcher import current_tier, launch
+from autograder.run.sandbox import Isolation, Limits, Mount, Process, Sandbox
+from autograder.run.sandbox.launcher import current_isolation, launch
 from autograder.run.sandbox.limits import TEST_RUN
 from autograder.run.workspace import Workspace
 from autograder.submission.intake import read_packages
@@ -105,7 +105,7 @@ def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = TEST_RUN, 
 def _run(workspace: Workspace, source: Source, wanted: TestRun) -> Report:
     try:
         with TemporaryDirectory(prefix="tests-", dir=workspace.root.parent, ignore_cleanup_errors=True) as place:
-            if current_tier() is Tier.BUBBLEWRAP:
+            if current_isolation() is Isolation.BUBBLEWRAP:
                 return _run_in(Path(place), workspace, source, wanted)
             with Domain() as domain:  # its runs are in one network
                 return _run_in(Path(place), replace(workspace, domain=domain.number), source, wanted)
@@ -141,7 +141,7 @@ def _run_in(place: Path, workspace: Workspace, source: Source, wanted: TestRun) 
 
 def _confined(workspace: Workspace, folder: Path, wanted: TestRun, home: Path) -> Sandbox:
     """Describe the sandbox of one run: nothing in it can be written to but its own /tmp, where there is one."""
-    if current_tier() is Tier.BUBBLEWRAP:
+    if current_isolation() is Isolation.BUBBLEWRAP:
         spec = sandboxed(replace(workspace, scratch=HOME), folder, HOST, network=wanted.sniffed)
         return replace(spec, workdir=folder, mounts=tuple(mount for mount in spec.mounts if mount.path != HOME))
     home.mkdir(parents=True)

@@ -19,7 +19,7 @@ from autograder.grade.cluster.task import Reply, Task
 from autograder.grade.job import Job
 from autograder.grade.pipeline import refused
 from autograder.result.model import Result
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.submission.intake import detect_layout
 
 ASSIGNMENT = "02_nodes"
@@ -52,7 +52,7 @@ def _job(folder: Path, number: int) -> Job:
     source.mkdir(parents=True)
     (source / "package.xml").write_text(str(number))
     (source / "node.py").write_text(SOURCE)
-    return Job(source.parents[1], ASSIGNMENT, str(number), 7, folder / "out" / str(number), Tier.PROCESS)
+    return Job(source.parents[1], ASSIGNMENT, str(number), 7, folder / "out" / str(number), Isolation.PROCESS)
 
 
 def _answered(pauses: Sequence[float], data: bytes) -> bytes:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from autograder.layout import ROOT
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.cell import run_in_cell
 
 STEPS = 2000
@@ -49,7 +49,7 @@ except KeyboardInterrupt:
 
 def figures() -> dict[str, float]:
     """Return `lockstep.steps_per_s` and `lockstep.three_programs_steps_per_s`, each the median of several runs."""
-    report = run_in_cell(lambda scratch: [sys.executable, "-c", RUN, str(scratch)], Tier.BUBBLEWRAP)
+    report = run_in_cell(lambda scratch: [sys.executable, "-c", RUN, str(scratch)], Isolation.BUBBLEWRAP)
     if report.returncode != 0:
         raise RuntimeError(report.output)
     rates = json.loads(report.output.splitlines()[-1])

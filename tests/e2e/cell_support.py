@@ -25,7 +25,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, TextIO
 
-from autograder.run.sandbox import Process, Tier, cell
+from autograder.run.sandbox import Isolation, Process, cell
 from autograder.run.sandbox.limits import PROOF_CELL
 from autograder.run.sandbox.spec import View
 
@@ -34,17 +34,17 @@ _MARK = "answer: "
 _VIEW = View(shown=(ROOT,))  # the tests, and what they grade
 
 
-def in_cell(function: Callable[..., Any], *arguments: Any, tier: Tier = Tier.BUBBLEWRAP) -> Any:
+def in_cell(function: Callable[..., Any], *arguments: Any, isolation: Isolation = Isolation.BUBBLEWRAP) -> Any:
     """Run `function(scratch, *arguments)` in a cell; return its answer, which crosses as JSON.
 
     Args:
         function: a function of a test module.
         arguments: what JSON can hold.
-        tier: of the cell; any but bubblewrap gets a cell of its own.
+        isolation: of the cell; any but bubblewrap gets a cell of its own.
     """
     piece = _piece(function, arguments)
-    if tier is not Tier.BUBBLEWRAP:
-        report = cell.run_in_cell(lambda scratch: [*_PROGRAM, piece, str(scratch)], tier, view=_VIEW)
+    if isolation is not Isolation.BUBBLEWRAP:
+        report = cell.run_in_cell(lambda scratch: [*_PROGRAM, piece, str(scratch)], isolation, view=_VIEW)
         status, said = report.returncode, report.output
     else:
         status, said = _shared_cell().run(piece)
@@ -58,7 +58,7 @@ def in_cell(function: Callable[..., Any], *arguments: Any, tier: Tier = Tier.BUB
 def started_in_cell(function: Callable[..., Any], *arguments: Any) -> Iterator[Process]:
     """Start `function(scratch, *arguments)` in a cell of its own, and end it with the block."""
     command = [*_PROGRAM, _piece(function, arguments)]
-    with cell.in_cell(lambda scratch: [*command, str(scratch)], Tier.BUBBLEWRAP, view=_VIEW) as (process, _):
+    with cell.in_cell(lambda scratch: [*command, str(scratch)], Isolation.BUBBLEWRAP, view=_VIEW) as (process, _):
         yield process
 
 
@@ -93,7 +93,7 @@ class _SharedCell:
             fd = theirs.fileno()
             command = [*_PROGRAM, "serve", str(fd)]
             made = cell.in_cell(
-                lambda scratch: [*command, str(scratch)], Tier.BUBBLEWRAP, PROOF_CELL, view=_VIEW, pass_fds=(fd,)
+                lambda scratch: [*command, str(scratch)], Isolation.BUBBLEWRAP, PROOF_CELL, view=_VIEW, pass_fds=(fd,)
             )
             self._process, _ = stack.enter_context(made)
         self._requests, self._replies = ours.makefile("w"), ours.makefile("r")

@@ -10,7 +10,7 @@ import pytest
 
 from autograder.building import keeper
 from autograder.exceptions import StudentError
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.limits import SOURCES
 from autograder.run.sandbox.trees import read_tree
 from tests.e2e.test_build_outcomes import write_messages
@@ -39,7 +39,7 @@ def built(folder: Path, fills: str) -> Path:
     ours, theirs = Pipe()
     with ours, theirs:
         sources = read_tree(folder / "sources", SOURCES)
-        serving = Thread(target=keeper.attend, args=(ours, Tier.BUBBLEWRAP, lambda: True))
+        serving = Thread(target=keeper.attend, args=(ours, Isolation.BUBBLEWRAP, lambda: True))
         serving.start()
         try:
             keeper.ask(theirs, sources, folder / "made")

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from autograder.run.sandbox import Ending, Tier, cgroup
+from autograder.run.sandbox import Ending, Isolation, cgroup
 from autograder.run.sandbox.cell import run_in_cell
 
 # The bounds of `ros2 launch` are the widest: its program can have 4,096 threads before the watcher looks.
@@ -34,6 +34,6 @@ for _ in range(3):
 
 @pytest.mark.skipif("pids" not in cgroup.bounds(), reason="root without control groups: a bomb stops the machine")
 def test_a_bomb_in_the_widest_sandbox_does_not_end_the_worker() -> None:
-    report = run_in_cell(lambda scratch: [sys.executable, "-c", WORKER], Tier.BUBBLEWRAP)
+    report = run_in_cell(lambda scratch: [sys.executable, "-c", WORKER], Isolation.BUBBLEWRAP)
     assert (report.ending, report.returncode) == (Ending.EXITED, 0), report.output
     assert report.output.split() == [Ending.THREADS.value] * 3

@@ -26,7 +26,7 @@ from autograder.grade.cluster.task import Reply, Task
 from autograder.grade.job import Job
 from autograder.grade.pipeline import refused
 from autograder.result.model import Result, Status
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.submission.intake import detect_layout
 from autograder.suite import suites
 from tests.e2e.local_cluster import CLIENT, SCHEDULER, WORKERS, LocalCluster, local_cluster
@@ -128,7 +128,7 @@ def todo(tmp_path: Path) -> list[Job]:
         package = tmp_path / student / "src" / "package"
         package.mkdir(parents=True)
         (package / "package.xml").write_text(student)
-        found.append(Job(tmp_path / student, ASSIGNMENT, student, 7, tmp_path / "out" / student, Tier.PROCESS))
+        found.append(Job(tmp_path / student, ASSIGNMENT, student, 7, tmp_path / "out" / student, Isolation.PROCESS))
     return found
 
 
@@ -163,9 +163,9 @@ def test_a_worker_with_another_suite_is_rejected_and_gets_no_submission(
     todo: list[Job], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     reports: list[str] = []
-    other = resource(ASSIGNMENT, Tier.PROCESS).replace(suites.hidden(ASSIGNMENT).files_digest, "another")
+    other = resource(ASSIGNMENT, Isolation.PROCESS).replace(suites.hidden(ASSIGNMENT).files_digest, "another")
     with connected(LOCAL, 1, tmp_path) as client:
-        monkeypatch.setattr(dispatch, "resource", lambda assignment, tier: other)
+        monkeypatch.setattr(dispatch, "resource", lambda assignment, isolation: other)
         monkeypatch.setattr(dispatch, "NO_WORKER_TIMEOUT_SECONDS", 0.0)
         with pytest.raises(ClusterError, match="no suitable worker was available"):
             grade_on(client, todo, pytest.fail, report=reports.append, grade=answered)

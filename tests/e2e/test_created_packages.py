@@ -17,7 +17,7 @@ from autograder.author.verification.claims import CaseKind, verify_full_marks
 from autograder.author.verification.mutants import write_reference
 from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.suite import suites
 from tests.e2e.created_packages import RECORD, create, facts, fill_in, written
 
@@ -34,7 +34,7 @@ GIVEN = {"06_testing": ("speed_guard",)}
 
 @pytest.fixture(scope="module")
 def workers() -> Iterator[WorkerPool]:
-    with WorkerPool(Tier.BUBBLEWRAP, 1) as worker:
+    with WorkerPool(Isolation.BUBBLEWRAP, 1) as worker:
         yield worker
 
 

@@ -23,7 +23,7 @@ from autograder.grade import grade_submission, own_cell
 from autograder.grade.batch import grade_all
 from autograder.grade.job import Job
 from autograder.result.model import Result, Status, write_json
-from autograder.run.sandbox import Tier, tiers
+from autograder.run.sandbox import Isolation, isolation
 from autograder.suite import Outcome, suites
 from tests.e2e.results import without_times
 
@@ -300,7 +300,7 @@ def test_a_missing_submission_or_assignment_is_a_usage_error(reference: Path, tm
 def test_a_machine_without_namespaces_refuses_to_grade_at_the_weak_isolation_level(
     reference: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(tiers, "namespaces_failure", lambda: "no user namespaces")
+    monkeypatch.setattr(isolation, "namespaces_failure", lambda: "no user namespaces")
     with pytest.raises(IsolationError, match="cannot isolate submissions: no user namespaces"):
         _grade(reference, tmp_path / "out")
     assert not (tmp_path / "out").exists()
@@ -310,6 +310,6 @@ def test_a_machine_without_namespaces_refuses_to_grade_at_the_weak_isolation_lev
 def test_the_weaker_isolation_level_is_named_in_the_result(reference: Path, tmp_path: Path) -> None:
     shutil.copytree(reference, tmp_path / "alice")
     (tmp_path / "alice" / "src" / PACKAGE / "setup.py").unlink()
-    graded = grade_submission(Job(tmp_path / "alice", ASSIGNMENT, "a", 1, tmp_path / "out", Tier.PROCESS))
+    graded = grade_submission(Job(tmp_path / "alice", ASSIGNMENT, "a", 1, tmp_path / "out", Isolation.PROCESS))
     assert graded.isolation == "process"
     assert graded.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE

@@ -16,7 +16,7 @@ from autograder.author.verification.mutation_run import prepared_run
 from autograder.author.verification.survivors import reasons
 from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.suite import suites
 
 PROOF = {
@@ -31,7 +31,7 @@ PART = 4  # mutants of a chapter's population
 
 @pytest.fixture(scope="session")
 def workers() -> Iterator[WorkerPool]:
-    with WorkerPool(Tier.BUBBLEWRAP, 1) as worker:
+    with WorkerPool(Isolation.BUBBLEWRAP, 1) as worker:
         yield worker
 
 

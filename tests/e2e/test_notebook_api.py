@@ -26,7 +26,7 @@ from autograder.notebook.checking import CheckReport
 from autograder.notebook.driving import FAULTS, DriveReport
 from autograder.notebook.notices import Notice
 from autograder.notebook.terminal import shell
-from autograder.run.sandbox import best_tier
+from autograder.run.sandbox import best_isolation
 from autograder.run.sandbox.limits import SOURCES
 from autograder.run.sandbox.trees import Entry, read_tree
 from autograder.suite import Outcome
@@ -73,7 +73,7 @@ def test_message_packages_that_were_built_once_are_not_built_again_by_a_check(tm
     tree |= {
         replace(entry, path=f"{source.name}/{entry.path}"): data for entry, data in read_tree(source, SOURCES).items()
     }
-    with Cache.default(keeper.CACHE).use(keeper.key(tree), partial(keeper._make, tree, best_tier())) as kept:
+    with Cache.default(keeper.CACHE).use(keeper.key(tree), partial(keeper._make, tree, best_isolation())) as kept:
         os.utime(kept, (0, 0))  # whoever takes it sets the time
         report = check("03_interfaces", tmp_path)
         assert isinstance(report, CheckReport)

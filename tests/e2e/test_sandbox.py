@@ -25,7 +25,7 @@ from autograder.doctor import security
 from autograder.doctor.escapes import CANARY, ESCAPES
 from autograder.exceptions import GraderError
 from autograder.run.fork_server import seccomp
-from autograder.run.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier, cgroup, procfs
+from autograder.run.sandbox import Ending, Isolation, Limits, Mount, Process, Sandbox, cgroup, procfs
 from autograder.run.sandbox.launcher import launch, warm_up
 from autograder.run.sandbox.limits import GIB, MIB
 from tests.e2e.cell_support import ROOT, in_cell, is_forked, started_in_cell
@@ -291,11 +291,11 @@ def test_the_processes_of_root_s_sandbox_are_counted_by_the_kernel() -> None:
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root has control groups of its own")
 @BOUNDED
-@pytest.mark.parametrize("way", ["started"], indirect=True)  # the weak tier knows no other
+@pytest.mark.parametrize("way", ["started"], indirect=True)  # the weak isolation level knows no other
 def test_the_weak_isolation_level_ends_a_fork_bomb_of_root() -> None:
     code = "import os\nwhile True:\n    try: os.fork()\n    except OSError: pass"
     before = _bombs(code)
-    answer = in_cell(inside, code, {**SMALL, "memory": 4 * GIB}, True, tier=Tier.PROCESS)
+    answer = in_cell(inside, code, {**SMALL, "memory": 4 * GIB}, True, isolation=Isolation.PROCESS)
     assert answer["ending"] == Ending.THREADS.value
     assert _bombs(code) <= before
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from autograder import layout
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 
 SECOND = layout.ROOT / "tests" / "second_course"
 RIGHT = {"01_greeting": "greeting", "02_beat": "beat"}  # each assignment with the package that answers it
@@ -146,7 +146,7 @@ def test_a_sandbox_hides_checks_reference_and_notebooks_of_a_second_course(cours
         "    found.wait(None)\n"
         "    print(found.output)\n"
     )
-    variables = {"AUTOGRADER_COURSE": str(course), "AUTOGRADER_TIER": Tier.BUBBLEWRAP.value}
+    variables = {"AUTOGRADER_COURSE": str(course), "AUTOGRADER_ISOLATION": Isolation.BUBBLEWRAP.value}
     asked = [sys.executable, "-c", code, str(course)]
     done = subprocess.run(asked, env={**os.environ, **variables}, text=True, capture_output=True, check=True)
     seen = {Path(line).relative_to(course).parts[0] for line in done.stdout.splitlines() if line}

@@ -11,7 +11,7 @@ from autograder.author.verification.cases import Case, cases
 from autograder.author.verification.claims import CaseKind
 from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.suite import suites
 
 EACH_TIME = (1, 77, 424242)
@@ -20,7 +20,7 @@ AT_NIGHT = tuple(range(1000, 1047))
 
 @pytest.fixture(scope="session")
 def workers() -> Iterator[WorkerPool]:
-    with WorkerPool(Tier.BUBBLEWRAP, 1) as worker:
+    with WorkerPool(Isolation.BUBBLEWRAP, 1) as worker:
         yield worker
 
 

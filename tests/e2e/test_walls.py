@@ -16,7 +16,7 @@ from autograder.exceptions import StudentError
 from autograder.grade import apart, grade_submission, own_cell
 from autograder.grade.job import Job
 from autograder.result.model import Result, Status
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.limits import SOURCES
 from autograder.run.sandbox.trees import read_tree
 from autograder.submission import intake
@@ -210,7 +210,7 @@ def test_root_grades_files_that_only_root_can_read(classroom: Path) -> None:
     for path in (classroom / "alice", *(classroom / "alice").rglob("*")):
         path.chmod(0o700 if path.is_dir() else 0o600)
     result = grade(classroom, "alice")
-    assert (result.status, result.isolation) == (Status.GRADED, Tier.BUBBLEWRAP.value)
+    assert (result.status, result.isolation) == (Status.GRADED, Isolation.BUBBLEWRAP.value)
     assert "is not a package's name" in result.diagnosis.sentence
 
 
@@ -226,11 +226,11 @@ def test_root_reads_no_submission_for_a_preview_or_a_comparison(
         pytest.fail("root reads a submission")
 
     monkeypatch.setattr(intake, "read_submission", read)
-    seen = apart.read_preview(classroom / "alice", ASSIGNMENT, Tier.BUBBLEWRAP)
+    seen = apart.read_preview(classroom / "alice", ASSIGNMENT, Isolation.BUBBLEWRAP)
     assert (seen.files, seen.unused) == (2, ())
-    assert apart.read_code(classroom / "alice", ASSIGNMENT, Tier.BUBBLEWRAP) == "# pkg/node.py\nx = '\n'"
+    assert apart.read_code(classroom / "alice", ASSIGNMENT, Isolation.BUBBLEWRAP) == "# pkg/node.py\nx = '\n'"
     with pytest.raises(StudentError, match=r"carol.zip is not a folder"):
-        apart.read_preview(classroom / "carol.zip", ASSIGNMENT, Tier.BUBBLEWRAP)
+        apart.read_preview(classroom / "carol.zip", ASSIGNMENT, Isolation.BUBBLEWRAP)
 
 
 WHO = """
@@ -252,7 +252,7 @@ def test_root_privileges_are_also_dropped_without_namespaces(classroom: Path, mo
     before = stored.read_bytes()
     taken_over(monkeypatch, WHO, STORED=str(stored))
     out = classroom / "results" / "alice"
-    grade_submission(Job(classroom / "alice", ASSIGNMENT, "alice", 1, out, Tier.PROCESS))
+    grade_submission(Job(classroom / "alice", ASSIGNMENT, "alice", 1, out, Isolation.PROCESS))
     log = (out / "grader.log").read_text()
     assert "OUT is True True []" in log
     assert "OUT rights 0" in log

@@ -21,7 +21,7 @@ from autograder.grade.job import ALL, Job, Scope
 from autograder.grade.pipeline import RunJob, in_own_cell
 from autograder.grade.store import LOG
 from autograder.result.model import Result, Status
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 
 ASSIGNMENT = "02_nodes"
 PACKAGE = "my_robot_package"
@@ -45,8 +45,10 @@ def half(reference: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def _grade(path: Path, out: Path, workers: RunJob, scope: Scope = ALL, tier: Tier = Tier.BUBBLEWRAP) -> Result:
-    return grade_submission(Job(path, ASSIGNMENT, "s", 3, out, tier, scope), workers)
+def _grade(
+    path: Path, out: Path, workers: RunJob, scope: Scope = ALL, isolation: Isolation = Isolation.BUBBLEWRAP
+) -> Result:
+    return grade_submission(Job(path, ASSIGNMENT, "s", 3, out, isolation, scope), workers)
 
 
 def _verdicts(result: Result) -> list[tuple[object, ...]]:
@@ -74,7 +76,7 @@ def servers() -> Servers:
 def test_a_shared_sandbox_gives_the_same_results_as_one_for_each_submission(
     reference: Path, half: Path, servers: Servers, tmp_path: Path
 ) -> None:
-    with WorkerPool(Tier.BUBBLEWRAP, 1) as workers:
+    with WorkerPool(Isolation.BUBBLEWRAP, 1) as workers:
         shared = [_grade(path, tmp_path / "shared", workers, SOME) for path in (reference, half, reference)]
         assert len(servers()) == 1
     assert servers() == []
@@ -89,7 +91,7 @@ def test_a_worker_can_be_used_after_the_thread_that_used_it_first_has_ended(
     half: Path, servers: Servers, tmp_path: Path
 ) -> None:
     seen = []
-    with WorkerPool(Tier.BUBBLEWRAP, 1) as workers:
+    with WorkerPool(Isolation.BUBBLEWRAP, 1) as workers:
         for name in ("one", "two"):
             with ThreadPoolExecutor(1) as thread:
                 graded = thread.submit(_grade, half, tmp_path / name, workers).result()
@@ -102,7 +104,7 @@ def test_a_worker_can_be_used_after_the_thread_that_used_it_first_has_ended(
 def test_a_failed_grading_reports_the_reason_and_does_not_change_the_next_one(
     reference: Path, half: Path, servers: Servers, tmp_path: Path
 ) -> None:
-    with WorkerPool(Tier.BUBBLEWRAP, 1) as workers:
+    with WorkerPool(Isolation.BUBBLEWRAP, 1) as workers:
         failed = _grade(reference, tmp_path / "failed", workers, Scope(only=("no_such_check",)))
         graded = _grade(half, tmp_path / "graded", workers)
         assert len(servers()) == 1
@@ -115,12 +117,12 @@ def test_a_fork_server_that_ends_is_replaced_and_leaves_nothing(
     half: Path, servers: Servers, entered_tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(entered_tmp_path))
-    with WorkerPool(Tier.PROCESS, 1) as workers:
-        assert _grade(half, entered_tmp_path / "one", workers, tier=Tier.PROCESS).status is Status.GRADED
+    with WorkerPool(Isolation.PROCESS, 1) as workers:
+        assert _grade(half, entered_tmp_path / "one", workers, isolation=Isolation.PROCESS).status is Status.GRADED
         (cell,) = entered_tmp_path.glob("autograder-cell-*")
         assert list(cell.iterdir()) == []
         (server,) = servers()
         os.kill(server, signal.SIGKILL)
-        assert _grade(half, entered_tmp_path / "two", workers, tier=Tier.PROCESS).status is Status.GRADED
+        assert _grade(half, entered_tmp_path / "two", workers, isolation=Isolation.PROCESS).status is Status.GRADED
         assert servers() not in ([], [server])
     assert list(entered_tmp_path.glob("autograder-cell-*")) == []

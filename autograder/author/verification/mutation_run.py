@@ -123,8 +123,8 @@ class MutationRun:
             write_reference(self._suite.sources, folder / "mutant")
             for file, text in texts.items():
                 (folder / "mutant" / "src" / file).write_text(text, encoding="utf-8")
-            assignment, tier = self._suite.assignment, self._workers.tier
-            job = Job(folder / "mutant", assignment, "mutant", self._seed, folder / "out", tier, scope)
+            assignment, isolation = self._suite.assignment, self._workers.isolation
+            job = Job(folder / "mutant", assignment, "mutant", self._seed, folder / "out", isolation, scope)
             return grade_submission(job, self._workers)
 
 

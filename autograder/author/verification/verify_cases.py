@@ -53,7 +53,7 @@ def verify_cases(
             path, folder = _write(case, Path(name) / case.name), out / case.assignment / case.name
             is_whole_suite = not case.scope.only
             folder = folder if is_whole_suite else folder / PART
-            job = Job(path, case.assignment, case.name, seed, folder, workers.tier, case.scope)
+            job = Job(path, case.assignment, case.name, seed, folder, workers.isolation, case.scope)
             result = stored(job) if is_whole_suite else None
             if result is None or result.files_digest != job.suite.files_digest:  # only these very files are verified
                 result = grade_submission(job, in_own_cell if case.kind is CaseKind.ATTACK else workers)

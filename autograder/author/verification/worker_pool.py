@@ -19,11 +19,11 @@ from autograder.building.keeper import attend
 from autograder.grade.job import Job
 from autograder.grade.own_cell import GRACE
 from autograder.run.sandbox.cell import CellReport, copy_submission, in_cell
+from autograder.run.sandbox.isolation import Isolation, require
 from autograder.run.sandbox.limits import PROOF_CELL
 from autograder.run.sandbox.parcel import ParcelError
 from autograder.run.sandbox.process import Ending
 from autograder.run.sandbox.spec import View
-from autograder.run.sandbox.tiers import Tier, require
 
 _TICK = 5.0  # s to wait for the exit of a server that no longer replies
 
@@ -35,15 +35,15 @@ class WorkerPool:
     submissions; see `fork_server`.
 
     Args:
-        tier: the isolation level of each worker sandbox.
+        isolation: the isolation level of each worker sandbox.
         count: number of workers, which is also the number of submissions graded at the same time.
 
     Raises:
         IsolationError: this machine does not support the isolation level.
     """
 
-    def __init__(self, tier: Tier, count: int) -> None:
-        self.tier, self.count = require(tier), count
+    def __init__(self, isolation: Isolation, count: int) -> None:
+        self.isolation, self.count = require(isolation), count
         # The kernel kills a sandbox when the thread that started it ends. This thread lives as long as the workers.
         self._starter = ThreadPoolExecutor(1)
         self._idle: queue.SimpleQueue[_Worker | None] = queue.SimpleQueue()
@@ -63,7 +63,7 @@ class WorkerPool:
         """Grade one submission, and return a report with the files that its worker produced."""
         worker = self._idle.get()
         try:
-            worker = worker or self._starter.submit(_Worker, self.tier).result()
+            worker = worker or self._starter.submit(_Worker, self.isolation).result()
             report = worker.grade(job)
             if report.ending is not Ending.EXITED:
                 worker.close()
@@ -76,10 +76,10 @@ class WorkerPool:
 class _Worker:
     """A fork server in a sandbox that sees the whole course and one folder for submissions."""
 
-    def __init__(self, tier: Tier) -> None:
+    def __init__(self, isolation: Isolation) -> None:
         self._stack = ExitStack()
         ours, theirs = Pipe()
-        self._server, self._tier = self._stack.enter_context(ours), tier
+        self._server, self._isolation = self._stack.enter_context(ours), isolation
         # The sandbox sees later files only in a folder that is mounted from the start, and its user must be able to
         # read them.
         self._shared = Path(self._stack.enter_context(TemporaryDirectory(prefix="verification-shared-")))
@@ -96,7 +96,7 @@ class _Worker:
 
         view = View(shown=(*{layout.ROOT, layout.course().root}, self._shared))
         with theirs:
-            cell = in_cell(command, tier, PROOF_CELL, view=view, pass_fds=(theirs.fileno(),))
+            cell = in_cell(command, isolation, PROOF_CELL, view=view, pass_fds=(theirs.fileno(),))
             self._process, self._scratch = self._stack.enter_context(cell)
 
     def grade(self, job: Job) -> CellReport:
@@ -112,7 +112,7 @@ class _Worker:
             try:
                 self._server.send_bytes(sent.to_json().encode())
                 is_over = lambda: self._process.ending is not None or time.monotonic() > deadline  # noqa: E731
-                files, reply = attend(self._server, self._tier, is_over)
+                files, reply = attend(self._server, self._isolation, is_over)
             except (ParcelError, OSError):
                 files, reply = {}, {}
         return CellReport(Ending.EXITED, reply["status"], reply["output"], files) if reply else self._dead()

@@ -114,7 +114,7 @@ class _Dispatch:
         grade: Grade,
     ) -> None:
         self._client, self._on_result, self._report, self._grade = client, on_result, report, grade
-        self._resource = resource(jobs[0].assignment, jobs[0].tier)
+        self._resource = resource(jobs[0].assignment, jobs[0].isolation)
         self._rejected: set[str] = set()
         self._threads = 0
         self._last_poll = float("-inf")

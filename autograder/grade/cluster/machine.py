@@ -13,24 +13,30 @@ from collections.abc import Iterable
 
 from autograder import layout
 from autograder.ros.launch_packages import describe_launch
-from autograder.run.sandbox import Tier
-from autograder.run.sandbox.tiers import best_tier
+from autograder.run.sandbox import Isolation
+from autograder.run.sandbox.isolation import best_isolation
 from autograder.suite import suites
 
 LOCK = "requirements.lock"
 
 
-def resource(assignment: str, tier: Tier) -> str:
+def resource(assignment: str, isolation: Isolation) -> str:
     """Return the name of this machine's resource for an assignment and an isolation level."""
     lock = hashlib.sha256((layout.ROOT / LOCK).read_bytes()).hexdigest()[:12]
     python = ".".join(platform.python_version_tuple()[:2])
     launch = describe_launch().replace(", ", "+").replace(" ", "-")
-    return f"autograder {assignment} {suites.hidden(assignment).files_digest} {lock} {python} {launch} {tier.value}"
+    return (
+        f"autograder {assignment} {suites.hidden(assignment).files_digest} {lock} {python} {launch} {isolation.value}"
+    )
 
 
 def resources() -> list[str]:
     """Return the names of all resources that this machine offers. This takes about a second."""
-    return [resource(name, tier) for name in suites.graded_assignments() for tier in {Tier.PROCESS, best_tier()}]
+    return [
+        resource(name, isolation)
+        for name in suites.graded_assignments()
+        for isolation in {Isolation.PROCESS, best_isolation()}
+    ]
 
 
 def difference(required: str, offered: Iterable[str]) -> str:
@@ -38,12 +44,12 @@ def difference(required: str, offered: Iterable[str]) -> str:
     resources = [name.split() for name in offered if name.startswith("autograder ")]
     if not resources:
         return "it does not report its versions: start it with `--preload autograder.grade.cluster`"
-    _, assignment, *ours, tier = required.split()
+    _, assignment, *ours, isolation = required.split()
     versions_there = [versions for _, name, *versions, _ in resources if name == assignment]
     theirs = versions_there[0] if versions_there else ["missing", *ours[1:]]
     for part, their, our in zip((f"suite of {assignment}", LOCK, "Python", "launch"), theirs, ours, strict=True):
         if their != our:
             return f"its {part} is {their}, but here it is {our}: install the same version of the course on both"
     if required.split() not in resources:
-        return f"it does not support the isolation level {tier}: `autograder doctor` there says how to fix it"
+        return f"it does not support the isolation level {isolation}: `autograder doctor` there says how to fix it"
     return ""

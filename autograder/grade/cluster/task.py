@@ -16,7 +16,7 @@ import msgpack
 from autograder.grade.answer import AnswerError
 from autograder.grade.cluster.exceptions import ClusterError
 from autograder.grade.job import Job
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.submission.intake import MAX_FILES, MAX_TOTAL_BYTES, SubmittedFile
 
 MAX_TASK = MAX_TOTAL_BYTES + MAX_FILES * 512  # bytes: the files of a submission, and their names
@@ -34,16 +34,16 @@ class Task:
     def pack(self) -> bytes:
         """Return the task as bytes. Equal tasks give equal bytes."""
         files = sorted((os.fsencode(file.path), file.data, file.executable) for file in self.files)
-        packed: bytes = msgpack.packb([self.job.assignment, self.job.seed, self.job.tier.value, files])
+        packed: bytes = msgpack.packb([self.job.assignment, self.job.seed, self.job.isolation.value, files])
         return packed
 
     @classmethod
     def unpack(cls, data: bytes) -> Task:
         """Read a task. Raises ClusterError if the bytes are not a valid task."""
         try:
-            assignment, seed, tier, files = _unpacked(data, MAX_TASK)
+            assignment, seed, isolation, files = _unpacked(data, MAX_TASK)
             entries = [SubmittedFile(PurePosixPath(os.fsdecode(n)), bytes(d), bool(x)) for n, d, x in files]
-            job = Job(Path(), str(assignment), "", int(seed), Path(), Tier(tier))
+            job = Job(Path(), str(assignment), "", int(seed), Path(), Isolation(isolation))
         except (ValueError, TypeError) as error:
             raise ClusterError(f"a task cannot be read: {error}") from None
         if any(file.path.is_absolute() or ".." in file.path.parts for file in entries):

@@ -27,14 +27,14 @@ from autograder.plain_text import clean
 from autograder.report import feedback
 from autograder.report.feedback.model import page_view
 from autograder.result.model import Result, Status
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 
 
 class SandboxedGrade(NbGraderPreprocessor):
     """Grades a submission and writes the notebook's outputs. This process runs no student code."""
 
     seed = Integer(DEFAULT_SEED, help="The seed of every hidden input.").tag(config=True)
-    isolation = Unicode(Tier.BUBBLEWRAP.value, help="The isolation level: bubblewrap or process.").tag(config=True)
+    isolation = Unicode(Isolation.BUBBLEWRAP.value, help="The isolation level: bubblewrap or process.").tag(config=True)
     results = Unicode(
         ".build/nbgrader",
         help="The folder of results, relative to the course directory: ASSIGNMENT/STUDENT/result.json. A stored "
@@ -64,7 +64,7 @@ class SandboxedGrade(NbGraderPreprocessor):
                 seed=self.seed,
                 out=results,
                 jobs=1,
-                isolation=Tier(self.isolation),
+                isolation=Isolation(self.isolation),
                 resume=True,
             )
             if result.status is not Status.GRADED:

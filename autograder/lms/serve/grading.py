@@ -19,7 +19,7 @@ from autograder.lms.serve.settings import Settings, Shown
 from autograder.lms.serve.store import Store
 from autograder.report import feedback
 from autograder.result.model import Result
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 
 LOG = logging.getLogger(__name__)
 ANSWER = "answer.zip"  # whatever it is: intake reads an archive by its bytes
@@ -33,7 +33,7 @@ class Way:
 
     jobs: int = 1
     seed: int = DEFAULT_SEED
-    tier: Tier = Tier.BUBBLEWRAP
+    isolation: Isolation = Isolation.BUBBLEWRAP
     grade: Grade = grade_submission
 
 
@@ -96,10 +96,10 @@ class Grader:
         with TemporaryDirectory(prefix="answer-") as scratch:
             path = Path(scratch) / ANSWER
             path.write_bytes(answer)
-            job = Job(path, handed_in.assignment, handed_in.student, self._way.seed, out, self._way.tier)
+            job = Job(path, handed_in.assignment, handed_in.student, self._way.seed, out, self._way.isolation)
             result = self._way.grade(job)
             settings = self._settings.assignments.get(handed_in.assignment)
             if settings is not None and settings.shown is Shown.VISIBLE:
-                visible.write(visible.run_visible(path, handed_in.assignment, self._way.tier), out)
+                visible.write(visible.run_visible(path, handed_in.assignment, self._way.isolation), out)
         feedback.write(result, out)
         return Mark(result.status, result.score, result.max_score)

@@ -58,7 +58,7 @@ def serve(settings: Settings, folder: Path, way: Way, place: Address) -> None:
 
     Raises UsageError if the folder or the address cannot be used, and IsolationError if the sandbox cannot be made.
     """
-    require(way.tier)
+    require(way.isolation)
     # Ctrl-C ends the process at once, as any other signal does: what was being graded is graded again.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     store = Store(folder)

@@ -13,7 +13,7 @@ from autograder.exceptions import GraderError, UsageError
 from autograder.notebook.worker_client import run_on
 from autograder.plain_text import visible
 from autograder.result.model import CheckResult, structure, write_json
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 
 LOG = logging.getLogger(__name__)
 FILE = "visible.json"  # beside the result
@@ -29,11 +29,11 @@ class VisibleReport:
     checks: tuple[CheckResult, ...] = ()
 
 
-def run_visible(answer: Path, assignment: str, tier: Tier) -> VisibleReport:
+def run_visible(answer: Path, assignment: str, isolation: Isolation) -> VisibleReport:
     """Run the visible checks on an answer, in a cell. Where they fail themselves, the log says why."""
     try:
         whole: dict[str, Any] = {"exercises": (), "part": "", "first": ()}
-        with run_on(answer.resolve(), tier, "check", assignment=assignment, **whole) as (said, _):
+        with run_on(answer.resolve(), isolation, "check", assignment=assignment, **whole) as (said, _):
             diagnosis, checks = said["diagnosis"], said["checks"]
     except GraderError as error:
         LOG.error("The visible checks of %s: %s", assignment, visible(str(error)))

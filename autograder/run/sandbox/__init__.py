@@ -6,12 +6,13 @@ submission is in, with a scratch file system of limited size. In it every piece 
 `Limits`. Most programs are forked into it, from an interpreter that has done their imports
 (`autograder.run.fork_server`).
 
-Both exist in two tiers (`tiers.py`): `bubblewrap`, and the weaker `process` for machines that have no namespaces.
+Both exist at two isolation levels (`isolation.py`): `bubblewrap`, and the weaker `process` for machines without
+namespaces.
 """
 
+from autograder.run.sandbox.isolation import Isolation, best_isolation, require
 from autograder.run.sandbox.limits import Limits
 from autograder.run.sandbox.process import Ending, Process
 from autograder.run.sandbox.spec import Mount, Sandbox
-from autograder.run.sandbox.tiers import Tier, best_tier, require
 
-__all__ = ["Ending", "Limits", "Mount", "Process", "Sandbox", "Tier", "best_tier", "require"]
+__all__ = ["Ending", "Isolation", "Limits", "Mount", "Process", "Sandbox", "best_isolation", "require"]

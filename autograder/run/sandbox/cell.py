@@ -17,11 +17,11 @@ from autograder import layout
 from autograder.ros.environment import without_wheel_bootstrap
 from autograder.run.sandbox import bubblewrap, cgroup, warm_caches
 from autograder.run.sandbox.identity import ordinary_user
-from autograder.run.sandbox.launcher import TIER_VARIABLE
+from autograder.run.sandbox.isolation import Isolation, gives_up_root, require
+from autograder.run.sandbox.launcher import ISOLATION_VARIABLE
 from autograder.run.sandbox.limits import GRADING_CELL, Limits, TreeLimits
 from autograder.run.sandbox.process import Ending, Process
 from autograder.run.sandbox.spec import View
-from autograder.run.sandbox.tiers import Tier, gives_up_root, require
 from autograder.run.sandbox.trees import copy_unread
 from autograder.submission.intake.files import MAX_DEPTH, MAX_READ_BYTES, MAX_SCANNED
 from autograder.submission.intake.ignored import environment_parts, is_ignored
@@ -48,10 +48,14 @@ class CellReport:
 
 
 def run_in_cell(
-    make_command: Callable[[Path], list[str]], tier: Tier, limits: Limits = GRADING_CELL, *, view: View = NOTHING
+    make_command: Callable[[Path], list[str]],
+    isolation: Isolation,
+    limits: Limits = GRADING_CELL,
+    *,
+    view: View = NOTHING,
 ) -> CellReport:
     """Run a trusted command in a new cell and wait for its end; arguments and errors are those of `in_cell`."""
-    with in_cell(make_command, tier, limits, view=view) as (process, _):
+    with in_cell(make_command, isolation, limits, view=view) as (process, _):
         return ended(process)
 
 
@@ -65,7 +69,7 @@ def ended(process: Process) -> CellReport:
 @contextmanager
 def in_cell(
     make_command: Callable[[Path], list[str]],
-    tier: Tier,
+    isolation: Isolation,
     limits: Limits = GRADING_CELL,
     *,
     view: View = NOTHING,
@@ -75,14 +79,14 @@ def in_cell(
 
     Args:
         make_command: gets the cell's scratch folder, returns the command.
-        tier: how strongly the cell is kept apart; an IsolationError where this machine cannot give it.
+        isolation: how strongly the cell is kept apart; an IsolationError where this machine cannot give it.
         limits: a bound on the whole cell, students' processes included.
-        view: what the cell sees of the machine, in the tier `bubblewrap`.
+        view: what the cell sees of the machine, at the isolation level `bubblewrap`.
         pass_fds: descriptors that the command inherits.
     """
-    require(tier)
+    require(isolation)
     _sweep()
-    if tier is Tier.BUBBLEWRAP:
+    if isolation is Isolation.BUBBLEWRAP:
         warm_caches.compile_grader()
     scratch = Path(tempfile.mkdtemp(prefix=_PREFIX))
     held = os.open(scratch, os.O_RDONLY)
@@ -90,24 +94,29 @@ def in_cell(
     try:
         command = make_command(scratch)
         with ExitStack() as stack:
-            group, environment = None, {**without_wheel_bootstrap(os.environ), **_own(scratch, tier)}
-            if tier is Tier.BUBBLEWRAP:
+            group, environment = None, {**without_wheel_bootstrap(os.environ), **_own(scratch, isolation)}
+            if isolation is Isolation.BUBBLEWRAP:
                 user = stack.enter_context(ordinary_user())
                 group = cgroup.make_nested(limits, user)
                 view = view if user is None else _reachable(view, scratch, user)
                 command = group.enter(bubblewrap.cell(command, view, scratch=scratch, user=user, groups=group.folders))
-                environment = {**passed_variables(environment), **_own(scratch, tier), "HOME": "/tmp", "TMPDIR": "/tmp"}
-            elif gives_up_root(tier):
+                environment = {
+                    **passed_variables(environment),
+                    **_own(scratch, isolation),
+                    "HOME": "/tmp",
+                    "TMPDIR": "/tmp",
+                }
+            elif gives_up_root(isolation):
                 user = stack.enter_context(ordinary_user())
                 assert user is not None
                 for path in view.submitted:
-                    place = place_of(path, tier, scratch)
+                    place = place_of(path, isolation, scratch)
                     place.parent.mkdir(exist_ok=True)
                     copy_submission(path, place)
                 for folder in (scratch, *view.writable):
                     os.chown(folder, user, user)
                 command = [*bubblewrap.becoming(user), *command]
-                environment = {**passed_variables(environment), **_own(scratch, tier), "HOME": str(scratch)}
+                environment = {**passed_variables(environment), **_own(scratch, isolation), "HOME": str(scratch)}
             # `python -m` imports from the folder it is started in, and that may hold submissions.
             place = Path("/")
             process = Process(command, limits, environment=environment, pass_fds=pass_fds, group=group, cwd=place)
@@ -118,9 +127,9 @@ def in_cell(
         os.close(held)
 
 
-def place_of(path: Path, tier: Tier, scratch: Path) -> Path:
+def place_of(path: Path, isolation: Isolation, scratch: Path) -> Path:
     """Return where the command of a cell finds what was handed in: in its own place, or in a copy that it can read."""
-    return scratch / "submitted" / path.name if gives_up_root(tier) else path
+    return scratch / "submitted" / path.name if gives_up_root(isolation) else path
 
 
 def _reachable(view: View, scratch: Path, user: int) -> View:
@@ -139,10 +148,10 @@ def copy_submission(path: Path, copy: Path) -> None:
     copy_unread(path, copy, _SUBMITTED, lambda names: {*filter(is_ignored, names), *environment_parts(names)})
 
 
-def _own(scratch: Path, tier: Tier) -> dict[str, str]:
+def _own(scratch: Path, isolation: Isolation) -> dict[str, str]:
     found = [str(layout.ROOT), os.environ.get("PYTHONPATH", "")]  # this grader, from whatever folder it was started
     path = {} if layout.ROOT.is_relative_to(sys.prefix) else {"PYTHONPATH": os.pathsep.join(filter(None, found))}
-    return {TIER_VARIABLE: tier.value, "ROS_LOG_DIR": str(scratch / "ros-log"), **path}
+    return {ISOLATION_VARIABLE: isolation.value, "ROS_LOG_DIR": str(scratch / "ros-log"), **path}
 
 
 def passed_variables(environment: Mapping[str, str]) -> dict[str, str]:

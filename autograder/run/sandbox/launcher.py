@@ -1,4 +1,4 @@
-"""Starting a sandboxed command in the tier that this process works in."""
+"""Starting a sandboxed command at the isolation level that this process works in."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from autograder.run.fork_server.client import PLACEHOLDER_COMMAND, TIMEOUT, Fork
 from autograder.run.fork_server.request import ForkRequest
 from autograder.run.sandbox import bubblewrap, cgroup
 from autograder.run.sandbox.cgroup import ControlGroup
+from autograder.run.sandbox.isolation import Isolation
 from autograder.run.sandbox.process import Process
 from autograder.run.sandbox.spec import INTERPRETER, Sandbox
-from autograder.run.sandbox.tiers import Tier
 
-TIER_VARIABLE = "AUTOGRADER_TIER"
+ISOLATION_VARIABLE = "AUTOGRADER_ISOLATION"
 
 # Where a fork server finds the real ROS. No folder of a submission is among them: it runs outside every sandbox.
 _SEARCHED = (*WHEEL_BOOTSTRAP_VARIABLES, "PYTHONPATH", "AMENT_PREFIX_PATH")
@@ -35,9 +35,9 @@ _log = logging.getLogger(__name__)
 _servers: dict[str, ForkServer | None] = {}  # by their profiles; None where programs could not be forked
 
 
-def current_tier() -> Tier:
-    """Return the tier of the cell that this process is in; `process` outside any cell."""
-    return Tier(os.environ.get(TIER_VARIABLE, Tier.PROCESS.value))
+def current_isolation() -> Isolation:
+    """Return the isolation level of the cell that this process is in; `process` outside any cell."""
+    return Isolation(os.environ.get(ISOLATION_VARIABLE, Isolation.PROCESS.value))
 
 
 def restore_sigint() -> None:
@@ -51,7 +51,7 @@ def restore_sigint() -> None:
 
 
 def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = (), profile: str | None = None) -> Process:
-    """Start `command` in the sandbox that `spec` describes, as strongly as the current tier can.
+    """Start `command` in the sandbox that `spec` describes, as strongly as the current isolation level allows.
 
     Args:
         command: what is run.
@@ -65,7 +65,7 @@ def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = (),
     patience.require()
     limits = replace(spec.limits, wall_seconds=patience.bounded(spec.limits.wall_seconds))
     spec = replace(spec, limits=limits)
-    if profile is not None and current_tier() is Tier.BUBBLEWRAP:
+    if profile is not None and current_isolation() is Isolation.BUBBLEWRAP:
         process = _forked(command[1:], spec, pass_fds, profile)
         if process is not None:
             return process
@@ -89,7 +89,7 @@ def _started(
     stdin: int = subprocess.DEVNULL,
     is_placeholder: bool = False,
 ) -> Process:
-    contained = current_tier() is Tier.BUBBLEWRAP
+    contained = current_isolation() is Isolation.BUBBLEWRAP
     with tempfile.TemporaryFile() as calls, ExitStack() as stack:
         calls.write(seccomp.program())
         calls.seek(0)

@@ -15,7 +15,7 @@ from autograder.building import keeper
 from autograder.building.colcon import StoppedBuildError
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 
 
 @pytest.mark.parametrize("error", [StudentError, StoppedBuildError])
@@ -39,7 +39,7 @@ def test_waiting_for_a_build_that_a_limit_ends_is_not_repeated(tmp_path: Path, m
         asked.release()
         return time.time()
 
-    def build(sources: object, tier: object, entry: Path) -> None:
+    def build(sources: object, isolation: object, entry: Path) -> None:
         for _ in range(3 if not built else 0):
             assert asked.acquire(timeout=30)
         built.append(entry.name)
@@ -51,7 +51,7 @@ def test_waiting_for_a_build_that_a_limit_ends_is_not_repeated(tmp_path: Path, m
     def ask(_: int) -> str:
         ours, theirs = Pipe()
         with ours, theirs:
-            keeper._answer(ours, {}, Tier.BUBBLEWRAP)
+            keeper._answer(ours, {}, Isolation.BUBBLEWRAP)
             with pytest.raises(StoppedBuildError, match="It was stopped") as raised:
                 raise keeper._refusal(keeper.receive_message(theirs))
         return str(raised.value)

@@ -52,7 +52,7 @@ class Worker:
             suite_version=suite.version,
             files_digest=suite.files_digest,
             seed=job.seed,
-            isolation=job.tier.value,
+            isolation=job.isolation.value,
             checks=checks,
             max_score=suite.max_score,
             started="2026-05-04T09:00:00+00:00",

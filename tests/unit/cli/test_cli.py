@@ -23,7 +23,7 @@ from autograder.grade import DEFAULT_SEED
 from autograder.grade.apart import read_digests
 from autograder.notebook.checking import CheckReport
 from autograder.result import model as result
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.suite import Check, Outcome, Visibility, suites
 
 MakeResult = Callable[..., result.Result]
@@ -131,7 +131,7 @@ def test_a_dry_run_of_grading_says_what_becomes_of_stored_results(tmp_path: Path
         "--dry-run",
     )
     suite = suites.hidden("02_nodes")
-    digests = read_digests(tmp_path / "class" / "alice", "02_nodes", Tier.BUBBLEWRAP)
+    digests = read_digests(tmp_path / "class" / "alice", "02_nodes", Isolation.BUBBLEWRAP)
     assert digests is not None
     current = make_result("alice", submission_sha256=digests.sha256, suite_version=suite.version, seed=DEFAULT_SEED)
     for stored in (current, make_result("bob")):

@@ -22,7 +22,7 @@ from autograder.grade.job import Job
 from autograder.grade.pipeline import not_graded, refused
 from autograder.grade.store import write_result
 from autograder.result.model import Artifact, CheckResult, Result, Status
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.submission.intake import SubmittedFile, read_submission
 from autograder.suite import Outcome, suites
 
@@ -65,7 +65,7 @@ def with_run(result: Result, name: str) -> Result:
 def test_packing_and_unpacking_a_task_preserves_any_file_name() -> None:
     names = ("src/a b/ü.py", "src/\udcff.txt", "run")
     files = tuple(SubmittedFile(PurePosixPath(name), name.encode("utf-8", "replace"), name == "run") for name in names)
-    job = Job(Path(), CHAPTER, "", 7, Path(), Tier.PROCESS)
+    job = Job(Path(), CHAPTER, "", 7, Path(), Isolation.PROCESS)
     task = Task(job, files)
     assert Task.unpack(task.pack()).job == job
     assert set(Task.unpack(task.pack()).files) == set(files)
@@ -74,7 +74,7 @@ def test_packing_and_unpacking_a_task_preserves_any_file_name() -> None:
 
 @pytest.mark.parametrize(
     "data",
-    [b"", b"\xc1", msgpack.packb(["02_nodes", 7, "no tier", []]), msgpack.packb(["02_nodes", 7, "process", [[]]])],
+    [b"", b"\xc1", msgpack.packb(["02_nodes", 7, "no isolation", []]), msgpack.packb(["02_nodes", 7, "process", [[]]])],
 )
 def test_bytes_that_are_not_a_task_are_rejected(data: bytes) -> None:
     with pytest.raises(ClusterError, match="a task cannot be read"):
@@ -122,7 +122,7 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
         "another suite": (answer(replace(result, suite_version="0" * 12)), "a worker graded"),
         "other files": (answer(replace(result, files_digest="0" * 12)), "a worker graded"),
         "another maximum": (answer(replace(result, max_score=99.0)), "a worker graded"),
-        "another tier": (answer(replace(result, isolation="process")), "a worker graded"),
+        "another isolation level": (answer(replace(result, isolation="process")), "a worker graded"),
         "a check too few": (answer(replace(result, checks=tuple(rest))), "does not hold the checks"),
         "a check worth more": (
             answer(replace(result, checks=(replace(first, max_points=99.0), *rest))),

@@ -13,7 +13,7 @@ from autograder import layout
 from autograder.exceptions import UsageError
 from autograder.grade.cluster.connection import CERTIFICATE, KEY, connected, require_address
 from autograder.grade.cluster.machine import difference, resource, resources
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 
 
 @pytest.mark.parametrize(
@@ -85,4 +85,4 @@ def test_a_worker_with_other_versions_is_rejected_with_the_reason(offered: list[
 
 
 def test_a_machine_meets_its_own_requirements() -> None:
-    assert difference(resource("02_nodes", Tier.PROCESS), resources()) == ""
+    assert difference(resource("02_nodes", Isolation.PROCESS), resources()) == ""

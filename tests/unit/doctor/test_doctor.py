@@ -17,7 +17,7 @@ from autograder.doctor import CommandResult, Finding, Status, System, examine, h
 from autograder.layout import ROOT
 from autograder.ros import RosEnvironment, RosNotFoundError, WrongDistroError
 from autograder.ros.distribution import DISTRIBUTION
-from autograder.run.sandbox.tiers import namespaces_failure
+from autograder.run.sandbox.isolation import namespaces_failure
 
 VENV = Path("/course/.venv")
 WHEELS = RosEnvironment("wheels", (VENV,), VENV / "lib/python3.12/site-packages/rclpy")

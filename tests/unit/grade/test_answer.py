@@ -31,7 +31,7 @@ def result(make_result: Callable[..., Result]) -> Result:
     suite = JOB.suite
     checks = tuple(CheckResult.of(check, Outcome.PASSED) for check in suite.checks)
     told = {"suite_version": suite.version, "files_digest": suite.files_digest, "max_score": suite.max_score}
-    return make_result(JOB.student, checks=checks, seed=JOB.seed, isolation=JOB.tier.value, **told)
+    return make_result(JOB.student, checks=checks, seed=JOB.seed, isolation=JOB.isolation.value, **told)
 
 
 def files(result: Result, **others: bytes) -> dict[str, bytes]:

@@ -14,7 +14,7 @@ from autograder.grade import grade_submission, pipeline
 from autograder.grade.job import Job
 from autograder.grade.store import LOG, write_result
 from autograder.result.model import Artifact, CheckResult, Result, Status
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.cell import CellReport
 from autograder.run.sandbox.process import Ending
 from autograder.suite import Check, Outcome, suites
@@ -62,7 +62,7 @@ def passed(check: Check) -> CheckResult:
 
 def grade(folder: Path, worker: Worker, seconds: float = 900.0) -> Result:
     """Grade something by a worker."""
-    return grade_submission(Job(folder, CHAPTER, "s", 1, folder / "out", Tier.PROCESS, seconds=seconds), worker)
+    return grade_submission(Job(folder, CHAPTER, "s", 1, folder / "out", Isolation.PROCESS, seconds=seconds), worker)
 
 
 @pytest.mark.promise(
@@ -145,7 +145,7 @@ FORGED: dict[str, Callable[[Result], Result]] = {
     "another student": lambda result: dataclasses.replace(result, student="bob"),
     "another assignment": lambda result: dataclasses.replace(result, assignment="03_interfaces"),
     "another seed": lambda result: dataclasses.replace(result, seed=2),
-    "another tier": lambda result: dataclasses.replace(result, isolation="bubblewrap"),
+    "another isolation level": lambda result: dataclasses.replace(result, isolation="bubblewrap"),
     "another version": lambda result: dataclasses.replace(result, suite_version="1-000000000000"),
     "a larger maximum": lambda result: dataclasses.replace(result, max_score=result.max_score + 1),
     "fewer checks": lambda result: dataclasses.replace(result, checks=result.checks[1:]),

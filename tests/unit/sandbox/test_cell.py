@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from autograder import layout
-from autograder.run.sandbox import Tier, procfs
+from autograder.run.sandbox import Isolation, procfs
 from autograder.run.sandbox.cell import run_in_cell
 
 
@@ -36,7 +36,7 @@ def test_only_folders_of_worker_sandboxes_without_a_lock_are_removed(
     descriptor = os.open(held, os.O_RDONLY)
     fcntl.flock(descriptor, fcntl.LOCK_EX)
     try:
-        report = run_in_cell(lambda scratch: [sys.executable, "-c", f"print({str(scratch)!r})"], Tier.PROCESS)
+        report = run_in_cell(lambda scratch: [sys.executable, "-c", f"print({str(scratch)!r})"], Isolation.PROCESS)
     finally:
         os.close(descriptor)
     assert Path(report.output.strip()).parent == entered_tmp_path
@@ -50,8 +50,8 @@ def test_a_worker_imports_nothing_from_the_folder_that_the_grader_was_started_in
     for module in ("json", "yaml", "numpy"):
         (tmp_path / f"{module}.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')\n")
     monkeypatch.chdir(tmp_path)
-    for tier in (Tier.PROCESS, Tier.BUBBLEWRAP):
-        report = run_in_cell(lambda scratch: [sys.executable, "-m", "autograder.grade.worker", "{}"], tier)
+    for isolation in (Isolation.PROCESS, Isolation.BUBBLEWRAP):
+        report = run_in_cell(lambda scratch: [sys.executable, "-m", "autograder.grade.worker", "{}"], isolation)
         assert "JSON" not in report.output
         assert "TypeError" in report.output  # it came as far as reading its job
     assert not (tmp_path / "ran").exists()
@@ -60,10 +60,10 @@ def test_a_worker_imports_nothing_from_the_folder_that_the_grader_was_started_in
 CELL = """
 import sys
 from autograder import layout
-from autograder.run.sandbox import Tier, procfs
+from autograder.run.sandbox import Isolation, procfs
 from autograder.run.sandbox.cell import in_cell
 
-with in_cell(lambda scratch: ["sh", "-c", "echo up; exec sleep 600"], Tier.BUBBLEWRAP) as (process, _):
+with in_cell(lambda scratch: ["sh", "-c", "echo up; exec sleep 600"], Isolation.BUBBLEWRAP) as (process, _):
     while "up" not in process.output:
         process.wait(0.05)
     print("up", flush=True)

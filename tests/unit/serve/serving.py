@@ -22,7 +22,7 @@ from autograder.grade.job import Job
 from autograder.lms.serve import service
 from autograder.lms.serve.grading import Way
 from autograder.lms.serve.settings import read_settings
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.cell import CellReport
 from tests.unit.cli.killed_grading import Worker
 
@@ -67,7 +67,7 @@ def serve(
         trace = _tracer(lines, kill_at)
         threading.settrace(trace)
         sys.settrace(trace)
-    way = Way(jobs, 7, Tier.PROCESS, partial(grade_submission, run_job=run))
+    way = Way(jobs, 7, Isolation.PROCESS, partial(grade_submission, run_job=run))
     service.serve(read_settings(settings), data, way, service.address(environment))
 
 

@@ -32,7 +32,7 @@ ELSEWHERE = {  # and why the folder that they are started in is the right one
     "ros/standins/launch/substitutions/evaluate.py": "a student's launch file, in a sandbox",
     "run/fork_server/emulation.py": "a student's program, in a sandbox",
     "run/sandbox/cgroup.py": "the shell of the system, and true",
-    "run/sandbox/tiers.py": "bubblewrap, and true",
+    "run/sandbox/isolation.py": "bubblewrap, and true",
 }
 
 

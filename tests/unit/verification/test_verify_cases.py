@@ -19,7 +19,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.grade.job import Job, Scope
 from autograder.grade.pipeline import refused
 from autograder.result.model import Status
-from autograder.run.sandbox import Tier
+from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.cell import CellReport
 from autograder.run.sandbox.process import Ending
 from autograder.submission.intake import read_submission
@@ -32,7 +32,7 @@ CHAPTERS = ("01_package_structure", "02_nodes", "03_interfaces")
 class NoGrader:
     """A pool whose gradings all fail, but not before all workers have started one."""
 
-    tier, count = Tier.PROCESS, WORKERS
+    isolation, count = Isolation.PROCESS, WORKERS
 
     def __init__(self) -> None:
         self._together = threading.Barrier(WORKERS, timeout=60.0)

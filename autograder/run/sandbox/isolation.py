@@ -1,4 +1,4 @@
-"""The tiers of isolation, and which of them this machine can give."""
+"""The isolation levels, and which of them this machine supports."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from autograder.run.sandbox.spec import Sandbox, View
 _FOUND = {"PATH": os.defpath, "PYTHONPATH": str(layout.ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
 
 
-class Tier(str, Enum):
-    """How well students' code is kept apart; the name stands in every result.
+class Isolation(str, Enum):
+    """How strongly students' code is isolated. Every result contains the name.
 
     `bubblewrap`: own process, mount, ipc, user and network namespaces.
     `process`: only a process tree with limits. Students' code can read what the grader's user can read.
@@ -32,9 +32,9 @@ class Tier(str, Enum):
 
 
 @cache
-def best_tier() -> Tier:
-    """Return the strongest tier of this machine; tried for real, a sandbox inside a cell."""
-    return Tier.BUBBLEWRAP if namespaces_failure() is None else Tier.PROCESS
+def best_isolation() -> Isolation:
+    """Return the strongest isolation level of this machine; tried for real, a sandbox inside a cell."""
+    return Isolation.BUBBLEWRAP if namespaces_failure() is None else Isolation.PROCESS
 
 
 @cache
@@ -52,9 +52,9 @@ def namespaces_failure() -> str | None:
     return None if done.returncode == 0 else done.stderr.strip() or f"bwrap ended with status {done.returncode}"
 
 
-def gives_up_root(tier: Tier) -> bool:
+def gives_up_root(isolation: Isolation) -> bool:
     """Return whether a cell of this process becomes another user without any namespace."""
-    return tier is Tier.PROCESS and os.geteuid() == 0
+    return isolation is Isolation.PROCESS and os.geteuid() == 0
 
 
 @cache
@@ -70,18 +70,18 @@ def _root_failure(temporary: str) -> str | None:
     return None if done.returncode == 0 else (done.stderr.strip().splitlines() or ["setpriv failed"])[-1]
 
 
-def require(tier: Tier) -> Tier:
-    """Return `tier` if this machine can give it, or raise an IsolationError that says why not and how to fix it."""
+def require(isolation: Isolation) -> Isolation:
+    """Return `isolation` if this machine supports it. Otherwise raise an IsolationError with the reason and a fix."""
     temporary = tempfile.gettempdir()
-    if gives_up_root(tier) and (why := _root_failure(temporary)) is not None:
+    if gives_up_root(isolation) and (why := _root_failure(temporary)) is not None:
         raise IsolationError(
             f"with `--isolation process` root's gradings run as an ordinary user, which fails here: {why}. Let others "
             f"read the grader (`chmod -R go+rX {layout.ROOT}`) and enter {temporary}, or start it as an ordinary user"
         )
-    failure = namespaces_failure() if tier is Tier.BUBBLEWRAP else None
+    failure = namespaces_failure() if isolation is Isolation.BUBBLEWRAP else None
     if failure is not None:
         raise IsolationError(
             f"this machine cannot isolate submissions: {failure}. `autograder doctor` says how to fix it; "
-            "`--isolation process` grades with the weaker tier, for code that you trust"
+            "`--isolation process` grades with the weaker isolation level, for code that you trust"
         )
-    return tier
+    return isolation
