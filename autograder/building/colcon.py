@@ -14,7 +14,7 @@ from autograder.building.build_log import first_error, readable
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.run.lockstep.failures import tail
-from autograder.run.sandbox import Ending, Mount
+from autograder.run.sandbox import ExitReason, Mount
 from autograder.run.sandbox.launcher import launch
 from autograder.run.sandbox.limits import BUILD, INSTALLED
 from autograder.run.sandbox.trees import Entry, TreeError, read_tree, survey
@@ -52,17 +52,19 @@ def colcon_build(workspace: Workspace, folders: Iterable[Path], *choice: str) ->
     """
     with workspace.apart() as folder:
         overlay = cmake_overlay.write_overlay(workspace.ros.prefixes, folder / "cmake-overlay")
-        output, ending, status = _run(workspace, overlay, colcon_command(workspace, folders, "build", *choice))
+        output, exit_reason, status = _run(workspace, overlay, colcon_command(workspace, folders, "build", *choice))
         output = output.replace(str(folder), "~")
-    if ending is not Ending.EXITED or status != 0:
+    if exit_reason is not ExitReason.EXITED or status != 0:
         # Two gradings of one submission differ in the place of their workspace. Students know it as ws.
         output = output.replace(str(workspace.root), "ws").replace(str(workspace.scratch), "~")
-        error = StudentError if ending is Ending.EXITED else StoppedBuildError
-        raise error(Diagnosis(Kind.BUILD_FAILED, _build_failure(output, ending), tail(readable(output), LOG_LINES)))
+        error = StudentError if exit_reason is ExitReason.EXITED else StoppedBuildError
+        raise error(
+            Diagnosis(Kind.BUILD_FAILED, _build_failure(output, exit_reason), tail(readable(output), LOG_LINES))
+        )
     require_contained(workspace.install)
 
 
-def _run(workspace: Workspace, overlay: Path, command: list[str]) -> tuple[str, Ending | None, int | None]:
+def _run(workspace: Workspace, overlay: Path, command: list[str]) -> tuple[str, ExitReason | None, int | None]:
     plain = workspace.sandbox(BUILD)
     environment = {
         **plain.environment,
@@ -74,7 +76,7 @@ def _run(workspace: Workspace, overlay: Path, command: list[str]) -> tuple[str, 
     spec = replace(plain, workdir=workspace.root, mounts=mounts, environment=environment, network=False)
     with launch(command, spec, profile="colcon") as process:
         process.wait(BUILD.wall_seconds + 10)
-        return process.output, process.ending, process.returncode
+        return process.output, process.exit_reason, process.returncode
 
 
 def require_contained(install: Path) -> None:
@@ -105,11 +107,10 @@ def _left(found: str) -> StudentError:
     return StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
 
 
-def _build_failure(output: str, ending: Ending | None) -> str:
-    if ending is not Ending.EXITED and ending is not None:
-        return (
-            f"colcon build was stopped ({ending.value.replace('_', ' ')}): a build should end within a minute or two."
-        )
+def _build_failure(output: str, exit_reason: ExitReason | None) -> str:
+    if exit_reason is not ExitReason.EXITED and exit_reason is not None:
+        why = exit_reason.value.replace("_", " ")
+        return f"colcon build was stopped ({why}): a build should end within a minute or two."
     if "specified with --packages-up-to was not found" in output:
         return (
             "colcon does not see the package, because its package.xml breaks a rule of ROS: run colcon build and read "

@@ -1,7 +1,7 @@
 """Programs that try to escape from a sandbox. Each prints a line that begins with `OUT` for everything it reached.
 
-`endings` lists the exit reasons that count as contained. An endless program must be stopped by a limit of the sandbox.
-A program that exceeds a limit without being stopped counts as escaped.
+`exit_reasons` lists the exit reasons that count as contained. An endless program must be stopped by a limit of the
+sandbox. A program that exceeds a limit without being stopped counts as escaped.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from autograder import layout
 from autograder.run.fork_server import seccomp
-from autograder.run.sandbox import Ending, Limits
+from autograder.run.sandbox import ExitReason, Limits
 from autograder.run.sandbox.limits import GIB, MIB
 
 CANARY = "CANARY-of-the-grader"  # in the environment and the memory of the process that tries the escapes
@@ -29,7 +29,7 @@ class Escape:
     code: str
     limits: Limits = LIMITS
     network: bool = False
-    endings: tuple[Ending, ...] = (Ending.EXITED,)
+    exit_reasons: tuple[ExitReason, ...] = (ExitReason.EXITED,)
 
     @property
     def program(self) -> str:
@@ -270,14 +270,16 @@ ESCAPES = (
     Escape("descriptors", "exhaust the number of descriptors in flight", _IN_FLIGHT),
     Escape("calls", "create namespaces or mounts, use keys, trace, or load programs into the kernel", _CALLS),
     Escape("disk", "fill more than its own /tmp and /dev/shm", _FILL),
-    Escape("inodes", "create files without end", _FILES, endings=(Ending.FILES, Ending.MEMORY)),
-    Escape("memory eater", "use memory without end", _USE_MEMORY, endings=(Ending.MEMORY,)),
+    Escape("inodes", "create files without end", _FILES, exit_reasons=(ExitReason.FILES, ExitReason.MEMORY)),
+    Escape("memory eater", "use memory without end", _USE_MEMORY, exit_reasons=(ExitReason.MEMORY,)),
     Escape("unmapped memory", "hold memory that belongs to no process", _UNMAPPED),
-    Escape("socket buffers", "hold memory in socket buffers", _SOCKETS, _MORE_MEMORY, endings=(Ending.MEMORY,)),
-    Escape("fork bomb", "start processes without end", _FORKS, _HUGE, endings=(Ending.THREADS,)),
-    Escape("thread bomb", "start threads without end", _THREADS, endings=(Ending.THREADS,)),
-    Escape("output", "print without end", "while True: print('x' * 99)", endings=(Ending.OUTPUT,)),
-    Escape("endless loop", "run without end", "while True: pass", _SHORT, endings=(Ending.WALL_TIME,)),
-    Escape("deaf", "survive by ignoring every signal", _IGNORE_SIGNALS, _SHORT, endings=(Ending.WALL_TIME,)),
+    Escape(
+        "socket buffers", "hold memory in socket buffers", _SOCKETS, _MORE_MEMORY, exit_reasons=(ExitReason.MEMORY,)
+    ),
+    Escape("fork bomb", "start processes without end", _FORKS, _HUGE, exit_reasons=(ExitReason.THREADS,)),
+    Escape("thread bomb", "start threads without end", _THREADS, exit_reasons=(ExitReason.THREADS,)),
+    Escape("output", "print without end", "while True: print('x' * 99)", exit_reasons=(ExitReason.OUTPUT,)),
+    Escape("endless loop", "run without end", "while True: pass", _SHORT, exit_reasons=(ExitReason.WALL_TIME,)),
+    Escape("deaf", "survive by ignoring every signal", _IGNORE_SIGNALS, _SHORT, exit_reasons=(ExitReason.WALL_TIME,)),
     Escape("daemon", "survive by setsid and two forks", _DAEMON),
 )

@@ -38,8 +38,8 @@ def attempt(escape: Escape, home: Path, port: int, profile: str | None) -> str:
     with launch([sys.executable, str(program)], spec, profile=profile) as process:
         process.wait(escape.limits.wall_seconds + 60)
     wrong = [line for line in process.output.splitlines() if line.startswith("OUT")]
-    if process.ending not in escape.endings:
-        wrong.append(f"it ended as {process.ending and process.ending.value}: {process.output[-200:]}")
+    if process.exit_reason not in escape.exit_reasons:
+        wrong.append(f"it ended as {process.exit_reason and process.exit_reason.value}: {process.output[-200:]}")
     deadline = time.monotonic() + 20
     while (left := processes() - before) and time.monotonic() < deadline:
         time.sleep(0.05)

@@ -34,7 +34,7 @@ def in_own_cell(job: Job) -> CellReport:
             cell = in_cell(command, job.isolation, limits, view=view(job), pass_fds=(theirs.fileno(),))
             process, _ = stack.enter_context(cell)
         try:
-            files, _ = attend(ours, job.isolation, lambda: process.ending is not None)
+            files, _ = attend(ours, job.isolation, lambda: process.exit_reason is not None)
             return replace(ended(process), files=files)
         except ParcelError as error:
             process.kill()

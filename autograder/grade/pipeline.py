@@ -22,7 +22,7 @@ from autograder.result.model import Build, CheckResult, Result, Status
 from autograder.ros.launch_packages import describe_launch
 from autograder.run.sandbox import require
 from autograder.run.sandbox.cell import CellReport
-from autograder.run.sandbox.process import Ending
+from autograder.run.sandbox.process import ExitReason
 from autograder.suite import suites
 
 TRIES = 2
@@ -90,9 +90,9 @@ def _grade(job: Job, run_job: RunJob, budget: Budget) -> tuple[Result, Mapping[s
     while tries < TRIES and budget.is_enough:
         tries += 1
         report = budget.spend(replace(job, last=tries == TRIES), run_job)
-        said = f"The worker ended: {report.ending.value}, {report.returncode}.\n{report.output}"
+        said = f"The worker ended: {report.exit_reason.value}, {report.returncode}.\n{report.output}"
         why = f"The grader failed on this submission{f', {tries} times' if tries > 1 else ''}."
-        if report.ending is Ending.WALL_TIME:
+        if report.exit_reason is ExitReason.WALL_TIME:
             why = f"The grading did not end within {budget.seconds / 60:.0f} minutes."
         if report.returncode == 0 and report.files:
             try:

@@ -21,7 +21,7 @@ from autograder.harness.message_text import format_message
 from autograder.harness.steps import FINEST_TICK_NS, TICK_NS
 from autograder.ros.discovery import PROFILES, PROFILES_VARIABLE
 from autograder.ros.domains import Domain
-from autograder.run.lockstep.failures import diagnose_ending
+from autograder.run.lockstep.failures import diagnose_exit
 from autograder.run.sandbox import Mount, Process
 from autograder.run.workspace import Workspace
 from autograder.submission.reading import hold
@@ -172,8 +172,8 @@ class Harness(ExitStack, ABC):
     def require_running(self) -> None:
         """Raise the StudentError of the first program that has ended."""
         for process in self.processes:
-            if process.ending is not None:
-                raise StudentError(diagnose_ending(process))
+            if process.exit_reason is not None:
+                raise StudentError(diagnose_exit(process))
 
     def takes(self, topic: str) -> bool:
         """Return whether a program subscribes to a topic that the grader publishes, with the right type."""

@@ -23,7 +23,7 @@ from autograder.exceptions import StudentError
 from autograder.harness.grader_node import DEPTH, GraderNode, OnMessage
 from autograder.harness.parameter_values import value_of
 from autograder.ros.domains import Domain
-from autograder.run.lockstep.failures import diagnose_ending
+from autograder.run.lockstep.failures import diagnose_exit
 from autograder.run.sandbox import Mount, Process, Sandbox, procfs
 from autograder.run.sandbox.launcher import launch
 from autograder.run.sandbox.limits import LAUNCH
@@ -188,8 +188,8 @@ class LaunchHarness(contextlib.ExitStack):
             self._grader_node.spin(0.0 if over else _POLL_SECONDS)
             if condition():
                 return True
-            if self.process.ending is not None:
-                raise StudentError(diagnose_ending(self.process))
+            if self.process.exit_reason is not None:
+                raise StudentError(diagnose_exit(self.process))
             if over:
                 return False
 

@@ -14,7 +14,7 @@ from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import cpu_starvation
 from autograder.harness.base import Harness, Program
-from autograder.run.lockstep.failures import diagnose_ending, diagnose_no_answer, diagnose_output
+from autograder.run.lockstep.failures import diagnose_exit, diagnose_no_answer, diagnose_output
 from autograder.run.sandbox import Process
 from autograder.run.sandbox.launcher import launch
 
@@ -89,10 +89,10 @@ class RealTimeHarness(Harness):
             StudentError: another program has ended; it says how.
         """
         for program, process in self._running:
-            if process.ending is None:
+            if process.exit_reason is None:
                 continue
             if program.executable not in self.optional:
-                raise self._error_of(program, StudentError(diagnose_output(process) or diagnose_ending(process)))
+                raise self._error_of(program, StudentError(diagnose_output(process) or diagnose_exit(process)))
             process.kill()
             self._running = [other for other in self._running if other[1] is not process]
         return True

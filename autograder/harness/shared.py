@@ -43,7 +43,7 @@ class Shared(ExitStack, Generic[P]):
         if self._error is not None:
             raise self._error
         present = self._present
-        if present is None or any(process.ending for process in present.processes) or not self._usable(present):
+        if present is None or any(process.exit_reason for process in present.processes) or not self._usable(present):
             self.close()
             try:
                 present = self.enter_context(self._make())

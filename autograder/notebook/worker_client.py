@@ -92,7 +92,7 @@ def run_on(
             theirs.close()  # once the worker has ended, nobody holds its end
             tell = _Early(Path(folder) / EARLY_FILE, early)
             # It asks for interface packages. Between its questions, it is looked after.
-            keeper.attend(ours, isolation, lambda: tell.has_looked() and process.ending is not None)
+            keeper.attend(ours, isolation, lambda: tell.has_looked() and process.exit_reason is not None)
             report = ended(process)
         reply = Path(folder) / REPLY_FILE
         if report.returncode != 0 or not reply.is_file():

@@ -21,7 +21,7 @@ from typing import Any
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.run.lockstep.failures import diagnose_crash, diagnose_ending
+from autograder.run.lockstep.failures import diagnose_crash, diagnose_exit
 from autograder.run.lockstep.protocol import Crash
 from autograder.run.lockstep.tracebacks import own_frames
 from autograder.run.sandbox import Mount, Process
@@ -133,7 +133,7 @@ def parse_answer(data: bytes, module: str, count: int, process: Process) -> list
             raise StudentError(_not_imported(module, answer["failed"]))
         outcomes = None if answer is None else answer.get("outcomes")
         if not isinstance(outcomes, list) or len(outcomes) != count:
-            raise StudentError(diagnose_ending(process))
+            raise StudentError(diagnose_exit(process))
         return [_outcome(outcome) for outcome in outcomes]
 
 

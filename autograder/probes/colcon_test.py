@@ -16,7 +16,7 @@ from autograder.probes.files import read_below
 from autograder.probes.installed import Installed
 from autograder.probes.student_test_reports import MAX_BYTES, Claims, Report, parse_claims
 from autograder.probes.student_test_runs import sandboxed
-from autograder.run.sandbox import Ending, Mount
+from autograder.run.sandbox import ExitReason, Mount
 from autograder.run.sandbox.launcher import launch
 from autograder.run.sandbox.limits import COLCON_TEST
 from autograder.run.workspace import Workspace
@@ -36,13 +36,13 @@ def colcon_test(workspace: Workspace, package: str) -> Report:
         be stopped, that of a second run, as in `student_test_runs.run`.
     """
     first, _ = _colcon_test(workspace, package)
-    return first if first.ending is not Ending.WALL_TIME else _colcon_test(workspace, package)[0]
+    return first if first.exit_reason is not ExitReason.WALL_TIME else _colcon_test(workspace, package)[0]
 
 
 def expect_ended(report: Report) -> None:
     """Fail the check if `colcon test` had to be stopped: it then has no result file, whatever ran before."""
     expect(
-        report.ending is not Ending.WALL_TIME,
+        report.exit_reason is not ExitReason.WALL_TIME,
         f"`colcon test` did not end within {COLCON_TEST.wall_seconds:g} s and was stopped: look for a test that waits "
         "without a deadline.",
     )
@@ -74,7 +74,7 @@ def _colcon_test(workspace: Workspace, package: str, *pytest_arguments: str) -> 
     )
     with launch(colcon_command(workspace, found.values(), "test", *choice), spec, profile="colcon") as process:
         process.wait(COLCON_TEST.wall_seconds + 10)
-        ending, status, output = process.ending, process.returncode, process.output
+        exit_reason, status, output = process.exit_reason, process.returncode, process.output
     written = read_below(workspace.root, Path("build", package, "pytest.xml"), MAX_BYTES) or b""
     claims = parse_claims(written) if run.encode() in written else None
-    return Report(ending, status, claims or Claims(), 0, output), claims is not None
+    return Report(exit_reason, status, claims or Claims(), 0, output), claims is not None

@@ -34,19 +34,19 @@ def read_below(folder: Path, name: Path, limit: int) -> bytes | None:
     return read_plain(path, limit) if inside else None
 
 
-def plain_files(folder: Path, most: int, *, left_out: Collection[str] = (), ending: str = "") -> list[Path]:
+def plain_files(folder: Path, most: int, *, left_out: Collection[str] = (), suffix: str = "") -> list[Path]:
     """Return the plain files below a folder, relative to it, in order; no link is followed, the folder itself neither.
 
     Args:
         folder: where to look.
         most: how many are returned.
         left_out: names of folders that are passed over.
-        ending: how their names end.
+        suffix: the end of their names.
     """
     found: list[Path] = []
     for where, folders, names in os.walk(folder) if not folder.is_symlink() else ():
         folders[:] = sorted(name for name in folders if name not in left_out)
-        paths = [Path(where, name) for name in sorted(names) if name.endswith(ending)]
+        paths = [Path(where, name) for name in sorted(names) if name.endswith(suffix)]
         found += [path.relative_to(folder) for path in paths if stat.S_ISREG(path.lstat().st_mode)]
         if len(found) >= most:
             break

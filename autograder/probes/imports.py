@@ -65,7 +65,7 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
     """
     own = {path.parent.name for path in package.glob("*/__init__.py")} | {package.name}
     found: dict[str, list[str]] = {}
-    for where in plain_files(package, MAX_FILES, left_out=LEFT_OUT, ending=".py"):
+    for where in plain_files(package, MAX_FILES, left_out=LEFT_OUT, suffix=".py"):
         path = package / where
         top = where.parts[0]
         if str(where) == SET_UP or (within and top not in within) or top in without:

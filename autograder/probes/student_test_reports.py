@@ -19,7 +19,7 @@ from typing import ClassVar
 
 from autograder.probes.files import parse_python
 from autograder.probes.versions import Version
-from autograder.run.sandbox import Ending
+from autograder.run.sandbox import ExitReason
 
 MAX_BYTES = 1024 * 1024
 MAX_MESSAGE = 300
@@ -63,9 +63,9 @@ class TestRun:
 
 @dataclass(frozen=True)
 class Report:
-    """The report of a run; all of it but `ending`, `left` and `joined_domain` is the run's own claim."""
+    """The report of a run; all of it but `exit_reason`, `left` and `joined_domain` is the run's own claim."""
 
-    ending: Ending | None  # how its process ended; None when the grader ended it after pytest was done
+    exit_reason: ExitReason | None  # how its process ended; None when the grader ended it after pytest was done
     status: int | None  # pytest's exit status, None when it never came to that
     claims: Claims  # what it says of its tests
     left: int  # UDP sockets that were still open after the last test: each ROS context that is not ended holds some
@@ -76,7 +76,7 @@ class Report:
     @property
     def timed_out(self) -> bool:
         """Whether the run was stopped because it took too long."""
-        return self.ending is Ending.WALL_TIME
+        return self.exit_reason is ExitReason.WALL_TIME
 
     @property
     def passed(self) -> bool:

@@ -187,19 +187,19 @@ def _host(spec: Sandbox, wanted: TestRun, arguments: list[str], launches: bool) 
             left = open_sockets(process.innermost()) if status is not None else 0
             os.close(go_write)
             process.wait(spec.limits.wall_seconds)
-            ending = process.ending
+            exit_reason = process.exit_reason
         report.seek(0)
         claims = None if status is None else parse_claims(report.read(MAX_BYTES + 1))
     if claims is None:
-        return Report(ending, None, Claims(), left, process.output)
-    return Report(ending, status, claims, left, process.output)
+        return Report(exit_reason, None, Claims(), left, process.output)
+    return Report(exit_reason, status, claims, left, process.output)
 
 
 def _status(descriptor: int, process: Process) -> int | None:
     """Return pytest's exit status once the run says that its report is there; None if it ends without."""
     try:
         while not select.select([descriptor], [], [], 0.1)[0]:
-            if process.ending is not None:
+            if process.exit_reason is not None:
                 return None
         said = os.read(descriptor, 64)
         return int(said) if re.fullmatch(rb"[0-5]\n", said) else None

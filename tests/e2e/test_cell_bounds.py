@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from autograder.run.sandbox import Ending, Isolation, cgroup
+from autograder.run.sandbox import ExitReason, Isolation, cgroup
 from autograder.run.sandbox.cell import run_in_cell
 
 # The bounds of `ros2 launch` are the widest: its program can have 4,096 threads before the watcher looks.
@@ -28,12 +28,12 @@ except BaseException:
 for _ in range(3):
     with launch([sys.executable, "-I", "-c", BOMB], Sandbox(workdir=Path("/tmp"), limits=LAUNCH)) as process:
         process.wait(60)
-        print(process.ending.value, flush=True)
+        print(process.exit_reason.value, flush=True)
 """
 
 
 @pytest.mark.skipif("pids" not in cgroup.bounds(), reason="root without control groups: a bomb stops the machine")
 def test_a_bomb_in_the_widest_sandbox_does_not_end_the_worker() -> None:
     report = run_in_cell(lambda scratch: [sys.executable, "-c", WORKER], Isolation.BUBBLEWRAP)
-    assert (report.ending, report.returncode) == (Ending.EXITED, 0), report.output
-    assert report.output.split() == [Ending.THREADS.value] * 3
+    assert (report.exit_reason, report.returncode) == (ExitReason.EXITED, 0), report.output
+    assert report.output.split() == [ExitReason.THREADS.value] * 3

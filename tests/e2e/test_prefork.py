@@ -173,7 +173,7 @@ if sys.version_info >= (3, 13):
     del ENDS["too large"]  # the status is the same, and the last line is that of another error of Python
 
 
-def endings(scratch: Path) -> dict[str, list[Any]]:
+def exit_reasons(scratch: Path) -> dict[str, list[Any]]:
     """Return how programs end, started and forked: how, with which status, and with which last line."""
     found: dict[str, list[Any]] = {}
     for name, code in ENDS.items():
@@ -181,14 +181,14 @@ def endings(scratch: Path) -> dict[str, list[Any]]:
         for profile in (None, "tests"):
             with start(workplace(scratch), code, profile) as process:
                 assert process.wait(LONG), name
-                assert process.ending is not None
+                assert process.exit_reason is not None
                 last = in_any_order(process.output.splitlines()[-1:])
-                found[name].append([process.ending.value, process.returncode, last])
+                found[name].append([process.exit_reason.value, process.returncode, last])
     return found
 
 
 def test_a_forked_program_ends_as_a_started_one_does() -> None:
-    found = in_cell(endings)
+    found = in_cell(exit_reasons)
     assert {name: forked for name, (_, forked) in found.items()} == {name: s for name, (s, _) in found.items()}
     assert found["status"][1] == ["exited", 7, [["out"]]]
     assert len(found["destroyed"][1][2][0]) == 7
@@ -309,8 +309,8 @@ def late(scratch: Path) -> str:
     spec = workplace(scratch, limits=Limits(wall_seconds=1.0))
     with start(spec, "import signal; signal.pause()", "lockstep") as process:
         process.wait(LONG)
-    assert process.ending is not None
-    return process.ending.value
+    assert process.exit_reason is not None
+    return process.exit_reason.value
 
 
 def test_the_imports_of_the_fork_server_do_not_count_as_time_of_the_program() -> None:

@@ -107,7 +107,7 @@ def test_a_forked_child_program_sees_the_same_surroundings_as_a_started_one() ->
     assert forked["family"][5] == "typed"
 
 
-def endings(scratch: Path) -> list[dict[str, Any]]:
+def exit_reasons(scratch: Path) -> list[dict[str, Any]]:
     spec = workplace(scratch)
     codes = {name: code for name, code in ENDS.items() if name != "left behind"}  # its output never ends
     asked = [(name, [program(spec.workdir, name, code)], {}) for name, code in codes.items()]
@@ -136,7 +136,7 @@ _PLAIN = {"PATH": os.defpath, "PYTHONOPTIMIZE": "2"}
 
 
 def test_a_forked_child_program_ends_as_a_started_one_does() -> None:
-    started, forked = in_cell(endings)
+    started, forked = in_cell(exit_reasons)
     for found in (started, forked):
         found["destroyed"] = in_any_order(found["destroyed"][1:2])
     assert forked == started

@@ -25,7 +25,7 @@ from autograder.doctor import security
 from autograder.doctor.escapes import CANARY, ESCAPES
 from autograder.exceptions import GraderError
 from autograder.run.fork_server import seccomp
-from autograder.run.sandbox import Ending, Isolation, Limits, Mount, Process, Sandbox, cgroup, procfs
+from autograder.run.sandbox import ExitReason, Isolation, Limits, Mount, Process, Sandbox, cgroup, procfs
 from autograder.run.sandbox.launcher import launch, warm_up
 from autograder.run.sandbox.limits import GIB, MIB
 from tests.e2e.cell_support import ROOT, in_cell, is_forked, started_in_cell
@@ -67,12 +67,17 @@ def inside(scratch: Path, code: str, limits: dict[str, Any], network: bool = Fal
     before = security.processes()
     with run(code, spec) as process:
         process.wait(limits["wall_seconds"] + 60)
-        ending = process.ending
+        exit_reason = process.exit_reason
     deadline = time.monotonic() + 30
     while (left := security.processes() - before) and time.monotonic() < deadline:
         threading.Event().wait(0.05)
-    assert ending is not None
-    return {"ending": ending.value, "status": process.returncode, "output": process.output, "left": sorted(left)}
+    assert exit_reason is not None
+    return {
+        "exit_reason": exit_reason.value,
+        "status": process.returncode,
+        "output": process.output,
+        "left": sorted(left),
+    }
 
 
 def _run(code: str, *, network: bool = False, **limits: Any) -> dict[str, Any]:
@@ -163,7 +168,7 @@ MARKS = {
     "fork bomb": BOUNDED,
     "socket buffers": pytest.mark.skipif("memory" not in cgroup.bounds(), reason="no control group counts memory here"),
 }
-WILD = ("unmapped memory", *(e.id for e in ESCAPES if e.endings != (Ending.EXITED,)), "daemon")
+WILD = ("unmapped memory", *(e.id for e in ESCAPES if e.exit_reasons != (ExitReason.EXITED,)), "daemon")
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=MARKS.get(name, ())) for name in WILD])
@@ -296,7 +301,7 @@ def test_the_weak_isolation_level_ends_a_fork_bomb_of_root() -> None:
     code = "import os\nwhile True:\n    try: os.fork()\n    except OSError: pass"
     before = _bombs(code)
     answer = in_cell(inside, code, {**SMALL, "memory": 4 * GIB}, True, isolation=Isolation.PROCESS)
-    assert answer["ending"] == Ending.THREADS.value
+    assert answer["exit_reason"] == ExitReason.THREADS.value
     assert _bombs(code) <= before
 
 

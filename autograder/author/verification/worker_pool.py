@@ -22,7 +22,7 @@ from autograder.run.sandbox.cell import CellReport, copy_submission, in_cell
 from autograder.run.sandbox.isolation import Isolation, require
 from autograder.run.sandbox.limits import PROOF_CELL
 from autograder.run.sandbox.parcel import ParcelError
-from autograder.run.sandbox.process import Ending
+from autograder.run.sandbox.process import ExitReason
 from autograder.run.sandbox.spec import View
 
 _TICK = 5.0  # s to wait for the exit of a server that no longer replies
@@ -65,7 +65,7 @@ class WorkerPool:
         try:
             worker = worker or self._starter.submit(_Worker, self.isolation).result()
             report = worker.grade(job)
-            if report.ending is not Ending.EXITED:
+            if report.exit_reason is not ExitReason.EXITED:
                 worker.close()
                 worker = None
             return report
@@ -111,11 +111,11 @@ class _Worker:
             sent = replace(job, path=path, scope=scope, scratch=scratch, out=scratch / "out")
             try:
                 self._server.send_bytes(sent.to_json().encode())
-                is_over = lambda: self._process.ending is not None or time.monotonic() > deadline  # noqa: E731
+                is_over = lambda: self._process.exit_reason is not None or time.monotonic() > deadline  # noqa: E731
                 files, reply = attend(self._server, self._isolation, is_over)
             except (ParcelError, OSError):
                 files, reply = {}, {}
-        return CellReport(Ending.EXITED, reply["status"], reply["output"], files) if reply else self._dead()
+        return CellReport(ExitReason.EXITED, reply["status"], reply["output"], files) if reply else self._dead()
 
     def _share(self, built: Path) -> Path:
         """Copy a built workspace to the shared folder, once for many jobs, and return the copy."""
@@ -127,8 +127,8 @@ class _Worker:
     def _dead(self) -> CellReport:
         self._process.wait(_TICK)
         self._process.kill()
-        exit_reason = self._process.ending or Ending.WALL_TIME
-        exit_reason = Ending.KILLED if exit_reason is Ending.EXITED else exit_reason
+        exit_reason = self._process.exit_reason or ExitReason.WALL_TIME
+        exit_reason = ExitReason.KILLED if exit_reason is ExitReason.EXITED else exit_reason
         return CellReport(exit_reason, self._process.returncode or 1, self._process.output)
 
     def close(self) -> None:

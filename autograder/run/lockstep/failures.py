@@ -7,7 +7,7 @@ import re
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.run.lockstep.protocol import Crash, Deadlock
 from autograder.run.lockstep.tracebacks import own_frames
-from autograder.run.sandbox import Ending, Process
+from autograder.run.sandbox import ExitReason, Process
 
 _LINES = 25
 _FRAME = re.compile(r"^  File .*, in (\w+)$", re.MULTILINE)
@@ -19,20 +19,23 @@ _PHASES = {
 }
 
 _LIMITS = {
-    Ending.WALL_TIME: (Kind.TIMED_OUT, "Your program took too long and was stopped: look for a loop that never ends."),
-    Ending.MEMORY: (
+    ExitReason.WALL_TIME: (
+        Kind.TIMED_OUT,
+        "Your program took too long and was stopped: look for a loop that never ends.",
+    ),
+    ExitReason.MEMORY: (
         Kind.OUT_OF_MEMORY,
         "Your program used more memory than a node needs and was stopped: look for a list that only ever grows.",
     ),
-    Ending.THREADS: (
+    ExitReason.THREADS: (
         Kind.OUT_OF_MEMORY,
         "Your program started far too many threads or processes and was stopped: start them once, not in a callback.",
     ),
-    Ending.FILES: (
+    ExitReason.FILES: (
         Kind.OUT_OF_MEMORY,
         "Your program made far too many files and was stopped: write one file, and not one in each callback.",
     ),
-    Ending.OUTPUT: (
+    ExitReason.OUTPUT: (
         Kind.FLOODED_OUTPUT,
         "Your program printed without end and was stopped: log when something changes, "
         "or give the logger throttle_duration_sec=1.0.",
@@ -75,13 +78,13 @@ def diagnose_crash(crash: Crash) -> Diagnosis:
     )
 
 
-def diagnose_ending(process: Process) -> Diagnosis:
+def diagnose_exit(process: Process) -> Diagnosis:
     """Return the diagnosis of a program that ended, or no longer answers, and reported no exception."""
     detail = tail(process.output)
-    if process.ending in _LIMITS:
-        kind, sentence = _LIMITS[process.ending]
+    if process.exit_reason in _LIMITS:
+        kind, sentence = _LIMITS[process.exit_reason]
         return Diagnosis(kind, sentence, detail)
-    if process.ending is None:
+    if process.exit_reason is None:
         return Diagnosis(
             Kind.STUCK,
             "Your program runs on, but no longer answers the grader: do not replace functions of rclpy, and do not use "

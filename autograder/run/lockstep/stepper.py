@@ -19,7 +19,7 @@ from autograder.run.lockstep import protocol
 from autograder.run.lockstep.failures import (
     diagnose_crash,
     diagnose_deadlock,
-    diagnose_ending,
+    diagnose_exit,
     diagnose_no_answer,
     diagnose_too_much,
     diagnose_unsteppable,
@@ -135,13 +135,13 @@ class Stepper:
         try:
             os.write(self._write_fd, json.dumps(command).encode() + b"\n")
         except (BrokenPipeError, BlockingIOError):
-            raise StudentError(self._ending()) from None
+            raise StudentError(self._exit_reason()) from None
 
     def _expect(self, wanted: str, timeout: Timeout, on_timeout: Kind) -> Any:
         try:
             event, record = protocol.parse(self._read_line(timeout, on_timeout))
         except ProtocolError:
-            raise StudentError(self._ending()) from None
+            raise StudentError(self._exit_reason()) from None
         if event == "crash":
             self.process.wait(QUIT_SECONDS)
             raise StudentError(diagnose_crash(record))
@@ -150,7 +150,7 @@ class Stepper:
         if event == "deadlock":
             raise StudentError(diagnose_deadlock(record, self.process.output))
         if event != wanted:
-            raise StudentError(self._ending())
+            raise StudentError(self._exit_reason())
         return record
 
     def _read_line(self, timeout: Timeout, on_timeout: Kind) -> bytes:
@@ -199,6 +199,6 @@ class Stepper:
     def _no_answer(self, kind: Kind, waited: str) -> StudentError:
         return StudentError(diagnose_no_answer(kind, waited, self.process.output))
 
-    def _ending(self) -> Diagnosis:
+    def _exit_reason(self) -> Diagnosis:
         self.process.wait(2.0)
-        return diagnose_ending(self.process)
+        return diagnose_exit(self.process)

@@ -12,7 +12,7 @@ namespaces.
 
 from autograder.run.sandbox.isolation import Isolation, best_isolation, require
 from autograder.run.sandbox.limits import Limits
-from autograder.run.sandbox.process import Ending, Process
+from autograder.run.sandbox.process import ExitReason, Process
 from autograder.run.sandbox.spec import Mount, Sandbox
 
-__all__ = ["Ending", "Isolation", "Limits", "Mount", "Process", "Sandbox", "best_isolation", "require"]
+__all__ = ["ExitReason", "Isolation", "Limits", "Mount", "Process", "Sandbox", "best_isolation", "require"]

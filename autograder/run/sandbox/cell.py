@@ -20,7 +20,7 @@ from autograder.run.sandbox.identity import ordinary_user
 from autograder.run.sandbox.isolation import Isolation, gives_up_root, require
 from autograder.run.sandbox.launcher import ISOLATION_VARIABLE
 from autograder.run.sandbox.limits import GRADING_CELL, Limits, TreeLimits
-from autograder.run.sandbox.process import Ending, Process
+from autograder.run.sandbox.process import ExitReason, Process
 from autograder.run.sandbox.spec import View
 from autograder.run.sandbox.trees import copy_unread
 from autograder.submission.intake.files import MAX_DEPTH, MAX_READ_BYTES, MAX_SCANNED
@@ -41,7 +41,7 @@ _YOUNG = 60.0  # s in which a folder that was just made gets its lock
 class CellReport:
     """How a worker ended, what it wrote to stdout and stderr, and the files that it left."""
 
-    ending: Ending
+    exit_reason: ExitReason
     returncode: int
     output: str
     files: Mapping[str, bytes] = field(default_factory=dict)
@@ -62,8 +62,8 @@ def run_in_cell(
 def ended(process: Process) -> CellReport:
     """Wait for a process to end, and report it."""
     process.wait(None)
-    assert process.ending is not None
-    return CellReport(process.ending, process.returncode or 0, process.output)
+    assert process.exit_reason is not None
+    return CellReport(process.exit_reason, process.returncode or 0, process.output)
 
 
 @contextmanager

@@ -26,8 +26,8 @@ _EXIT = b'"exit-code"'  # in the report of a command that was run
 _MANY = 8  # at least so many processes fill the memory together: then it is their number, not what one of them holds
 
 
-class Ending(str, Enum):
-    """Why a process is no more."""
+class ExitReason(str, Enum):
+    """Why a process ended."""
 
     EXITED = "exited"
     KILLED = "killed"
@@ -58,8 +58,8 @@ class Process:
             status of what ran, or nothing if the sandbox could not be made.
 
     Raises:
-        GraderError: in `wait`, `ending` and `returncode`, the sandbox could not be made. What a student wrote did not
-            run, so this is no failure of theirs.
+        GraderError: in `wait`, `exit_reason` and `returncode`, if the sandbox could not be made. The student's
+            code did not run, so this is not the student's failure.
     """
 
     def __init__(
@@ -84,7 +84,7 @@ class Process:
         self._writable = writable
         self._limits = limits
         self._output = bytearray()
-        self._ending: Ending | None = None
+        self._exit_reason: ExitReason | None = None
         self._lock = threading.Lock()
         self._adopted: tuple[int, ...] = ()
         self._started = math.inf if is_placeholder else time.monotonic()
@@ -121,9 +121,9 @@ class Process:
             return bytes(self._output[start:])
 
     @property
-    def ending(self) -> Ending | None:
+    def exit_reason(self) -> ExitReason | None:
         """Why it ended, or None while it runs."""
-        return self._ending if self._has_ended() else None
+        return self._exit_reason if self._has_ended() else None
 
     @property
     def returncode(self) -> int | None:
@@ -168,7 +168,7 @@ class Process:
 
     def kill(self) -> None:
         """End the whole tree now."""
-        self._end(Ending.KILLED)
+        self._end(ExitReason.KILLED)
         self._ended.wait(10.0)
 
     def __enter__(self) -> Process:
@@ -190,9 +190,9 @@ class Process:
                 found += statistics.f_files - statistics.f_ffree
         return found
 
-    def _end(self, why: Ending) -> None:
-        if self._ending is None and self._popen.poll() is None:
-            self._ending = why
+    def _end(self, why: ExitReason) -> None:
+        if self._exit_reason is None and self._popen.poll() is None:
+            self._exit_reason = why
         pids = self._measure().pids
         # A parent that is dead leaves children that are found no more, so children first, unless they die with it.
         for pid in pids if self._contained else reversed(pids):
@@ -216,21 +216,21 @@ class Process:
                         self._popen.wait(_TICK)
                 now = time.monotonic()
                 if now - self._started > self._limits.wall_seconds:
-                    self._end(Ending.WALL_TIME)
+                    self._end(ExitReason.WALL_TIME)
                 if now - measured > _MEASURE:
                     measured = now
                     tree = self._measure()
                     is_over = tree.threads > self._limits.threads or tree.memory > self._limits.memory
                     over = over + 1 if is_over else 0
                     if over >= self._limits.looks and tree.threads > self._limits.threads:
-                        self._end(Ending.THREADS)
+                        self._end(ExitReason.THREADS)
                     elif over >= self._limits.looks:
                         many = tree.largest < self._limits.memory / _MANY
-                        self._end(Ending.THREADS if many else Ending.MEMORY)
+                        self._end(ExitReason.THREADS if many else ExitReason.MEMORY)
                     elif self._ran_out():
-                        self._end(Ending.MEMORY)
+                        self._end(ExitReason.MEMORY)
                     elif (now_there := self._files()) > files + self._limits.files:
-                        self._end(Ending.FILES)
+                        self._end(ExitReason.FILES)
                     else:
                         files = min(files, now_there)
             # What was written just before the end; a grandchild may hold the pipe open, so only what is there.
@@ -239,12 +239,14 @@ class Process:
         with self._lock:
             self._popen.stdout.close()
         self._popen.wait()
-        self._ending = self._ending or (Ending.MEMORY if self._ran_out() else Ending.EXITED)
+        self._exit_reason = self._exit_reason or (ExitReason.MEMORY if self._ran_out() else ExitReason.EXITED)
         if self._status is not None:
             reported = os.read(self._status, _REPORT)
             os.close(self._status)
             # bubblewrap exits with 1. A negative status is a signal, such as that of a kernel without memory.
-            self._is_made = self._ending is not Ending.EXITED or self._popen.returncode <= 0 or _EXIT in reported
+            self._is_made = (
+                self._exit_reason is not ExitReason.EXITED or self._popen.returncode <= 0 or _EXIT in reported
+            )
         self._ended.set()
         if self._group is not None:
             self._group.close()
@@ -265,6 +267,6 @@ class Process:
             room = self._limits.output - len(self._output)
             self._output += chunk[: max(room, 0)]
         if len(chunk) > room:
-            self._end(Ending.OUTPUT)
+            self._end(ExitReason.OUTPUT)
             return self._popen.poll() is None
         return bool(chunk)

@@ -22,7 +22,7 @@ from autograder.grade import batch, grade_submission
 from autograder.grade.job import Job
 from autograder.result.model import Artifact, CheckResult, Result
 from autograder.run.sandbox.cell import CellReport
-from autograder.run.sandbox.process import Ending
+from autograder.run.sandbox.process import ExitReason
 from autograder.submission.intake import read_submission
 from autograder.suite import Outcome
 from autograder.suite.suites import Suite
@@ -62,7 +62,7 @@ class Worker:
         picture = io.BytesIO()
         Image.new("RGB", (8, 8)).save(picture, "PNG")
         files = {"nan.png": picture.getvalue(), "notebook.ipynb": NOTEBOOK}
-        return CellReport(Ending.EXITED, 0, "", {**files, "result.json": json.dumps(result.to_json()).encode()})
+        return CellReport(ExitReason.EXITED, 0, "", {**files, "result.json": json.dumps(result.to_json()).encode()})
 
 
 def grade(folder: Path, lost: Mapping[str, tuple[str, ...]], version: str, *options: str, kill_at: int = -1) -> None:

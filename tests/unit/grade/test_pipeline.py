@@ -16,12 +16,12 @@ from autograder.grade.store import LOG, write_result
 from autograder.result.model import Artifact, CheckResult, Result, Status
 from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.cell import CellReport
-from autograder.run.sandbox.process import Ending
+from autograder.run.sandbox.process import ExitReason
 from autograder.suite import Check, Outcome, suites
 
 CHAPTER = "02_nodes"
 MakeResult = Callable[..., Result]
-DONE, FAILED = CellReport(Ending.EXITED, 0, ""), CellReport(Ending.EXITED, 1, "Traceback: of the grader")
+DONE, FAILED = CellReport(ExitReason.EXITED, 0, ""), CellReport(ExitReason.EXITED, 1, "Traceback: of the grader")
 
 
 class Worker:
@@ -38,7 +38,7 @@ class Worker:
         result = self.left.pop(0)
         if result is None:
             return FAILED
-        return CellReport(Ending.EXITED, 0, "", {"result.json": json.dumps(result.to_json()).encode()})
+        return CellReport(ExitReason.EXITED, 0, "", {"result.json": json.dumps(result.to_json()).encode()})
 
 
 @pytest.fixture

@@ -10,14 +10,14 @@ import pytest
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Shared
-from autograder.run.sandbox import Ending
+from autograder.run.sandbox import ExitReason
 
 
 class Fake:
     """Programs that end when they are told to."""
 
     def __init__(self) -> None:
-        self.processes: Any = (SimpleNamespace(ending=None), SimpleNamespace(ending=None))
+        self.processes: Any = (SimpleNamespace(exit_reason=None), SimpleNamespace(exit_reason=None))
         self.inside = False
 
     def __enter__(self) -> Fake:
@@ -39,7 +39,7 @@ def test_checks_get_the_same_harness_until_the_block_ends() -> None:
 def test_a_harness_is_replaced_once_one_of_its_programs_has_ended() -> None:
     with Shared(Fake) as shared:
         first = shared.get()
-        first.processes[1].ending = Ending.EXITED
+        first.processes[1].exit_reason = ExitReason.EXITED
         second = shared.get()
     assert second is not first
     assert not first.inside

@@ -10,7 +10,7 @@ from autograder.diagnosis import Kind
 from autograder.run.lockstep.failures import (
     diagnose_crash,
     diagnose_deadlock,
-    diagnose_ending,
+    diagnose_exit,
     diagnose_no_answer,
     diagnose_output,
     diagnose_unsteppable,
@@ -68,11 +68,11 @@ def test_a_service_callback_without_a_response_is_reported() -> None:
 
 def test_a_message_field_of_another_type_is_reported() -> None:
     code = 'import os; print("robot: Assertion `PyLong_Check(field)\' failed.", flush=True); os.abort()'
-    assert "a field, or the whole message, is of another type" in diagnose_ending(_ended(code)).sentence
+    assert "a field, or the whole message, is of another type" in diagnose_exit(_ended(code)).sentence
 
 
 def test_a_program_that_just_ends_gets_the_advice_to_spin() -> None:
-    diagnosis = diagnose_ending(_ended("print('bye')"))
+    diagnosis = diagnose_exit(_ended("print('bye')"))
     assert diagnosis.kind is Kind.ENDED_EARLY
     assert "(exit status 0)" in diagnosis.sentence
     assert "rclpy.spin(node)" in diagnosis.sentence
@@ -80,7 +80,7 @@ def test_a_program_that_just_ends_gets_the_advice_to_spin() -> None:
 
 
 def test_a_program_that_a_signal_ended_is_reported_with_the_signal() -> None:
-    diagnosis = diagnose_ending(_ended("import os; os.kill(os.getpid(), 11)"))
+    diagnosis = diagnose_exit(_ended("import os; os.kill(os.getpid(), 11)"))
     assert "(signal 11)" in diagnosis.sentence
 
 
@@ -106,14 +106,14 @@ def test_a_program_that_a_signal_ended_is_reported_with_the_signal() -> None:
 def test_a_program_over_a_limit_is_reported_with_the_limit(
     code: str, limits: dict[str, float], kind: Kind, words: str
 ) -> None:
-    diagnosis = diagnose_ending(_ended(code, **limits))
+    diagnosis = diagnose_exit(_ended(code, **limits))
     assert diagnosis.kind is kind
     assert words in diagnosis.sentence
 
 
 def test_a_program_that_runs_but_no_longer_answers_is_not_reported_as_ended() -> None:
     with Process([sys.executable, "-I", "-c", "import signal; signal.pause()"], Limits()) as process:
-        diagnosis = diagnose_ending(process)
+        diagnosis = diagnose_exit(process)
     assert diagnosis.kind is Kind.STUCK
     assert "no longer answers the grader" in diagnosis.sentence
 

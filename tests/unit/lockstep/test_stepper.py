@@ -14,7 +14,7 @@ from autograder.exceptions import StudentError
 from autograder.run import patience
 from autograder.run.lockstep import Stepper, UnsteppableError, stepper
 from autograder.run.lockstep.stepper import Timeout
-from autograder.run.sandbox import Ending, Sandbox, launcher
+from autograder.run.sandbox import ExitReason, Sandbox, launcher
 
 START = "import os, sys, signal\nread, write = int(sys.argv[1]), int(sys.argv[2])\n"
 DONE = '{"event": "done", "sent": {"/cmd_vel": 3}, "lost": [], "changed": false, "wake": null, "notes": []}\\n'
@@ -165,6 +165,6 @@ def test_the_collected_part_of_a_line_without_end_is_bounded(host: Open) -> None
 def test_the_program_is_killed_when_the_block_ends(host: Open, tmp_path: Path) -> None:
     first = host("signal.pause()")
     with Stepper(Sandbox(tmp_path), tmp_path / "node") as program:
-        assert program.process.ending is None
-    assert program.process.ending is Ending.KILLED
-    assert first.process.ending is None
+        assert program.process.exit_reason is None
+    assert program.process.exit_reason is ExitReason.KILLED
+    assert first.process.exit_reason is None

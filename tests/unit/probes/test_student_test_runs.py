@@ -19,7 +19,7 @@ from autograder.probes.student_test_reports import Report, TestRun
 from autograder.probes.student_test_runs import run, take
 from autograder.probes.versions import Version
 from autograder.ros import environment
-from autograder.run.sandbox import Ending
+from autograder.run.sandbox import ExitReason
 from autograder.run.sandbox.limits import TEST_RUN
 
 pytestmark = pytest.mark.slow  # each run is a pytest of its own
@@ -199,30 +199,30 @@ def test_a_run_that_does_not_end_is_stopped(workspace: Workspace, monkeypatch: p
     monkeypatch.setattr(student_test_runs.sandboxed, "__kwdefaults__", {"limits": limits, "network": False})
     write(workspace, GOOD + "\n\ndef test_for_ever():\n    import signal\n    while True:\n        signal.pause()\n")
     (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
-    assert report.ending is Ending.WALL_TIME
+    assert report.exit_reason is ExitReason.WALL_TIME
     assert not report.passed
 
 
 @pytest.mark.parametrize(
     ("hangs", "ends"),
     [
-        pytest.param(1, (Ending.EXITED, Ending.EXITED), id="once, where rclpy missed the end of an executor"),
-        pytest.param(2, (Ending.WALL_TIME, Ending.WALL_TIME), id="on every version, as tests that never end"),
+        pytest.param(1, (ExitReason.EXITED, ExitReason.EXITED), id="once, where rclpy missed the end of an executor"),
+        pytest.param(2, (ExitReason.WALL_TIME, ExitReason.WALL_TIME), id="on every version, as tests that never end"),
     ],
 )
 def test_the_only_stopped_run_is_repeated_once(
-    workspace: Workspace, monkeypatch: pytest.MonkeyPatch, hangs: int, ends: tuple[Ending, ...]
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch, hangs: int, ends: tuple[ExitReason, ...]
 ) -> None:
     write(workspace, GOOD)
     really, stopped = student_test_runs._run, itertools.count()
 
     def sometimes(*run: Any) -> Report:
         report = really(*run)
-        return report if next(stopped) >= hangs else replace(report, ending=Ending.WALL_TIME)
+        return report if next(stopped) >= hangs else replace(report, exit_reason=ExitReason.WALL_TIME)
 
     monkeypatch.setattr(student_test_runs, "_run", sometimes)
     reports = runs(workspace, TestRun(("test_half.py",), RIGHT), TestRun(("test_half.py",), WRONG))
-    assert tuple(report.ending for report in reports) == ends
+    assert tuple(report.exit_reason for report in reports) == ends
 
 
 def test_a_run_ends_no_sooner_than_the_threads_of_its_tests(
@@ -238,8 +238,8 @@ def test_a_run_ends_no_sooner_than_the_threads_of_its_tests(
     (short,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
     write(workspace, text.format(False))
     (endless,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
-    assert short.ending is Ending.EXITED
-    assert endless.ending is Ending.WALL_TIME
+    assert short.exit_reason is ExitReason.EXITED
+    assert endless.exit_reason is ExitReason.WALL_TIME
     assert short.passed
     assert endless.passed
 

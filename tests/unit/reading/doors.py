@@ -36,7 +36,7 @@ from autograder.probes import (
     student_test_reports,
 )
 from autograder.run.lockstep import failures, protocol, tracebacks
-from autograder.run.sandbox import Ending
+from autograder.run.sandbox import ExitReason
 from autograder.submission import exercise_stubs, intake, packages
 from autograder.submission.intake.notebooks import read_cells
 from autograder.submission.intake.writefile import written_file
@@ -78,7 +78,7 @@ def _parse_notebook(data: bytes, place: Path) -> object:
 
 
 def _answer_of_calls(answer: Any, place: Path) -> object:
-    process: Any = SimpleNamespace(ending=Ending.EXITED, returncode=0, output="")
+    process: Any = SimpleNamespace(exit_reason=ExitReason.EXITED, returncode=0, output="")
     outcomes = calls.parse_answer(json.dumps(answer).encode(), "wheels.limits", 2, process)
     for outcome in outcomes:
         found = calls.value(outcome, "limit(1.0)")
@@ -100,10 +100,10 @@ def _use(event: str, record: Any) -> object:
 
 
 def _diagnose_crash(text: str, place: Path) -> object:
-    process: Any = SimpleNamespace(ending=Ending.EXITED, returncode=1, output=text)
+    process: Any = SimpleNamespace(exit_reason=ExitReason.EXITED, returncode=1, output=text)
     lines = text.splitlines() or [""]
     crash = protocol.Crash("spin", lines[-1], text, text)
-    return failures.diagnose_output(process), failures.diagnose_ending(process), failures.diagnose_crash(crash)
+    return failures.diagnose_output(process), failures.diagnose_exit(process), failures.diagnose_crash(crash)
 
 
 def _launch_output(text: str, place: Path) -> object:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.run.sandbox import Ending, Limits, Process, cgroup
+from autograder.run.sandbox import ExitReason, Limits, Process, cgroup
 from autograder.run.sandbox.limits import MIB
 
 NEEDED = pytest.mark.skipif(
@@ -109,7 +109,7 @@ def test_memory_that_no_process_has_mapped_is_bounded(tmp_path: Path) -> None:
     assert "all" in outside.output  # nothing has entered the group
     with Process((group := cgroup.make(limits)).enter([sys.executable, "-c", code]), limits, group=group) as inside:
         assert inside.wait(60)
-    assert (inside.ending, "all" in inside.output) == (Ending.MEMORY, False)
+    assert (inside.exit_reason, "all" in inside.output) == (ExitReason.MEMORY, False)
     assert not any(folder.exists() for folder in group.folders)
 
 

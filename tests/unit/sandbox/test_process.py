@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.run.sandbox import Ending, Limits, Process
+from autograder.run.sandbox import ExitReason, Limits, Process
 from autograder.run.sandbox.limits import MIB
 from autograder.run.sandbox.procfs import measure
 
@@ -43,7 +43,7 @@ def _alive(pid: int) -> bool:
 def test_a_program_that_ends_by_itself_leaves_its_status_and_output() -> None:
     with Process(_python("print('hello'); raise SystemExit(3)"), Limits()) as process:
         assert process.wait(LONG)
-        assert (process.ending, process.returncode, process.output) == (Ending.EXITED, 3, "hello\n")
+        assert (process.exit_reason, process.returncode, process.output) == (ExitReason.EXITED, 3, "hello\n")
 
 
 def test_output_of_a_program_can_be_read_at_once() -> None:
@@ -65,8 +65,8 @@ def test_output_of_a_program_can_be_read_at_once() -> None:
 def test_a_running_program_has_neither_a_status_nor_an_exit_reason() -> None:
     with Process(_python("import signal; print('up', flush=True); signal.pause()"), Limits()) as process:
         assert _until(lambda: process.output == "up\n")
-        assert (process.ending, process.returncode) == (None, None)
-    assert process.ending is Ending.KILLED
+        assert (process.exit_reason, process.returncode) == (None, None)
+    assert process.exit_reason is ExitReason.KILLED
     assert process.returncode == -signal.SIGKILL
 
 
@@ -79,7 +79,7 @@ def test_a_program_cannot_read_from_the_grader_s_stdin() -> None:
 def test_time_is_limited() -> None:
     with Process(_python("while True: pass"), Limits(wall_seconds=0.5)) as process:
         assert process.wait(LONG)
-        assert process.ending is Ending.WALL_TIME
+        assert process.exit_reason is ExitReason.WALL_TIME
 
 
 def test_the_time_limit_of_a_forked_program_starts_when_it_enters() -> None:
@@ -87,13 +87,13 @@ def test_the_time_limit_of_a_forked_program_starts_when_it_enters() -> None:
         assert not process.wait(1.0)
         process.adopt(process.pid)
         assert process.wait(LONG)
-        assert process.ending is Ending.WALL_TIME
+        assert process.exit_reason is ExitReason.WALL_TIME
 
 
 def test_output_is_limited_and_only_its_first_part_is_kept() -> None:
     with Process(_python("while True: print('x' * 999)"), Limits(output=10_000)) as process:
         assert process.wait(LONG)
-        assert process.ending is Ending.OUTPUT
+        assert process.exit_reason is ExitReason.OUTPUT
         assert len(process.output) == 10_000
 
 
@@ -106,21 +106,21 @@ signal.pause()
 """
     with Process(_python(code), Limits(memory=150 * MIB)) as process:
         assert process.wait(LONG)
-        assert process.ending is Ending.MEMORY
+        assert process.exit_reason is ExitReason.MEMORY
 
 
 def test_many_small_processes_are_limited_by_their_number_and_not_by_memory() -> None:
     code = "import os, signal\nfor _ in range(40): os.fork() or signal.pause()\nsignal.pause()"
     with Process(_python(code), Limits(memory=120 * MIB)) as process:
         assert process.wait(LONG)
-        assert process.ending is Ending.THREADS
+        assert process.exit_reason is ExitReason.THREADS
 
 
 def test_threads_of_the_whole_tree_are_limited() -> None:
     code = "import threading\nfor _ in range(60): threading.Thread(target=threading.Event().wait).start()"
     with Process(_python(code), Limits(threads=30)) as process:
         assert process.wait(LONG)
-        assert process.ending is Ending.THREADS
+        assert process.exit_reason is ExitReason.THREADS
 
 
 def test_a_program_that_ignores_sigterm_is_killed_with_its_children() -> None:
@@ -153,7 +153,7 @@ print(subprocess.Popen([sys.executable, "-I", "-c", "import signal; signal.pause
     with Process(_python(code), Limits()) as process:
         assert process.wait(LONG)
         grandchild = int(process.output)
-        assert process.ending is Ending.EXITED
+        assert process.exit_reason is ExitReason.EXITED
         assert _alive(grandchild)
     os.kill(grandchild, signal.SIGKILL)
 
@@ -163,7 +163,7 @@ def test_signals_after_the_end_do_nothing() -> None:
         assert process.wait(LONG)
         process.signal(signal.SIGINT)
         process.kill()
-        assert (process.ending, process.returncode) == (Ending.EXITED, 0)
+        assert (process.exit_reason, process.returncode) == (ExitReason.EXITED, 0)
 
 
 def test_a_program_has_only_the_given_environment() -> None:
@@ -217,10 +217,10 @@ def test_many_processes_at_once_are_each_watched() -> None:
             process.__exit__()
 
 
-@pytest.mark.parametrize(("seconds", "ending"), [(0.5, Ending.EXITED), (LONG, Ending.THREADS)])
-def test_a_worker_sandbox_survives_a_bomb_that_is_stopped_in_it(seconds: float, ending: Ending) -> None:
+@pytest.mark.parametrize(("seconds", "exit_reason"), [(0.5, ExitReason.EXITED), (LONG, ExitReason.THREADS)])
+def test_a_worker_sandbox_survives_a_bomb_that_is_stopped_in_it(seconds: float, exit_reason: ExitReason) -> None:
     code = "import threading, time\nwait = threading.Event()\nfor _ in range(30):\n    "
     code += f"threading.Thread(target=wait.wait).start()\ntime.sleep({seconds})\nwait.set()"
     with Process(_python(code), Limits(threads=10, looks=8)) as process:
         assert process.wait(LONG)
-        assert process.ending is ending
+        assert process.exit_reason is exit_reason

@@ -20,19 +20,19 @@ from autograder.harness import Workspace
 from autograder.probes.colcon_test import expect_ended
 from autograder.probes.student_test_reports import ClaimedOutcome, Claims, Report, Source
 from autograder.ros import environment
-from autograder.run.sandbox import Ending
+from autograder.run.sandbox import ExitReason
 from autograder.suite import CheckFailed
 
 GOOD, BAD = ClaimedOutcome.PASSED, ClaimedOutcome.FAILED
 
 
 def report(
-    *verdicts: ClaimedOutcome, status: int | None = None, ending: Ending | None = None, message: str = ""
+    *verdicts: ClaimedOutcome, status: int | None = None, exit_reason: ExitReason | None = None, message: str = ""
 ) -> Report:
     names = [f"test_limits::test_{number}" for number in range(len(verdicts))]
     said = {name: message if verdict is BAD else "" for name, verdict in zip(names, verdicts, strict=True)}
     implied = int(BAD in verdicts) if status is None else status
-    return Report(ending, implied, Claims(dict(zip(names, verdicts, strict=True)), said), 0, "")
+    return Report(exit_reason, implied, Claims(dict(zip(names, verdicts, strict=True)), said), 0, "")
 
 
 ENOUGH = report(*[GOOD] * MIN_TESTS[LIMITS])
@@ -43,7 +43,7 @@ ENOUGH = report(*[GOOD] * MIN_TESTS[LIMITS])
     [
         (None, "There is no test/test_limits.py in the package speed_guard.", False),
         (
-            replace(report(ending=Ending.WALL_TIME), status=None),
+            replace(report(exit_reason=ExitReason.WALL_TIME), status=None),
             "The tests in test_limits.py do not end on the package as it is.",
             False,
         ),
@@ -69,7 +69,7 @@ ENOUGH = report(*[GOOD] * MIN_TESTS[LIMITS])
             False,
         ),
         (
-            replace(report(ending=Ending.MEMORY), status=None),
+            replace(report(exit_reason=ExitReason.MEMORY), status=None),
             "The tests in test_limits.py ended on the package as it is before pytest could say how they went: memory.",
             False,
         ),
@@ -106,7 +106,7 @@ def test_only_known_names_of_a_closed_report_are_shown() -> None:
 
 def test_a_stopped_colcon_test_is_not_reported_as_without_tests() -> None:
     with pytest.raises(CheckFailed, match=r"`colcon test` did not end within 150 s and was stopped"):
-        expect_ended(report(status=None, ending=Ending.WALL_TIME))
+        expect_ended(report(status=None, exit_reason=ExitReason.WALL_TIME))
     expect_ended(report(status=1))
 
 
@@ -150,7 +150,7 @@ def test_a_test_that_also_fails_on_right_versions_earns_nothing(examination: Exa
 
 
 def test_a_stopped_run_counts_as_failed_and_as_endless(examination: Examination) -> None:
-    examination.__dict__["runs"][LIMITS, "nan_is_clear"] = report(ending=Ending.WALL_TIME)
+    examination.__dict__["runs"][LIMITS, "nan_is_clear"] = report(exit_reason=ExitReason.WALL_TIME)
     examination.expect_objection("unknown", "the promise.")
     assert examination.endless() == [LIMITS]
 

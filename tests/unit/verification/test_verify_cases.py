@@ -21,7 +21,7 @@ from autograder.grade.pipeline import refused
 from autograder.result.model import Status
 from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.cell import CellReport
-from autograder.run.sandbox.process import Ending
+from autograder.run.sandbox.process import ExitReason
 from autograder.submission.intake import read_submission
 from autograder.suite.suites import Suite
 
@@ -39,7 +39,7 @@ class NoGrader:
 
     def __call__(self, job: Job) -> CellReport:
         self._together.wait()
-        return CellReport(Ending.EXITED, 1, f"nobody grades {job.student}")
+        return CellReport(ExitReason.EXITED, 1, f"nobody grades {job.student}")
 
 
 class OneByOne(NoGrader):
@@ -61,7 +61,7 @@ class Recorder(OneByOne):
         digest = read_submission(job.path, job.assignment).sha256
         result = refused(job, Diagnosis(Kind.OK, "It was looked at."))
         recorded = replace(result, submission_sha256=digest, status=Status.GRADED).to_json()
-        return CellReport(Ending.EXITED, 0, "", {"result.json": json.dumps(recorded).encode()})
+        return CellReport(ExitReason.EXITED, 0, "", {"result.json": json.dumps(recorded).encode()})
 
 
 def case(assignment: str, write: Callable[[Path], None] = Path.mkdir) -> Case:

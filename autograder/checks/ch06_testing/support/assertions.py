@@ -63,6 +63,6 @@ def describe_failure(name: str, report: student_test_reports.Report, where: str)
     if report.status in (0, 5):
         return f"No test in {name} ran {where}."
     if report.status is None:
-        why = report.ending.value.replace("_", " ") if report.ending else "no report"
+        why = report.exit_reason.value.replace("_", " ") if report.exit_reason else "no report"
         return f"The tests in {name} ended {where} before pytest could say how they went: {why}."
     return f"pytest cannot run {name} {where}; it ended with exit status {report.status}."
