@@ -38,12 +38,12 @@ def current() -> str:
 
 def rows() -> list[tuple[str, str, str, str]]:
     """Return the rows: the resource, its limit, how it is enforced, and the file that tests it."""
-    node, build, cell = limits.NODE, limits.BUILD, limits.GRADING_CELL
+    node, build, worker = limits.NODE, limits.BUILD, limits.GRADING_WORKER
     forbidden = ", ".join(name for name in seccomp.FORBIDDEN if name in ("memfd_create", "shmget", "msgget", "add_key"))
     return [
         (
             "wall time of a submission",
-            f"{cell.wall_seconds:.0f} s for all attempts",
+            f"{worker.wall_seconds:.0f} s for all attempts",
             "the process that starts the worker",
             "test_time_budget",
         ),
@@ -66,7 +66,7 @@ def rows() -> list[tuple[str, str, str, str]]:
             "a watcher, a control group",
             SANDBOX,
         ),
-        ("memory of a worker sandbox", _mib(cell.memory), "a watcher, a control group", SANDBOX),
+        ("memory of a worker sandbox", _mib(worker.memory), "a watcher, a control group", SANDBOX),
         ("threads of a program", f"{node.threads}", f"a watcher; the kernel at {node.tasks}", SANDBOX),
         ("descriptors of a process", f"{node.open_files}", "the kernel", SANDBOX),
         (
@@ -85,7 +85,7 @@ def rows() -> list[tuple[str, str, str, str]]:
         ("keys, queues, segments, files in memory", "none", f"a system call filter ({forbidden}, …)", SANDBOX),
         ("size of a file; new files", f"{_mib(node.file_size)}; {node.files:,}", "the kernel; a watcher", SANDBOX),
         ("/tmp and /dev/shm of a program", _mib(node.scratch), "a file system in memory", SANDBOX),
-        ("a worker sandbox's scratch folder", _mib(limits.CELL_SCRATCH), "a file system in memory", ARGUMENTS),
+        ("a worker sandbox's scratch folder", _mib(limits.WORKER_SCRATCH), "a file system in memory", ARGUMENTS),
         ("printed output", f"{_mib(node.output)}; {_mib(build.output)} in a build", "a watcher", SANDBOX),
         (
             "a submission",

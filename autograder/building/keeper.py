@@ -1,7 +1,7 @@
 """What outlives a grading, on the side of who started the worker: built interface packages, for all who bring them.
 
 A worker cannot write to the cache. It sends sources. Who started it looks them up by their content; where they are new
-it has them built by another worker in a cell of its own, which sees these sources and nothing else of any submission.
+it has them built by another worker in its own sandbox, which sees these sources and nothing else of any submission.
 So an entry is what an untouched worker makes of the content that it is kept under: a worker that was taken over can
 have its own sources built, and cannot say what anybody else's become.
 """
@@ -28,8 +28,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.ros import find
 from autograder.run.sandbox import Isolation
-from autograder.run.sandbox.cell import ended, in_cell
-from autograder.run.sandbox.limits import BUILD, GRADING_CELL, KEPT, RESULT_FILES, SOURCES
+from autograder.run.sandbox.limits import BUILD, GRADING_WORKER, KEPT, RESULT_FILES, SOURCES
 from autograder.run.sandbox.parcel import (
     ParcelError,
     receive_message,
@@ -39,6 +38,7 @@ from autograder.run.sandbox.parcel import (
     write_received,
 )
 from autograder.run.sandbox.trees import Entry, read_tree
+from autograder.run.sandbox.worker_sandbox import ended, in_worker_sandbox
 
 CACHE = "bundles"
 VERSION = 3  # of the way in which a bundle is built and kept
@@ -145,16 +145,16 @@ def _make_once(asked: float, sources: Mapping[Entry, bytes], isolation: Isolatio
 
 
 def _make(sources: Mapping[Entry, bytes], isolation: Isolation, entry: Path) -> None:
-    """Fill a new entry with what a worker in a cell of its own makes of some sources."""
+    """Fill a new entry with what a worker in its own sandbox makes of some sources."""
     ours, theirs = Pipe()
 
     def command(scratch: Path) -> list[str]:
         return [sys.executable, "-m", "autograder.building.bundle_worker", str(scratch), str(theirs.fileno())]
 
-    limits = replace(GRADING_CELL, wall_seconds=BUILD.wall_seconds + _MARGIN)
+    limits = replace(GRADING_WORKER, wall_seconds=BUILD.wall_seconds + _MARGIN)
     with ours, ExitStack() as stack:
         with theirs:
-            process, _ = stack.enter_context(in_cell(command, isolation, limits, pass_fds=(theirs.fileno(),)))
+            process, _ = stack.enter_context(in_worker_sandbox(command, isolation, limits, pass_fds=(theirs.fileno(),)))
         try:
             send_tree(ours, sources)
             reply = receive_message(ours)

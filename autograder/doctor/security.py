@@ -14,9 +14,9 @@ from autograder.doctor.escapes import CANARY, ESCAPES, Escape
 from autograder.doctor.finding import Finding, Status
 from autograder.ros import activate
 from autograder.run.sandbox import Isolation, Mount, Sandbox, cgroup
-from autograder.run.sandbox.cell import run_in_cell
 from autograder.run.sandbox.isolation import namespaces_failure
 from autograder.run.sandbox.launcher import launch, warm_up
+from autograder.run.sandbox.worker_sandbox import run_in_worker_sandbox
 
 VERDICTS = ("Every escape was blocked.", "An escape succeeded: docs/security.md explains the limits.")
 _PROFILE = "lockstep"  # of nodes
@@ -67,7 +67,7 @@ def examine() -> tuple[Finding, ...]:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = str(server.getsockname()[1])
         command = [sys.executable, "-m", "autograder.doctor.security", port]
-        report = run_in_cell(lambda scratch: [*command, str(scratch)], Isolation.BUBBLEWRAP)
+        report = run_in_worker_sandbox(lambda scratch: [*command, str(scratch)], Isolation.BUBBLEWRAP)
     for line in report.output.splitlines():
         with suppress(ValueError):
             outs |= json.loads(line)

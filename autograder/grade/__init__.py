@@ -2,7 +2,7 @@
 
     submission -> intake -> notebook (restored, then executed) -> build -> checks -> result
 
-`grade_submission` starts a worker (`worker.py`) for one submission in a cell of its own. The worker goes through the
+`grade_submission` starts a worker (`worker.py`) for one submission in its own sandbox. The worker goes through the
 phases and runs students' code only in sandboxes. The proof's many submissions share a few workers.
 """
 

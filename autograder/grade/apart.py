@@ -1,4 +1,4 @@
-"""Reads of a submission what is known before it is graded. Where root asks, another user reads it, in a cell.
+"""Reads a submission before it is graded. For root, another user reads it, in a worker sandbox.
 
 python -m autograder.grade.apart READER PATH ASSIGNMENT
 """
@@ -21,14 +21,14 @@ from autograder.grade.bounded_json import RESULT_VALUES, read_json
 from autograder.plain_text import clean
 from autograder.result.model import structure
 from autograder.run.sandbox import Isolation
-from autograder.run.sandbox.cell import run_in_cell
-from autograder.run.sandbox.limits import READING_CELL
+from autograder.run.sandbox.limits import READING_WORKER
 from autograder.run.sandbox.spec import View
+from autograder.run.sandbox.worker_sandbox import run_in_worker_sandbox
 from autograder.submission import intake
 from autograder.submission.intake import Submission
 from autograder.submission.intake.notebooks import read_cells
 
-MAX_CODE = 200_000  # characters of Python that leave the cell
+MAX_CODE = 200_000  # characters of Python that leave the worker sandbox
 
 
 @dataclass(frozen=True)
@@ -102,15 +102,15 @@ READERS: dict[str, Callable[[Submission], Any]] = {
 
 def _read(reader: str, path: Path, assignment: str, isolation: Isolation) -> Any:
     if os.geteuid() == 0 and isolation is Isolation.BUBBLEWRAP and path.exists():
-        return _in_cell(reader, path.resolve(), assignment)
+        return _in_worker_sandbox(reader, path.resolve(), assignment)
     return READERS[reader](intake.read_submission(path, assignment))
 
 
-def _in_cell(reader: str, path: Path, assignment: str) -> Any:
+def _in_worker_sandbox(reader: str, path: Path, assignment: str) -> Any:
     command = [sys.executable, "-m", "autograder.grade.apart", reader, str(path), assignment]
     chapter = layout.CHAPTERS / assignment  # a course directory of nbgrader may have others
     view = View(shown=(chapter,) if chapter.is_dir() else (), submitted=(path,))
-    report = run_in_cell(lambda scratch: command, Isolation.BUBBLEWRAP, READING_CELL, view=view)
+    report = run_in_worker_sandbox(lambda scratch: command, Isolation.BUBBLEWRAP, READING_WORKER, view=view)
     try:
         answer = read_json(report.output.rpartition("\n")[2].encode(), RESULT_VALUES)
         if "refused" in answer:

@@ -1,4 +1,4 @@
-"""Grading a class: many submissions at once, each in a cell of its own, results written one by one."""
+"""Grading a class: many submissions at once, each in its own worker sandbox, results written one by one."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from autograder.grade.apart import Digests, read_digests
 from autograder.result.model import structure
 from autograder.run.sandbox import Isolation
-from autograder.run.sandbox.limits import GRADING_CELL
+from autograder.run.sandbox.limits import GRADING_WORKER
 from autograder.suite import suites
 from autograder.suite.suites import Suite
 
@@ -41,9 +41,11 @@ class Job:
     out: Path
     isolation: Isolation = Isolation.BUBBLEWRAP  # how the submission is isolated
     scope: Scope = ALL  # how much of the suite is run
-    seconds: float = GRADING_CELL.wall_seconds  # real time for all of it: a second grading has what the first has left
+    seconds: float = (
+        GRADING_WORKER.wall_seconds
+    )  # real time for all of it: a second grading has what the first has left
     # Who starts the worker sets the rest.
-    scratch: Path = Path()  # the cell's own file system; nothing in it outlives the cell
+    scratch: Path = Path()  # a file system of the worker sandbox, which ends with it
     # Whether no other try follows: an error that may be a program's or the machine's is then the program's.
     last: bool = False
 

@@ -1,4 +1,4 @@
-"""Grading one submission: a worker in a cell, and one retry when the grader itself failed.
+"""Grades one submission in a worker sandbox, and retries once if the grader itself failed.
 
 A program that cannot be stepped may lose a point that it deserves on a busy machine. Where the machine was seen to hold
 it up and it lost a point, the submission is graded once more while this process grades nothing else.
@@ -16,27 +16,27 @@ from autograder.exceptions import UsageError
 from autograder.grade.answer import AnswerError, checked
 from autograder.grade.job import Job
 from autograder.grade.machine_lock import MachineLock
-from autograder.grade.own_cell import in_own_cell
+from autograder.grade.own_sandbox import in_own_sandbox
 from autograder.grade.store import LOG, write_result
 from autograder.result.model import Build, CheckResult, Result, Status
 from autograder.ros.launch_packages import describe_launch
 from autograder.run.sandbox import require
-from autograder.run.sandbox.cell import CellReport
 from autograder.run.sandbox.process import ExitReason
+from autograder.run.sandbox.worker_sandbox import WorkerReport
 from autograder.suite import suites
 
 TRIES = 2
 LEAST = 1 / 4  # of the time that a submission has: a try with less would only show that it is too little
 DEFAULT_SEED = 2026  # of every grading that names none, so that the ways to grade draw the same inputs
 
-RunJob = Callable[[Job], CellReport]
-"""Runs a job in a cell."""
+RunJob = Callable[[Job], WorkerReport]
+"""Runs a job in a worker sandbox."""
 
 
 _machine = MachineLock()
 
 
-def grade_submission(job: Job, run_job: RunJob = in_own_cell) -> Result:
+def grade_submission(job: Job, run_job: RunJob = in_own_sandbox) -> Result:
     """Grade one submission; `run_job` runs its worker. An old result stays until the new one is complete.
 
     Returns:
@@ -72,7 +72,7 @@ class Budget:
         """Whether a grading may begin."""
         return self.left >= LEAST * self.seconds
 
-    def spend(self, job: Job, run_job: RunJob) -> CellReport:
+    def spend(self, job: Job, run_job: RunJob) -> WorkerReport:
         """Run a job in the time that is left; what waits for its turn on the machine costs nothing."""
         began = time.monotonic()
         try:

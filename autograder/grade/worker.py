@@ -1,4 +1,4 @@
-"""The worker: the trusted process that grades one submission inside its cell.
+"""The worker: the trusted process that grades one submission inside its sandbox.
 
     python -m autograder.grade.worker JOB DESCRIPTOR
 

@@ -27,7 +27,7 @@ from autograder.ros import find
 from autograder.ros.environment import LOGS_TO_STDOUT, path_with_scripts, without_wheel_bootstrap
 from autograder.ros.launch_packages import describe_launch
 from autograder.run.sandbox import best_isolation
-from autograder.run.sandbox.cell import passed_variables
+from autograder.run.sandbox.worker_sandbox import passed_variables
 from autograder.suite import fingerprint
 
 CACHE = "checks"

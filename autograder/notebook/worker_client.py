@@ -15,9 +15,9 @@ from autograder import layout
 from autograder.building import keeper
 from autograder.exceptions import GraderError, UsageError
 from autograder.run.sandbox import Isolation, best_isolation
-from autograder.run.sandbox.cell import ended, in_cell, place_of
-from autograder.run.sandbox.limits import NOTEBOOK_CELL
+from autograder.run.sandbox.limits import NOTEBOOK_WORKER
 from autograder.run.sandbox.spec import View
+from autograder.run.sandbox.worker_sandbox import ended, in_worker_sandbox, place_of
 from autograder.suite.fingerprint import places
 
 REQUEST = "request.json"
@@ -88,7 +88,13 @@ def run_on(
         if source.is_file():
             visible_paths.append(layout.chapter(arguments["assignment"]))  # from which its reader knows what was given
         view = View(shown=tuple(visible_paths), submitted=(source,), writable=(Path(folder),))
-        with theirs, in_cell(command, isolation, NOTEBOOK_CELL, view=view, pass_fds=(theirs.fileno(),)) as (process, _):
+        with (
+            theirs,
+            in_worker_sandbox(command, isolation, NOTEBOOK_WORKER, view=view, pass_fds=(theirs.fileno(),)) as (
+                process,
+                _,
+            ),
+        ):
             theirs.close()  # once the worker has ended, nobody holds its end
             tell = _Early(Path(folder) / EARLY_FILE, early)
             # It asks for interface packages. Between its questions, it is looked after.

@@ -1,10 +1,10 @@
-"""How long a submission may keep the grader waiting: one account for all that a grading waits for.
+"""Limits how long a submission may keep the grader waiting: one account for all waits of a grading.
 
-There is one grading in a process; where there is none, as in a notebook, nothing is counted.
+A process runs one grading at a time. Outside a grading, as in a notebook, nothing is counted.
 
 Each wait for a program has a bound of its own. But a program that sleeps a little at each step, or that takes a minute
-to start for each check, stays within all of them and could hold a grading for as long as its cell lives; the grading
-would then have no result. So there are two bounds in all, and the student's is the fault that comes to one of them.
+to start for each check, stays within all of them. It could hold a grading until its worker sandbox is stopped, and
+there would be no result. So there are two bounds on the sums, and exceeding one is a failure of the student's program.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from autograder.exceptions import StudentError
 # For answers to steps, without the time for which a busy machine kept the programs from running. A reference's
 # answers take less than 40 s, on a machine with eight times as much to do as it can.
 HELD_SECONDS = 180.0
-RESERVE = 1 / 15  # of a cell's life, for what the grader does itself when the time is over
+RESERVE = 1 / 15  # of the lifetime of a worker sandbox, for the work of the grader after the time is over
 
 
 class _Account:

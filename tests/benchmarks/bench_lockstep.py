@@ -15,7 +15,7 @@ from typing import Any
 
 from autograder.layout import ROOT
 from autograder.run.sandbox import Isolation
-from autograder.run.sandbox.cell import run_in_cell
+from autograder.run.sandbox.worker_sandbox import run_in_worker_sandbox
 
 STEPS = 2000
 CHAIN_STEPS = 500
@@ -49,7 +49,7 @@ except KeyboardInterrupt:
 
 def figures() -> dict[str, float]:
     """Return `lockstep.steps_per_s` and `lockstep.three_programs_steps_per_s`, each the median of several runs."""
-    report = run_in_cell(lambda scratch: [sys.executable, "-c", RUN, str(scratch)], Isolation.BUBBLEWRAP)
+    report = run_in_worker_sandbox(lambda scratch: [sys.executable, "-c", RUN, str(scratch)], Isolation.BUBBLEWRAP)
     if report.returncode != 0:
         raise RuntimeError(report.output)
     rates = json.loads(report.output.splitlines()[-1])

@@ -19,7 +19,7 @@ from autograder.ros import environment
 from autograder.run.sandbox import Mount, Sandbox
 from autograder.run.sandbox.launcher import launch
 from autograder.submission.packages import find_packages
-from tests.e2e.cell_support import in_cell, is_forked
+from tests.e2e.sandbox_support import in_worker_sandbox, is_forked
 
 
 def forked(scratch: Path) -> bool:
@@ -34,7 +34,7 @@ def forked(scratch: Path) -> bool:
 @pytest.fixture(scope="session")
 def forks() -> None:
     """For tests of programs that are forked into sandboxes, which a kernel may forbid: then they are started."""
-    if not in_cell(forked):
+    if not in_worker_sandbox(forked):
         pytest.skip("this machine lets no process join a sandbox")
 
 

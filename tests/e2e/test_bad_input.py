@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from tests.e2e.cell_support import in_cell
+from tests.e2e.sandbox_support import in_worker_sandbox
 
 
 def executed(scratch: Path, cells: list[str]) -> dict[str, Any]:
@@ -52,7 +52,7 @@ def _kernels() -> list[str]:
     ],
 )
 def test_a_cell_over_a_limit_ends_the_run_and_files_written_before_count(cell: str, printed: str | None) -> None:
-    answer = in_cell(executed, ["%%writefile before.txt\nkept", cell])
+    answer = in_worker_sandbox(executed, ["%%writefile before.txt\nkept", cell])
     assert "before.txt" in answer["files"]
     assert printed is None or answer["printed"][1] == printed
     assert answer["left"] == []
@@ -73,7 +73,7 @@ FORGED = "import os\nkernel = get_ipython().kernel\nsession, io = kernel.session
     ],
 )
 def test_a_message_that_no_kernel_sends_at_most_ends_the_run_and_earlier_files_count(message: str) -> None:
-    answer = in_cell(executed, ["%%writefile before.txt\nkept", f"{FORGED}{message}\nprint('sent')", "1 + 1"])
+    answer = in_worker_sandbox(executed, ["%%writefile before.txt\nkept", f"{FORGED}{message}\nprint('sent')", "1 + 1"])
     assert answer["files"] == ["before.txt"]
     assert answer["left"] == []
 
@@ -86,7 +86,7 @@ def test_a_cell_that_asks_for_input_raises_or_exits_does_not_stop_the_next_cell(
         "raise KeyboardInterrupt",
         "print('still here')",
     ]
-    answer = in_cell(executed, cells)
+    answer = in_worker_sandbox(executed, cells)
     assert "division by zero" in answer["printed"][1]
     assert answer["printed"][-1] == "still here\n"
 
@@ -104,4 +104,4 @@ try:
 except OSError as error:
     print(error.errno in (101, 111))
 """
-    assert in_cell(executed, [code])["printed"] == ["hidden\nTrue\n"]
+    assert in_worker_sandbox(executed, [code])["printed"] == ["hidden\nTrue\n"]

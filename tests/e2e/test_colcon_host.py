@@ -19,7 +19,7 @@ from autograder.ros import environment
 from autograder.run.sandbox import Mount, Sandbox
 from autograder.run.sandbox.launcher import launch
 from autograder.run.sandbox.limits import BUILD
-from tests.e2e.cell_support import in_cell, is_forked
+from tests.e2e.sandbox_support import in_worker_sandbox, is_forked
 
 pytestmark = pytest.mark.usefixtures("forks")
 
@@ -109,7 +109,7 @@ def files(folder: Path) -> dict[str, list[Any]]:
 
 
 def test_reference_packages_are_installed_alike_by_a_forked_and_a_started_colcon() -> None:
-    started, forked = in_cell(builds, [["my_robot_package"], ["my_robot_bringup"], ["speed_guard"]])
+    started, forked = in_worker_sandbox(builds, [["my_robot_package"], ["my_robot_bringup"], ["speed_guard"]])
     assert (started["status"], forked["status"]) == (0, 0), forked["output"]
     assert len(started["installed"]) > 100
     assert forked["installed"] == started["installed"]
@@ -117,7 +117,7 @@ def test_reference_packages_are_installed_alike_by_a_forked_and_a_started_colcon
 
 
 def test_a_setup_py_sees_the_same_in_a_forked_and_a_started_colcon() -> None:
-    found = in_cell(builds, [["speed_guard", SPIES]])
+    found = in_worker_sandbox(builds, [["speed_guard", SPIES]])
     for built in found:
         assert built["status"] == 0, built["output"]
         assert "a word to stderr" in built["output"]
@@ -151,7 +151,7 @@ def test_a_setup_py_sees_the_same_in_a_forked_and_a_started_colcon() -> None:
     ],
 )
 def test_a_failing_setup_py_is_reported_alike_by_a_forked_and_a_started_colcon(line: str) -> None:
-    started, forked = in_cell(builds, [["speed_guard", "import os, sys", line]])
+    started, forked = in_worker_sandbox(builds, [["speed_guard", "import os, sys", line]])
     assert started["status"] != 0
     assert forked["status"] == started["status"]
     assert told(forked["output"]) ^ told(started["output"]) == set()

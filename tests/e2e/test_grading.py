@@ -19,7 +19,7 @@ from autograder import cli
 from autograder.author.verification.mutants import write_reference
 from autograder.diagnosis import Kind
 from autograder.exceptions import IsolationError, UsageError
-from autograder.grade import grade_submission, own_cell
+from autograder.grade import grade_submission, own_sandbox
 from autograder.grade.batch import grade_all
 from autograder.grade.job import Job
 from autograder.result.model import Result, Status, write_json
@@ -220,7 +220,7 @@ def worker(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     def put(*codes: str) -> None:
         left = itertools.cycle(codes)
         monkeypatch.setattr(
-            own_cell, "_worker", lambda job, line: [sys.executable, "-c", next(left), job.to_json(), str(line)]
+            own_sandbox, "_worker", lambda job, line: [sys.executable, "-c", next(left), job.to_json(), str(line)]
         )
 
     return put

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from tests.e2e.cell_support import in_cell
+from tests.e2e.sandbox_support import in_worker_sandbox
 from tests.e2e.trigraph import trigraph_text
 
 PACKAGES = ("my_robot_interfaces", "my_robot_package")
@@ -60,5 +60,5 @@ def talk(scratch: Path) -> dict[str, Any]:
 
 
 def test_code_in_a_message_library_runs_only_in_the_sandbox() -> None:
-    answer = in_cell(talk)
+    answer = in_worker_sandbox(talk)
     assert answer == {"level": 50, "trip": True, "said": ["PAYLOAD ran"], "outside": False, "loaded": []}

@@ -13,7 +13,7 @@ from autograder.author.course.forms import CODE_STUB
 from autograder.building.interfaces import load_interfaces
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
-from tests.e2e.cell_support import in_cell
+from tests.e2e.sandbox_support import in_worker_sandbox
 
 PACKAGE, OUTER = "my_robot_interfaces", "fleet_interfaces"
 SECONDS = 20.0
@@ -85,7 +85,7 @@ def talk(scratch: Path) -> dict[str, Any]:
 
 @pytest.mark.promise("It uses the real ROS 2 Jazzy: rclpy, DDS, rosidl and colcon, installed by pip.")
 def test_both_ends_have_the_same_type_hash_and_exchange_messages() -> None:
-    answer = in_cell(talk)
+    answer = in_worker_sandbox(talk)
     assert answer["levels"] == [42], answer
     assert len(answer["hashes"]) == 1, answer
 

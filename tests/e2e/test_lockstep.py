@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.e2e.cell_support import in_cell
+from tests.e2e.sandbox_support import in_worker_sandbox
 
 HEAD = """
 import sys
@@ -139,7 +139,7 @@ def trace(scratch: Path, program: str, runs: int) -> list[Any]:
 @lru_cache
 def two_runs(name: str) -> Any:
     """Return the traces of two runs of a program."""
-    return in_cell(trace, PROGRAMS[name], 2)
+    return in_worker_sandbox(trace, PROGRAMS[name], 2)
 
 
 @pytest.mark.promise("Robot time is stepped.")
@@ -197,7 +197,7 @@ run(lambda: rclpy.spin(Forger()))
 
 
 def test_a_forged_message_count_delays_the_grader_and_is_not_believed() -> None:
-    (run,) = in_cell(impatient, FORGER)
+    (run,) = in_worker_sandbox(impatient, FORGER)
     assert 0 < len(run["said"]) <= 2 * STEPS
 
 
@@ -236,6 +236,6 @@ def wild(scratch: Path, program: str) -> list[str]:
     ],
 )
 def test_a_failing_program_gets_the_reason(program: str, kind: str, words: str) -> None:
-    found, sentence = in_cell(wild, program)
+    found, sentence = in_worker_sandbox(wild, program)
     assert found == kind, sentence
     assert words in sentence

@@ -12,7 +12,7 @@ import pytest
 
 from autograder.run.sandbox import Limits, Process
 from tests.e2e import lockstep_programs as programs
-from tests.e2e.cell_support import in_cell
+from tests.e2e.sandbox_support import in_worker_sandbox
 
 INTERFACES = {
     "action/Count.action": "int32 order\n---\nint32[] sequence\n---\nint32 last\n",
@@ -91,7 +91,7 @@ def server(scratch: Path) -> Any:
 
 
 def test_services_and_parameter_services_answer_without_a_step_of_ros_time() -> None:
-    answers, speed, seconds, heard = in_cell(server)
+    answers, speed, seconds, heard = in_worker_sandbox(server)
     assert answers == ["1", "2", None, None, [True, ""], [False, "too fast"]]
     assert speed == 0.9
     assert seconds == pytest.approx(0.5)
@@ -114,7 +114,7 @@ def given(scratch: Path) -> Any:
 
 
 def test_a_program_gets_its_arguments_in_lockstep_and_in_real_time() -> None:
-    assert in_cell(given) == [[["/driver"], 0.25]] * 2
+    assert in_worker_sandbox(given) == [[["/driver"], 0.25]] * 2
 
 
 def goals(scratch: Path, program: str) -> Any:
@@ -142,7 +142,7 @@ def goals(scratch: Path, program: str) -> Any:
 
 @pytest.mark.parametrize("name", programs.ACTION_SERVERS)
 def test_an_action_gives_feedback_and_a_result_in_ros_time(name: str) -> None:
-    over, ends, sequence, feedback, stopped, cancelled = in_cell(goals, programs.ACTION_SERVERS[name])
+    over, ends, sequence, feedback, stopped, cancelled = in_worker_sandbox(goals, programs.ACTION_SERVERS[name])
     assert over
     assert sequence == [0, 1, 2]
     assert [last for _, last in feedback] == [0, 1, 2]
@@ -175,7 +175,7 @@ def clients(scratch: Path) -> Any:
 
 
 def test_a_client_gets_its_responses_at_once_in_each_way_of_waiting() -> None:
-    found = in_cell(clients)
+    found = in_worker_sandbox(clients)
     for name, heard in found.items():
         times = [0.5, 0.5, 1.0, 1.0, 1.5, 1.5] if name == "await" else [0.5, 1.0, 1.5]
         if name == "spin_until_future_complete":
@@ -197,7 +197,7 @@ def late(scratch: Path) -> Any:
 
 
 def test_a_service_that_is_created_later_is_available_from_the_next_step() -> None:
-    assert [text for _, text in in_cell(late)] == [
+    assert [text for _, text in in_worker_sandbox(late)] == [
         "patient nobody 0.100",
         "patient nobody 0.200",
         "patient got 1 0.300",
@@ -217,7 +217,7 @@ def unanswered(scratch: Path) -> Any:
 
 
 def test_a_timeout_is_counted_in_ros_time_exact_to_the_tick() -> None:
-    heard = in_cell(unanswered)
+    heard = in_worker_sandbox(unanswered)
     assert [text.split()[1:3] for _, text in heard] == [["no", "answer"]] * 3
     assert [seconds for seconds, _ in heard] == pytest.approx([0.35, 0.7, 1.05], abs=0.011)
 
@@ -236,7 +236,7 @@ def alone(scratch: Path, text: str, seconds: float) -> Any:
 
 
 def test_timers_can_be_created_late_cancelled_and_reset() -> None:
-    heard, also, _, _ = in_cell(alone, programs.TIMERS, 1.3)
+    heard, also, _, _ = in_worker_sandbox(alone, programs.TIMERS, 1.3)
     texts = [text.rsplit(" ", 1)[0].split()[1] for _, text in heard]
     assert [s for (s, _), text in zip(heard, texts, strict=True) if text == "tick"] == [0.4, 0.8, 1.2]
     assert [s for (s, _), text in zip(heard, texts, strict=True) if text == "shot"] == [0.3, 1.1]
@@ -246,7 +246,7 @@ def test_timers_can_be_created_late_cancelled_and_reset() -> None:
 
 
 def test_the_wall_clock_and_sleep_follow_ros_time() -> None:
-    heard, _, _, notes = in_cell(alone, programs.WALL_CLOCK, 0.6)
+    heard, _, _, notes = in_worker_sandbox(alone, programs.WALL_CLOCK, 0.6)
     assert not notes
     assert heard[:4] == [
         [0.1, "wall 0.10 0.10 0.100"],
@@ -258,13 +258,13 @@ def test_the_wall_clock_and_sleep_follow_ros_time() -> None:
 
 @pytest.mark.parametrize("program", ["OWN_CONTEXT", "BY_EVENTS"])
 def test_a_program_with_its_own_context_or_executor_is_stepped(program: str) -> None:
-    heard, _, _, notes = in_cell(alone, getattr(programs, program), 0.35)
+    heard, _, _, notes = in_worker_sandbox(alone, getattr(programs, program), 0.35)
     assert not notes
     assert heard == [[0.1, "tick"], [0.2, "tick"], [0.3, "tick"]]
 
 
 def test_sleeping_on_a_clock_lets_ros_time_pass() -> None:
-    heard, _, _, notes = in_cell(alone, programs.SLEEPS_BY_CLOCKS, 1.5)
+    heard, _, _, notes = in_worker_sandbox(alone, programs.SLEEPS_BY_CLOCKS, 1.5)
     assert not notes
     assert [seconds for seconds, _ in heard] == pytest.approx([0.35, 0.6, 0.85, 1.1, 1.1], abs=0.011)
     assert [text.split(maxsplit=1)[1].rsplit(" ", 1)[0] for _, text in heard] == [
@@ -274,7 +274,7 @@ def test_sleeping_on_a_clock_lets_ros_time_pass() -> None:
 
 
 def test_nodes_of_one_program_exchange_messages_within_a_step() -> None:
-    heard, _, _, _ = in_cell(alone, programs.TALK_AT_HOME, 0.3)
+    heard, _, _, _ = in_worker_sandbox(alone, programs.TALK_AT_HOME, 0.3)
     texts = ["heard why 0", "got {n}", "heard why 1", "heard why 2"]
     for n, seconds in enumerate((0.1, 0.2, 0.3), 1):
         at = sorted(text.removeprefix("asker ").removesuffix(f" {seconds:.3f}") for s, text in heard if s == seconds)
@@ -295,7 +295,7 @@ def together(scratch: Path, texts: dict[str, str], seconds: float) -> Any:
 
 
 def test_a_transient_local_message_reaches_a_late_subscription() -> None:
-    heard, maps, _ = in_cell(together, {"map": programs.MAP, "reader": programs.MAP_READER}, 0.2)
+    heard, maps, _ = in_worker_sandbox(together, {"map": programs.MAP, "reader": programs.MAP_READER}, 0.2)
     assert heard == [[0.1, "reader read map 0.100"]]
     assert [text for _, text in maps] == ["map"]
 
@@ -305,7 +305,7 @@ def pong(following: str, qos: str) -> dict[str, str]:
 
 
 def test_programs_answer_each_other_within_a_step_until_no_message_is_left() -> None:
-    heard, _, pings = in_cell(together, pong("int(m.data) - 1", "10"), 0.3)
+    heard, _, pings = in_worker_sandbox(together, pong("int(m.data) - 1", "10"), 0.3)
     assert heard == [[s, f"pinger hit {n} {s:.3f}"] for s in (0.1, 0.2, 0.3) for n in (4, 3, 2, 1, 0)]
     assert pings == [[s, str(n)] for s in (0.1, 0.2, 0.3) for n in (5, 4, 3, 2, 1)]
 
@@ -313,14 +313,16 @@ def test_programs_answer_each_other_within_a_step_until_no_message_is_left() -> 
 def test_endpoints_with_incompatible_quality_of_service_are_not_waited_for() -> None:
     weak = "'ping', QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)"
     pinger = programs.PINGER.replace("'ping', 10", weak)
-    heard, _, pings = in_cell(together, {"pinger": pinger, "ponger": pong("int(m.data) - 1", "10")["ponger"]}, 0.3)
+    heard, _, pings = in_worker_sandbox(
+        together, {"pinger": pinger, "ponger": pong("int(m.data) - 1", "10")["ponger"]}, 0.3
+    )
     assert heard == []
     assert len(pings) == 3
 
 
 def test_programs_exchange_messages_of_a_type_that_the_grader_does_not_know() -> None:
     texts = {"listener": programs.OWN_TYPE_LISTENER, "talker": programs.OWN_TYPE_SPEAKER}
-    heard, _, _ = in_cell(together, texts, 0.3)
+    heard, _, _ = in_worker_sandbox(together, texts, 0.3)
     assert heard == [[s, f"listener hello {s:.3f}"] for s in (0.1, 0.2, 0.3)]
 
 
@@ -339,7 +341,7 @@ def forged(scratch: Path) -> Any:
 
 
 def test_bytes_that_are_not_a_message_of_their_type_are_dropped_and_counted() -> None:
-    assert in_cell(forged) == [[s, "hello"] for s in (0.1, 0.2, 0.3) for _ in range(5)]
+    assert in_worker_sandbox(forged) == [[s, "hello"] for s in (0.1, 0.2, 0.3) for _ in range(5)]
 
 
 def served(scratch: Path) -> Any:
@@ -363,7 +365,7 @@ def served(scratch: Path) -> Any:
 
 
 def test_clients_of_two_programs_share_a_service_and_a_busy_machine_changes_nothing() -> None:
-    quiet, loaded = in_cell(served)
+    quiet, loaded = in_worker_sandbox(served)
     assert quiet == loaded
     got = sorted(int(text.split()[2]) for _, text in quiet if " got " in text)
     assert got == [1, 2, 3, 4, 5, 6]
@@ -384,13 +386,13 @@ def failing(scratch: Path, texts: dict[str, str]) -> list[str]:
 @pytest.mark.parametrize("name", programs.DEADLOCKS)
 def test_a_deadlock_is_reported_at_once_with_its_reason(name: str) -> None:
     text, words = programs.DEADLOCKS[name]
-    kind, sentence = in_cell(failing, {"node": text, "server": programs.SERVER})
+    kind, sentence = in_worker_sandbox(failing, {"node": text, "server": programs.SERVER})
     assert kind == "stuck"
     assert words in sentence
 
 
 def test_programs_that_answer_each_other_without_end_are_stopped() -> None:
-    kind, sentence = in_cell(failing, pong("int(m.data)", "10"))
+    kind, sentence = in_worker_sandbox(failing, pong("int(m.data)", "10"))
     assert kind == "stuck"
     assert "would go on for ever" in sentence
 
@@ -403,24 +405,26 @@ def flooded(scratch: Path, text: str) -> list[Any]:
 
 
 def test_a_program_that_floods_discovery_is_reported() -> None:
-    _, sentence = in_cell(failing, {"node": programs.FLOODS["3,000 topics"]})
+    _, sentence = in_worker_sandbox(failing, {"node": programs.FLOODS["3,000 topics"]})
     assert "more nodes, topics, services or timers" in sentence
 
 
 @pytest.mark.parametrize("name", ["100 kHz", "100,000 at once"])
 def test_the_grader_drops_the_messages_of_a_flood_that_exceed_its_queue(name: str) -> None:
-    heard = in_cell(flooded, programs.FLOODS[name])
+    heard = in_worker_sandbox(flooded, programs.FLOODS[name])
     assert {text for _, text in heard} == {"x"}
     assert len(heard) < 20_000
 
 
 def test_the_grader_serves_no_parameters_that_a_program_could_set() -> None:
-    assert [text for _, text in in_cell(flooded, programs.FLOODS["the grader's parameters"])] == ["ready: False"] * 5
+    assert [text for _, text in in_worker_sandbox(flooded, programs.FLOODS["the grader's parameters"])] == [
+        "ready: False"
+    ] * 5
 
 
 def test_the_crashing_program_among_several_is_named() -> None:
     texts = {"server": programs.SERVER, "broken": "raise ValueError('no lidar')"}
-    kind, sentence = in_cell(failing, texts)
+    kind, sentence = in_worker_sandbox(failing, texts)
     assert kind == "crashed_at_import"
     assert sentence.startswith("broken: Your module could not be imported: ValueError: no lidar")
 
@@ -476,11 +480,11 @@ spin(Listener)
     ids=["at the start", "at a message", "at a timer"],
 )
 def test_other_programs_continue_if_a_program_that_may_fail_ends(text: str) -> None:
-    assert in_cell(sparing, text) == ["1", ["map", "server"], ""]
+    assert in_worker_sandbox(sparing, text) == ["1", ["map", "server"], ""]
 
 
 def test_a_program_that_may_fail_takes_part_and_its_crash_is_named_if_it_must_not_fail() -> None:
-    answer, running, sentence = in_cell(sparing, CRASHING.format(period=0.7, reading="pass"))
+    answer, running, sentence = in_worker_sandbox(sparing, CRASHING.format(period=0.7, reading="pass"))
     assert (answer, running) == ("1", ["map", "server", "spared"])
     assert sentence.startswith("spared: ")
     assert "out of range" in sentence
@@ -509,7 +513,7 @@ def sparing_in_real_time(scratch: Path, text: str) -> Any:
     "text", ["raise ValueError('out of range')", CRASHING.format(period=0.7, reading="pass")], ids=["start", "timer"]
 )
 def test_in_real_time_other_programs_continue_and_a_program_that_must_not_fail_is_named(text: str) -> None:
-    answer, running, sentence = in_cell(sparing_in_real_time, text)
+    answer, running, sentence = in_worker_sandbox(sparing_in_real_time, text)
     assert (answer, running) == ("1", ["map", "server"])
     assert sentence.startswith("spared: ")
     assert "out of range" in sentence

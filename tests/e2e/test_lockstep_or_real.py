@@ -14,7 +14,7 @@ from autograder.harness.auto import TIME_VARIABLE
 from autograder.result.model import Result
 from autograder.suite import suites
 from tests.e2e import lockstep_programs as programs
-from tests.e2e.cell_support import in_cell
+from tests.e2e.sandbox_support import in_worker_sandbox
 
 CHECKS = (
     *("starts", "subscribes_scan", "publishes_cmd_vel", "forward_when_clear", "turns_when_blocked"),
@@ -184,7 +184,7 @@ def met(scratch: Path, text: str) -> Any:
     ],
 )
 def test_a_program_that_cannot_be_stepped_is_detected_and_runs_in_real_time(reason: str, words: str) -> None:
-    ways, sentence = in_cell(met, programs.UNSTEPPABLE[reason])
+    ways, sentence = in_worker_sandbox(met, programs.UNSTEPPABLE[reason])
     assert ways == [["real", True]] * 2
     assert sentence == words
 
@@ -192,7 +192,7 @@ def test_a_program_that_cannot_be_stepped_is_detected_and_runs_in_real_time(reas
 def test_a_program_that_can_be_stepped_is_stepped() -> None:
     ticking = "class Tick(Speaker):\n    def __init__(self):\n        super().__init__()\n"
     ticking += "        self.create_timer(0.1, lambda: self.say('tick'))\nspin(Tick)\n"
-    assert in_cell(met, ticking) == [[["lockstep", True]] * 2, ""]
+    assert in_worker_sandbox(met, ticking) == [[["lockstep", True]] * 2, ""]
 
 
 def chosen(scratch: Path) -> str:
@@ -206,7 +206,7 @@ def chosen(scratch: Path) -> str:
 
 
 def test_a_program_with_its_own_thread_runs_in_real_time_before_the_thread_sends_anything() -> None:
-    assert in_cell(chosen) == "real"
+    assert in_worker_sandbox(chosen) == "real"
 
 
 def unheard(scratch: Path) -> int:
@@ -230,7 +230,7 @@ def unheard(scratch: Path) -> int:
 
 
 def test_a_message_that_the_grader_reads_late_keeps_its_time_of_arrival() -> None:
-    assert in_cell(unheard) >= 8  # one may have been taken before, one be on its way
+    assert in_worker_sandbox(unheard) >= 8  # one may have been taken before, one be on its way
 
 
 def refused(scratch: Path, text: str) -> list[str]:
@@ -246,6 +246,6 @@ def refused(scratch: Path, text: str) -> list[str]:
 
 
 def test_a_program_that_must_be_stepped_and_cannot_be_gets_the_reason() -> None:
-    kind, sentence = in_cell(refused, programs.UNSTEPPABLE["thread"])
+    kind, sentence = in_worker_sandbox(refused, programs.UNSTEPPABLE["thread"])
     assert kind == "never_started"
     assert "cannot be stepped: it uses rclpy in threads of its own. Let a timer of the node do the work" in sentence

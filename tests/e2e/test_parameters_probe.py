@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from tests.e2e.cell_support import in_cell
+from tests.e2e.sandbox_support import in_worker_sandbox
 
 NODE = """#!/usr/bin/env python3
 import rclpy
@@ -81,7 +81,7 @@ def asked(scratch: Path) -> Any:
 
 
 def test_parameters_are_read_in_lockstep_and_in_real_time_and_a_missing_or_false_response_is_reported() -> None:
-    (stepped, real, without, silent, forged), (talk, real_talk, silent_talk) = in_cell(asked)
+    (stepped, real, without, silent, forged), (talk, real_talk, silent_talk) = in_worker_sandbox(asked)
     assert stepped == real
     names, values, accepted, reason = stepped
     assert (names, values, accepted) == (["speed"], {"speed": 0.5}, False)

@@ -13,7 +13,7 @@ from typing import Any
 from autograder.building.interfaces import Cache
 from autograder.building.interfaces.prefix import build
 from autograder.ros.environment import site_packages
-from tests.e2e.cell_support import in_cell
+from tests.e2e.sandbox_support import in_worker_sandbox
 
 PACKAGE = "wire_msgs"
 KINDS = (
@@ -120,7 +120,7 @@ def compare(scratch: Path) -> dict[str, Any]:
 
 
 def test_the_bytes_of_plain_messages_are_those_of_generated_ones() -> None:
-    answer = in_cell(compare)
+    answer = in_worker_sandbox(compare)
     assert answer["wrong"] == []
     assert answer["messages"] == 9
     assert answer["hashes"] > 20

@@ -17,7 +17,7 @@ from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
 from autograder.run.sandbox import Limits, Mount, Process, Sandbox, launcher
 from autograder.run.sandbox.launcher import launch, warm_up
 from autograder.run.sandbox.spec import INTERPRETER
-from tests.e2e.cell_support import in_cell, is_forked
+from tests.e2e.sandbox_support import in_worker_sandbox, is_forked
 
 pytestmark = pytest.mark.usefixtures("forks")
 
@@ -99,7 +99,7 @@ def reports(scratch: Path, network: bool) -> list[Any]:
 
 @pytest.mark.parametrize("network", [True, False])
 def test_a_forked_program_sees_the_same_surroundings_as_a_started_one(network: bool) -> None:
-    (started, apart), (forked, too) = in_cell(reports, network)
+    (started, apart), (forked, too) = in_worker_sandbox(reports, network)
     assert apart == too
     assert ("net" in too) is network
     assert not {"mnt", "pid", "user", "ipc", "uts"} & set(too)
@@ -188,7 +188,7 @@ def exit_reasons(scratch: Path) -> dict[str, list[Any]]:
 
 
 def test_a_forked_program_ends_as_a_started_one_does() -> None:
-    found = in_cell(exit_reasons)
+    found = in_worker_sandbox(exit_reasons)
     assert {name: forked for name, (_, forked) in found.items()} == {name: s for name, (s, _) in found.items()}
     assert found["status"][1] == ["exited", 7, [["out"]]]
     assert len(found["destroyed"][1][2][0]) == 7
@@ -222,16 +222,16 @@ def imports(scratch: Path, profile: str, code: str) -> list[str]:
     ],
 )
 def test_a_missing_import_is_also_missing_in_a_forked_program(profile: str, code: str) -> None:
-    started, forked = in_cell(imports, profile, code)
+    started, forked = in_worker_sandbox(imports, profile, code)
     assert forked.splitlines()[-1] == started.splitlines()[-1]
 
 
 def test_a_failing_forked_program_prints_the_same_as_a_started_one() -> None:
     code = "def drive(speed):\n    raise ValueError('too fast')\ntry:\n    drive(2)\nfinally:\n    print('over')"
-    started, forked = in_cell(imports, "lockstep", code)
+    started, forked = in_worker_sandbox(imports, "lockstep", code)
     assert forked == started
     assert "Traceback" in forked
-    started, forked = in_cell(imports, "lockstep", "this is no Python")
+    started, forked = in_worker_sandbox(imports, "lockstep", "this is no Python")
     assert forked == started
     assert "SyntaxError" in forked
 
@@ -253,7 +253,7 @@ def shadows(scratch: Path, name: str) -> list[str]:
 
 @pytest.mark.parametrize("name", ["rclpy", "numpy", "std_msgs", "yaml", "selectors", "mine"])
 def test_a_students_module_comes_first_on_the_path_of_a_forked_program(name: str) -> None:
-    started, forked = in_cell(shadows, name)
+    started, forked = in_worker_sandbox(shadows, name)
     assert started.startswith(f"my own {name}\n['one'] home")
     assert forked == started
 
@@ -265,7 +265,7 @@ def draws(scratch: Path) -> list[str]:
 
 
 def test_forked_programs_draw_different_random_numbers() -> None:
-    one, other = in_cell(draws)
+    one, other = in_worker_sandbox(draws)
     assert not set(one.split()) & set(other.split())
 
 
@@ -294,7 +294,7 @@ def remembered(scratch: Path) -> list[str]:
 
 
 def test_a_forked_program_has_nothing_of_an_earlier_one_in_its_memory() -> None:
-    own, other = (int(count) for count in in_cell(remembered))
+    own, other = (int(count) for count in in_worker_sandbox(remembered))
     assert own >= 1
     assert other == 0
 
@@ -314,7 +314,7 @@ def late(scratch: Path) -> str:
 
 
 def test_the_imports_of_the_fork_server_do_not_count_as_time_of_the_program() -> None:
-    assert in_cell(late) == "wall_time"
+    assert in_worker_sandbox(late) == "wall_time"
 
 
 def without(scratch: Path) -> list[Any]:
@@ -333,7 +333,7 @@ def without(scratch: Path) -> list[Any]:
 
 
 def test_programs_are_started_if_they_cannot_be_forked() -> None:
-    ends, said = in_cell(without)
+    ends, said = in_worker_sandbox(without)
     assert ends == [[0, "here\n"]] * 2
     assert len(said) == 1
     assert said[0].startswith("programs are started one by one, which takes longer: ")

@@ -16,7 +16,7 @@ from autograder.harness.launch import LaunchHarness
 from autograder.ros import environment
 from autograder.run.sandbox import Sandbox
 from autograder.run.sandbox.launcher import launch
-from tests.e2e.cell_support import in_cell
+from tests.e2e.sandbox_support import in_worker_sandbox
 from tests.e2e.test_prefork import ENDS, LONG, REPORT, in_any_order, workplace
 
 pytestmark = pytest.mark.usefixtures("forks")
@@ -91,7 +91,7 @@ def reports(scratch: Path) -> list[dict[str, Any]]:
 
 
 def test_a_forked_child_program_sees_the_same_surroundings_as_a_started_one() -> None:
-    started, forked = in_cell(reports)
+    started, forked = in_worker_sandbox(reports)
     for found in (started, forked):
         for name in ("plain", "environment"):
             report = found[name] = json.loads(found[name][1])
@@ -136,7 +136,7 @@ _PLAIN = {"PATH": os.defpath, "PYTHONOPTIMIZE": "2"}
 
 
 def test_a_forked_child_program_ends_as_a_started_one_does() -> None:
-    started, forked = in_cell(exit_reasons)
+    started, forked = in_worker_sandbox(exit_reasons)
     for found in (started, forked):
         found["destroyed"] = in_any_order(found["destroyed"][1:2])
     assert forked == started
@@ -185,7 +185,7 @@ def launched(scratch: Path) -> list[Any]:
 
 
 def test_programs_of_a_launch_are_forked_and_listed_by_name() -> None:
-    output, running, killed, status, left = in_cell(launched)
+    output, running, killed, status, left = in_worker_sandbox(launched)
     assert output.count("forked False ['--ros-args']") == 2, output
     assert running == [["pkg", "waits"]] * 2
     assert killed == 2

@@ -1,4 +1,4 @@
-"""The real sandbox in a cell: what its code can see, reach and leave behind, started there or forked into it."""
+"""What code in a real sandbox can see, reach and leave behind, started there or forked into it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from autograder.run.fork_server import seccomp
 from autograder.run.sandbox import ExitReason, Isolation, Limits, Mount, Process, Sandbox, cgroup, procfs
 from autograder.run.sandbox.launcher import launch, warm_up
 from autograder.run.sandbox.limits import GIB, MIB
-from tests.e2e.cell_support import ROOT, in_cell, is_forked, started_in_cell
+from tests.e2e.sandbox_support import ROOT, in_worker_sandbox, is_forked, started_in_cell
 
 SMALL = {"wall_seconds": 60.0, "threads": 40, "memory": 200 * MIB, "output": 50_000, "scratch": 4 * MIB}
 
@@ -39,7 +39,7 @@ WAYS = ("started", "forked")
 
 @pytest.fixture(params=WAYS, autouse=True)
 def way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    """How a program comes into its sandbox; whoever is in a cell learns it from the environment."""
+    """How a program comes into its sandbox. Code in a worker sandbox reads it from the environment."""
     if request.param == "forked":
         request.getfixturevalue("forks")
     monkeypatch.setenv(WAY, request.param)
@@ -81,13 +81,13 @@ def inside(scratch: Path, code: str, limits: dict[str, Any], network: bool = Fal
 
 
 def _run(code: str, *, network: bool = False, **limits: Any) -> dict[str, Any]:
-    answer: dict[str, Any] = in_cell(inside, code, {**SMALL, **limits}, network)
+    answer: dict[str, Any] = in_worker_sandbox(inside, code, {**SMALL, **limits}, network)
     assert answer["left"] == []
     return answer
 
 
 def tries(scratch: Path, name: str, port: int) -> str:
-    """Try one way out of a sandbox in this cell, and return what got out."""
+    """Try one way out of a sandbox in this worker sandbox, and return what got out."""
     os.environ["CANARY"] = CANARY
     profile = "lockstep" if os.environ[WAY] == "forked" else None
     if profile:
@@ -97,7 +97,7 @@ def tries(scratch: Path, name: str, port: int) -> str:
 
 def _out(*names: str) -> list[str]:
     with socket.create_server(("127.0.0.1", 0)) as server:
-        return [out for name in names if (out := in_cell(tries, name, server.getsockname()[1]))]
+        return [out for name in names if (out := in_worker_sandbox(tries, name, server.getsockname()[1]))]
 
 
 @pytest.mark.promise("sandbox that has no network and cannot see the checks")
@@ -127,7 +127,7 @@ def passes_while_it_is_filled(scratch: Path) -> bool:
 
 
 def test_a_worker_can_pass_descriptors_while_a_program_has_all_it_can_on_their_way() -> None:
-    assert in_cell(passes_while_it_is_filled)
+    assert in_worker_sandbox(passes_while_it_is_filled)
 
 
 def test_a_large_file_is_cut_off() -> None:
@@ -145,7 +145,7 @@ def test_there_is_no_way_out_to_any_network() -> None:
 
 
 def meets(scratch: Path, code: str) -> dict[str, bool]:
-    """Listen on the cell's loopback, and let sandboxed code with and without a network try to come."""
+    """Listen on the loopback, and let sandboxed code with and without a network try to connect."""
     answers = {}
     for network in (True, False):
         (scratch / str(network)).mkdir()
@@ -157,7 +157,7 @@ def meets(scratch: Path, code: str) -> dict[str, bool]:
 
 def test_a_node_reaches_the_worker_sandbox_s_loopback_and_a_build_does_not() -> None:
     code = "import socket\nsocket.create_connection(('127.0.0.1', PORT), timeout=5)\nprint('REACHED')"
-    assert in_cell(meets, code) == {"True": True, "False": False}
+    assert in_worker_sandbox(meets, code) == {"True": True, "False": False}
 
 
 BOUNDED = pytest.mark.skipif(
@@ -230,12 +230,12 @@ def pretends(scratch: Path) -> list[Any]:
 
 
 def test_a_sandbox_that_cannot_be_created_is_not_a_failure_of_the_program() -> None:
-    for said in in_cell(unmade):
+    for said in in_worker_sandbox(unmade):
         assert re.match("The sandbox could not be made: bwrap: Can't find source path /.*: No such file", said), said
 
 
 def test_a_program_cannot_pretend_that_its_sandbox_was_not_made() -> None:
-    status, said = in_cell(pretends)
+    status, said = in_worker_sandbox(pretends)
     descriptors = set(ast.literal_eval(said.partition("file: ")[2].strip()))
     assert (status, descriptors - {"0", "1", "2", "3"}) == (1, set()), said  # 3 is the folder that is listed
 
@@ -267,7 +267,7 @@ signal.signal(signal.SIGTERM, end)
 os.write(1, b"up\\n")  # not print, which writes the end of the line apart: the signal could come in between
 while True: signal.pause()
 """
-    assert in_cell(signalled, code) == [True, 7, "up\nhandled\n"]
+    assert in_worker_sandbox(signalled, code) == [True, 7, "up\nhandled\n"]
 
 
 def waits(scratch: Path) -> list[str]:
@@ -291,7 +291,7 @@ def group_of(scratch: Path) -> str:
 @pytest.mark.skipif(os.geteuid() != 0, reason="prlimit bounds everybody but root")
 @BOUNDED
 def test_the_processes_of_root_s_sandbox_are_counted_by_the_kernel() -> None:
-    assert "/autograder-" in in_cell(group_of)
+    assert "/autograder-" in in_worker_sandbox(group_of)
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root has control groups of its own")
@@ -300,7 +300,7 @@ def test_the_processes_of_root_s_sandbox_are_counted_by_the_kernel() -> None:
 def test_the_weak_isolation_level_ends_a_fork_bomb_of_root() -> None:
     code = "import os\nwhile True:\n    try: os.fork()\n    except OSError: pass"
     before = _bombs(code)
-    answer = in_cell(inside, code, {**SMALL, "memory": 4 * GIB}, True, isolation=Isolation.PROCESS)
+    answer = in_worker_sandbox(inside, code, {**SMALL, "memory": 4 * GIB}, True, isolation=Isolation.PROCESS)
     assert answer["exit_reason"] == ExitReason.THREADS.value
     assert _bombs(code) <= before
 
@@ -343,7 +343,7 @@ def test_sandboxes_of_an_ordinary_user_block_the_same_escapes_as_those_of_root()
     try:
         subprocess.run([*user, f"HOME={home}", f"TMPDIR={home}", *command], cwd=ROOT, capture_output=True, check=False)
         found = {row["name"]: row["status"] for row in json.loads((home / "found.json").read_text())}
-        assert list(home.glob("autograder-cell-*")) == []
+        assert list(home.glob("autograder-worker-*")) == []
     finally:
         shutil.rmtree(home)
     assert {*found} == {escape.id for escape in ESCAPES}

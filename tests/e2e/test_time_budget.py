@@ -6,10 +6,10 @@ from pathlib import Path
 
 from autograder.author.verification.mutants import write_reference
 from autograder.diagnosis import Kind
-from autograder.grade import grade_submission, own_cell
+from autograder.grade import grade_submission, own_sandbox
 from autograder.grade.job import Job
 from autograder.result.model import Status
-from autograder.run.sandbox.cell import CellReport
+from autograder.run.sandbox.worker_sandbox import WorkerReport
 from autograder.suite import Outcome
 
 SLOW = "import rclpy.publisher, time\n_publish = rclpy.publisher.Publisher.publish\n" + (
@@ -25,9 +25,9 @@ def test_a_node_that_sleeps_in_each_publish_gets_a_result_within_one_budget(tmp_
     node.write_text("".join([*lines[:at], SLOW, "\n\n", *lines[at:]]))
     budgets = []
 
-    def run(job: Job) -> CellReport:
+    def run(job: Job) -> WorkerReport:
         budgets.append(job.seconds)
-        return own_cell.in_own_cell(job)
+        return own_sandbox.in_own_sandbox(job)
 
     job = Job(tmp_path / "alice", "02_nodes", "alice", 3, tmp_path / "out", seconds=30.0)
     result = grade_submission(job, run)

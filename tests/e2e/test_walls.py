@@ -1,4 +1,4 @@
-"""A worker that was taken over: any code in its place, in its own cell, harms its own submission's result alone."""
+"""A worker that was taken over, with any code in its place, harms only the result of its own submission."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 from autograder import layout
 from autograder.building import keeper
 from autograder.exceptions import StudentError
-from autograder.grade import apart, grade_submission, own_cell
+from autograder.grade import apart, grade_submission, own_sandbox
 from autograder.grade.job import Job
 from autograder.result.model import Result, Status
 from autograder.run.sandbox import Isolation
@@ -61,7 +61,7 @@ while pending:
         if entry.is_dir(): pending.append(entry.path)
         elif not folder.startswith("/usr") and os.access(entry.path, os.W_OK): out("may write to", entry.path)
 for folder, _, names in os.walk("/proc/sys"):
-    for name in {*names} - {"ns_last_pid"}:  # of the cell's own process ids
+    for name in {*names} - {"ns_last_pid"}:  # of the worker sandbox's own process ids
         if os.access(f"{folder}/{name}", os.W_OK) and "/sys/user" not in folder: out("may write to", folder, name)
 for path in Path("/proc/sys/user").iterdir():
     try:
@@ -113,7 +113,7 @@ def taken_over(monkeypatch: pytest.MonkeyPatch, code: str, **names: object) -> N
     given = "".join(f"{name} = {value!r}\n" for name, value in names.items())
     program = f"{BEGIN}{given}{code}"
     monkeypatch.setattr(
-        own_cell, "_worker", lambda job, line: [sys.executable, "-c", program, job.to_json(), str(line)]
+        own_sandbox, "_worker", lambda job, line: [sys.executable, "-c", program, job.to_json(), str(line)]
     )
 
 

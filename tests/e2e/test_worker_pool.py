@@ -1,4 +1,4 @@
-"""Many submissions are graded in one cell, and each has the result that a cell of its own gives it."""
+"""Many submissions are graded in one worker sandbox, each with the same result as in its own."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from autograder.author.verification.worker_pool import WorkerPool
 from autograder.diagnosis import Kind
 from autograder.grade import grade_submission
 from autograder.grade.job import ALL, Job, Scope
-from autograder.grade.pipeline import RunJob, in_own_cell
+from autograder.grade.pipeline import RunJob, in_own_sandbox
 from autograder.grade.store import LOG
 from autograder.result.model import Result, Status
 from autograder.run.sandbox import Isolation
@@ -80,7 +80,7 @@ def test_a_shared_sandbox_gives_the_same_results_as_one_for_each_submission(
         shared = [_grade(path, tmp_path / "shared", workers, SOME) for path in (reference, half, reference)]
         assert len(servers()) == 1
     assert servers() == []
-    alone = [_grade(path, tmp_path / "alone", in_own_cell, SOME) for path in (reference, half)]
+    alone = [_grade(path, tmp_path / "alone", in_own_sandbox, SOME) for path in (reference, half)]
     assert [_verdicts(result) for result in shared] == [_verdicts(alone[number]) for number in (0, 1, 0)]
     for shared_one, own in zip(shared, alone, strict=False):
         assert (shared_one.suite_version, shared_one.files_digest) == (own.suite_version, own.files_digest)
@@ -119,10 +119,10 @@ def test_a_fork_server_that_ends_is_replaced_and_leaves_nothing(
     monkeypatch.setattr(tempfile, "tempdir", str(entered_tmp_path))
     with WorkerPool(Isolation.PROCESS, 1) as workers:
         assert _grade(half, entered_tmp_path / "one", workers, isolation=Isolation.PROCESS).status is Status.GRADED
-        (cell,) = entered_tmp_path.glob("autograder-cell-*")
-        assert list(cell.iterdir()) == []
+        (sandbox,) = entered_tmp_path.glob("autograder-worker-*")
+        assert list(sandbox.iterdir()) == []
         (server,) = servers()
         os.kill(server, signal.SIGKILL)
         assert _grade(half, entered_tmp_path / "two", workers, isolation=Isolation.PROCESS).status is Status.GRADED
         assert servers() not in ([], [server])
-    assert list(entered_tmp_path.glob("autograder-cell-*")) == []
+    assert list(entered_tmp_path.glob("autograder-worker-*")) == []

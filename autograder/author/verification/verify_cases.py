@@ -15,7 +15,7 @@ from autograder.author.verification.leaks import hidden_text_in, texts_of
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.grade.batch import stored
 from autograder.grade.job import Job
-from autograder.grade.own_cell import in_own_cell
+from autograder.grade.own_sandbox import in_own_sandbox
 from autograder.grade.parallel import map_parallel
 from autograder.grade.pipeline import grade_submission
 from autograder.grade.store import LOG
@@ -56,7 +56,7 @@ def verify_cases(
             job = Job(path, case.assignment, case.name, seed, folder, workers.isolation, case.scope)
             result = stored(job) if is_whole_suite else None
             if result is None or result.files_digest != job.suite.files_digest:  # only these very files are verified
-                result = grade_submission(job, in_own_cell if case.kind is CaseKind.ATTACK else workers)
+                result = grade_submission(job, in_own_sandbox if case.kind is CaseKind.ATTACK else workers)
         mismatch = case.verify(result) if result.status is Status.GRADED else result.diagnosis.sentence
         if case.kind is CaseKind.ATTACK:
             mismatch = "; ".join(filter(None, (mismatch, _leak(result, folder))))

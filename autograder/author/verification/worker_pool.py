@@ -17,13 +17,13 @@ from tempfile import TemporaryDirectory
 from autograder import layout
 from autograder.building.keeper import attend
 from autograder.grade.job import Job
-from autograder.grade.own_cell import GRACE
-from autograder.run.sandbox.cell import CellReport, copy_submission, in_cell
+from autograder.grade.own_sandbox import GRACE
 from autograder.run.sandbox.isolation import Isolation, require
-from autograder.run.sandbox.limits import PROOF_CELL
+from autograder.run.sandbox.limits import VERIFICATION_WORKER
 from autograder.run.sandbox.parcel import ParcelError
 from autograder.run.sandbox.process import ExitReason
 from autograder.run.sandbox.spec import View
+from autograder.run.sandbox.worker_sandbox import WorkerReport, copy_submission, in_worker_sandbox
 
 _TICK = 5.0  # s to wait for the exit of a server that no longer replies
 
@@ -31,8 +31,8 @@ _TICK = 5.0  # s to wait for the exit of a server that no longer replies
 class WorkerPool:
     """Grades submissions with a fixed number of workers. Each worker grades many submissions in one sandbox.
 
-    A pool is a context manager and has the call signature of `own_cell.in_own_cell`. Use it only for the course's own
-    submissions; see `fork_server`.
+    A pool is a context manager and has the call signature of `own_sandbox.in_own_sandbox`. Use it only for submissions
+    of the course itself; see `fork_server`.
 
     Args:
         isolation: the isolation level of each worker sandbox.
@@ -59,7 +59,7 @@ class WorkerPool:
                 worker.close()
         self._starter.shutdown()
 
-    def __call__(self, job: Job) -> CellReport:
+    def __call__(self, job: Job) -> WorkerReport:
         """Grade one submission, and return a report with the files that its worker produced."""
         worker = self._idle.get()
         try:
@@ -96,10 +96,10 @@ class _Worker:
 
         view = View(shown=(*{layout.ROOT, layout.course().root}, self._shared))
         with theirs:
-            cell = in_cell(command, isolation, PROOF_CELL, view=view, pass_fds=(theirs.fileno(),))
-            self._process, self._scratch = self._stack.enter_context(cell)
+            sandbox = in_worker_sandbox(command, isolation, VERIFICATION_WORKER, view=view, pass_fds=(theirs.fileno(),))
+            self._process, self._scratch = self._stack.enter_context(sandbox)
 
-    def grade(self, job: Job) -> CellReport:
+    def grade(self, job: Job) -> WorkerReport:
         """Send one job and wait for its result. Do not use the worker again unless the exit reason is `exited`."""
         deadline = time.monotonic() + job.seconds + GRACE
         scratch = self._scratch / "job"
@@ -115,7 +115,7 @@ class _Worker:
                 files, reply = attend(self._server, self._isolation, is_over)
             except (ParcelError, OSError):
                 files, reply = {}, {}
-        return CellReport(ExitReason.EXITED, reply["status"], reply["output"], files) if reply else self._dead()
+        return WorkerReport(ExitReason.EXITED, reply["status"], reply["output"], files) if reply else self._dead()
 
     def _share(self, built: Path) -> Path:
         """Copy a built workspace to the shared folder, once for many jobs, and return the copy."""
@@ -124,12 +124,12 @@ class _Worker:
             shutil.copytree(built, copy, symlinks=True)
         return copy
 
-    def _dead(self) -> CellReport:
+    def _dead(self) -> WorkerReport:
         self._process.wait(_TICK)
         self._process.kill()
         exit_reason = self._process.exit_reason or ExitReason.WALL_TIME
         exit_reason = ExitReason.KILLED if exit_reason is ExitReason.EXITED else exit_reason
-        return CellReport(exit_reason, self._process.returncode or 1, self._process.output)
+        return WorkerReport(exit_reason, self._process.returncode or 1, self._process.output)
 
     def close(self) -> None:
         """End the server and all its child processes."""

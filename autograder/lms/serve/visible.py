@@ -30,7 +30,7 @@ class VisibleReport:
 
 
 def run_visible(answer: Path, assignment: str, isolation: Isolation) -> VisibleReport:
-    """Run the visible checks on an answer, in a cell. Where they fail themselves, the log says why."""
+    """Run the visible checks on an answer in a worker sandbox. If the checks raise an error, it is in the log."""
     try:
         whole: dict[str, Any] = {"exercises": (), "part": "", "first": ()}
         with run_on(answer.resolve(), isolation, "check", assignment=assignment, **whole) as (said, _):

@@ -1,9 +1,9 @@
 """Running students' code where it can do no harm.
 
-A submission is handled in a *cell* (`cell.py`): a trusted worker in a user and network namespace that no other
-submission is in, with a scratch file system of limited size. In it every piece of student code runs in a *sandbox*
-(`bubblewrap.py`): its own process tree that sees a read-only system and the workspace, watched (`process.py`) against
-`Limits`. Most programs are forked into it, from an interpreter that has done their imports
+A *worker sandbox* (`worker_sandbox.py`) contains the trusted worker of one submission, in its own user and network
+namespaces and with a scratch file system of limited size. In it, every piece of student code runs in a *sandbox*
+(`bubblewrap.py`): a process tree that sees a read-only system and the workspace, and that `process.py` watches against
+`Limits`. A fork server starts most programs, from an interpreter that has already done their imports
 (`autograder.run.fork_server`).
 
 Both exist at two isolation levels (`isolation.py`): `bubblewrap`, and the weaker `process` for machines without

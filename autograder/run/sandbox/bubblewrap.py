@@ -9,7 +9,14 @@ from pathlib import Path
 from autograder import layout
 from autograder.ros import RosError, find
 from autograder.run.sandbox import warm_caches
-from autograder.run.sandbox.limits import CELL_SCRATCH, CELL_TMP, INOTIFY_INSTANCES, INOTIFY_WATCHES, SIGNALS, Limits
+from autograder.run.sandbox.limits import (
+    INOTIFY_INSTANCES,
+    INOTIFY_WATCHES,
+    SIGNALS,
+    WORKER_SCRATCH,
+    WORKER_TMP,
+    Limits,
+)
 from autograder.run.sandbox.spec import Mount, Sandbox, View
 
 # Of /etc, only what the dynamic linker, compilers and fonts read: no accounts, no keys, no host's own settings.
@@ -45,10 +52,10 @@ def rlimits(limits: Limits) -> list[str]:
     return ["prlimit", *(f"--{name}={soft}:{hard}" for name, (soft, hard) in named.items()), "--"]
 
 
-def cell(
+def worker_sandbox(
     command: list[str], view: View, *, scratch: Path, user: int | None = None, groups: tuple[Path, ...] = ()
 ) -> list[str]:
-    """Return the command line of a cell: namespaces of its own, and nothing of the machine but what `view` shows.
+    """Return the command line of a worker sandbox: its own namespaces, and of the machine only what `view` shows.
 
     It is read-only but for `scratch`, /tmp and what `view` says. In it, sandboxes can be made: a bubblewrap can mount
     /proc below another one's if the outer one's user is not root, who alone gets parts of /proc covered.
@@ -56,9 +63,9 @@ def cell(
     Args:
         command: what is run in it.
         view: what it sees beyond the system and the grader's own code.
-        scratch: the folder that is a file system in memory, of `limits.CELL_SCRATCH` bytes.
+        scratch: the folder that is a file system in memory, of `limits.WORKER_SCRATCH` bytes.
         user: the user to become, for root; None leaves the user as it is.
-        groups: folders of control groups in which the cell makes those of its sandboxes.
+        groups: folders of control groups in which the worker sandbox makes those of its sandboxes.
     """
     apart = ("--unshare-user", "--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts")
     # As process 1, for bubblewrap's own would be left unwaited for, and its processor time would count for nobody.
@@ -74,7 +81,7 @@ def cell(
         _FONTS,
     )
     inside = ["sh", "-c", _BOUND_KERNEL_OBJECTS, "sh", *command]
-    mounts = _cell_mounts(view, scratch, groups)
+    mounts = _worker_mounts(view, scratch, groups)
     if user is None:
         return ["bwrap", "--die-with-parent", *own_proc, *mounts, "--", *inside]
     # Root makes the mounts, for it can reach what they show. The signal of a parent's death is sent with the rights of
@@ -89,12 +96,12 @@ def becoming(user: int) -> list[str]:
     return ["setpriv", f"--reuid={user}", f"--regid={user}", "--clear-groups", "--no-new-privs", "--pdeathsig=KILL"]
 
 
-def _cell_mounts(view: View, scratch: Path, groups: tuple[Path, ...]) -> list[str]:
+def _worker_mounts(view: View, scratch: Path, groups: tuple[Path, ...]) -> list[str]:
     code = [*python_mounts(), *(path for path in _grader() if path.exists())]
     private = [folder for folder in _private_folders() if folder.is_dir() and any(map(folder.is_relative_to, code))]
     covered = [folder for folder in private if not any(map(folder.is_relative_to, view.shown))]
     arguments = [*_open_folders(("/etc",)), *_system(), "--dev", "/dev"]
-    for place, size in (("/tmp", CELL_TMP), ("/dev/shm", CELL_TMP), (str(scratch), CELL_SCRATCH)):
+    for place, size in (("/tmp", WORKER_TMP), ("/dev/shm", WORKER_TMP), (str(scratch), WORKER_SCRATCH)):
         arguments += ["--perms", "0777", "--size", str(size), "--tmpfs", place]
     for path in code:
         arguments += [*_open_folders(path.parents), "--ro-bind", str(path), str(path)]
@@ -117,7 +124,7 @@ def _open_folders(folders: Iterable[Path | str]) -> list[str]:
 
 
 def _grader() -> tuple[Path, ...]:
-    """Return what of the grader every cell reads: its code, the course's description, and a ROS that was sourced."""
+    """Return the parts of the grader in every worker sandbox: its code, the course's description and a sourced ROS."""
     course = (layout.course().root / layout.COURSE_FILE, layout.WORLDS)
     code = (layout.ROOT / "autograder", layout.ROOT / "sim", layout.SHARED_WORLDS)
     try:

@@ -20,7 +20,7 @@ from pathlib import Path
 from autograder.run.sandbox.limits import Limits
 
 _NUMBERS = itertools.count()
-_PROCESS = os.urandom(6).hex()  # cells have process ids of their own, and some share a folder
+_PROCESS = os.urandom(6).hex()  # worker sandboxes have process ids of their own, and some share a folder
 _NAME = "autograder"
 _LEAF = "worker"
 _CLOSE_SECONDS = 5.0
@@ -52,7 +52,7 @@ class ControlGroup:
         folder = self.by_controller.get("memory")
         if folder is None:
             return False
-        # Of version 2, `memory.events` counts what happened in the groups below, too: a cell is not out of memory
+        # In version 2, `memory.events` also counts events in the groups below. A worker sandbox is not out of memory
         # because a sandbox in it is.
         events = _read(folder / "memory.events.local") or _read(folder / "memory.events")
         events += _read(folder / "memory.oom_control")
@@ -152,7 +152,7 @@ def homes(controller: str, mountinfo: str, own: str) -> list[Path]:
     found = []
     for line in mountinfo.splitlines():
         before, _, after = line.partition(" - ")
-        root, mount = map(Path, before.split()[3:5])  # a cell sees its own group alone, at its usual place
+        root, mount = map(Path, before.split()[3:5])  # a worker sandbox sees its own group alone, at its usual place
         kind, _, options = after.split(maxsplit=2)
         if kind == "cgroup" and controller in options.split(","):
             place = _below(mount, root, _own(own, controller))
@@ -184,7 +184,7 @@ def _upwards(place: Path, mount: Path) -> list[Path]:
 def _removed(folder: Path) -> bool:
     with contextlib.suppress(OSError):
         for below in filter(Path.is_dir, folder.iterdir()):
-            _removed(below)  # groups of a cell that was killed
+            _removed(below)  # groups of a worker sandbox that was killed
         folder.rmdir()
     return not folder.exists()
 

@@ -1,7 +1,7 @@
-"""The user that a cell of root's runs as: a number that nobody on the machine has, another one for each cell.
+"""The user of each worker sandbox that root starts: a number that no account of the machine has.
 
 Root owns the kernel's settings, and a user namespace does not change that: who is root outside can write to them
-inside. Users of their own keep the cells apart, too, in all that the kernel counts or allows by user.
+inside. Users of their own keep the worker sandboxes apart, too, in all that the kernel counts or allows by user.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ def ordinary_user() -> Iterator[int | None]:
 
 def _claimed(claim: socket.socket, user: int) -> bool:
     if user == _USERS[-1]:
-        raise IsolationError("a thousand cells of root's run on this machine at once: let some end")
+        raise IsolationError("root already runs a thousand worker sandboxes on this machine: wait until some end")
     with suppress(KeyError):
         pwd.getpwuid(user)
         return False
     try:
         claim.bind(f"\0autograder-user-{user}")
     except OSError:
-        return False  # another cell's
+        return False  # used by another worker sandbox
     return True

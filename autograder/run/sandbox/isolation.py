@@ -33,18 +33,18 @@ class Isolation(str, Enum):
 
 @cache
 def best_isolation() -> Isolation:
-    """Return the strongest isolation level of this machine; tried for real, a sandbox inside a cell."""
+    """Return the strongest isolation level of this machine, after starting a sandbox inside a worker sandbox."""
     return Isolation.BUBBLEWRAP if namespaces_failure() is None else Isolation.PROCESS
 
 
 @cache
 def namespaces_failure() -> str | None:
-    """Return why a sandbox inside a cell cannot be made here, or None where it can."""
+    """Return why this machine cannot start a sandbox inside a worker sandbox, or None if it can."""
     if shutil.which("bwrap") is None:
         return "bubblewrap is not installed"
     inner = bubblewrap.sandbox(["true"], Sandbox(Path("/tmp")), filter_fd=None)
     with ordinary_user() as user:
-        outer = bubblewrap.cell(inner, View(), scratch=Path("/tmp/cell"), user=user)
+        outer = bubblewrap.worker_sandbox(inner, View(), scratch=Path("/tmp/worker"), user=user)
         try:
             done = subprocess.run(outer, capture_output=True, text=True, timeout=20, check=False)
         except subprocess.TimeoutExpired:
@@ -53,13 +53,13 @@ def namespaces_failure() -> str | None:
 
 
 def gives_up_root(isolation: Isolation) -> bool:
-    """Return whether a cell of this process becomes another user without any namespace."""
+    """Return whether worker sandboxes of this process run as another user, without namespaces."""
     return isolation is Isolation.PROCESS and os.geteuid() == 0
 
 
 @cache
 def _root_failure(temporary: str) -> str | None:
-    """Return why root's cells cannot run as other users, with their folders in `temporary`, or None where they can."""
+    """Return why root's worker sandboxes cannot run as other users with folders in `temporary`, or None if they can."""
     if shutil.which("setpriv") is None:
         return "setpriv is not installed"
     with ordinary_user() as user:

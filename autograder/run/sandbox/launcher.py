@@ -36,7 +36,7 @@ _servers: dict[str, ForkServer | None] = {}  # by their profiles; None where pro
 
 
 def current_isolation() -> Isolation:
-    """Return the isolation level of the cell that this process is in; `process` outside any cell."""
+    """Return the isolation level of the worker sandbox around this process, or `process` if there is none."""
     return Isolation(os.environ.get(ISOLATION_VARIABLE, Isolation.PROCESS.value))
 
 

@@ -34,7 +34,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class TreeLimits:
-    """Bounds on files that leave a sandbox or a cell."""
+    """Bounds on the files that leave a sandbox."""
 
     names: int = 5000  # files, folders and links
     size: int = 64 * MIB  # apparent bytes in all: holes count
@@ -47,29 +47,29 @@ class TreeLimits:
 NODE = Limits(wall_seconds=600.0)
 # Processor time bounds a build, and does not depend on the machine's load; the wall time is for a build that waits.
 BUILD = Limits(wall_seconds=420.0, cpu_seconds=180, memory=2 * GIB, output=4 * MIB, scratch=256 * MIB)
-# `colcon test` with a student's tests. Tests that never end are run twice, and both have to fit into a cell.
+# `colcon test` with a student's tests. Tests that never end are run twice, and both have to fit into a worker sandbox.
 COLCON_TEST = replace(BUILD, wall_seconds=150.0)
 # The submitted notebook's kernel.
 KERNEL = Limits(wall_seconds=180.0, cpu_seconds=180, memory=2 * GIB, output=4 * MIB, scratch=256 * MIB)
 # A `ros2` command, such as `ros2 launch` with all that it starts.
 LAUNCH = Limits(wall_seconds=180.0, cpu_seconds=60, memory=2 * GIB, threads=1024)
-# One pytest run of a student's tests. Five at a time have to fit into a cell.
+# One pytest run of a student's tests. Five at a time have to fit into a worker sandbox.
 TEST_RUN = Limits(wall_seconds=60.0, cpu_seconds=40, memory=768 * MIB)
 # Calls of a student's functions.
 CALLS = Limits(wall_seconds=30.0, cpu_seconds=30)
-# A whole cell: a trusted worker and all that it starts, for a grading or for a notebook's request.
+# A whole worker sandbox: a trusted worker and all its descendants, for a grading or for a notebook's request.
 # Its sandboxes have bounds of their own, and a bomb in one of them grows beyond these until it is seen. It must not end
-# the worker, too: the cell has room for six at once, and time for their ends.
-GRADING_CELL = Limits(wall_seconds=900.0, memory=6 * GIB, threads=8192, output=4 * MIB, looks=8)
-NOTEBOOK_CELL = replace(GRADING_CELL, wall_seconds=300.0)
-# A cell in which a submission is read, and nothing of it is run.
-READING_CELL = Limits(wall_seconds=120.0, memory=2 * GIB, threads=64)
-# A cell of the proof, which lives while there is work; each of its jobs has the wall time of GRADING_CELL.
-PROOF_CELL = replace(GRADING_CELL, wall_seconds=24 * 3600.0)
-CELL_SCRATCH = 512 * MIB  # bytes of a cell's file system
-CELL_TMP = 64 * MIB  # bytes of a cell's /tmp, where nothing of a student's is kept
-INOTIFY_INSTANCES = 16  # of a whole cell; the kernel gives a user of the machine 128
-INOTIFY_WATCHES = 4096  # of a whole cell
+# the worker, too: the worker sandbox has room for six at once, and time for their ends.
+GRADING_WORKER = Limits(wall_seconds=900.0, memory=6 * GIB, threads=8192, output=4 * MIB, looks=8)
+NOTEBOOK_WORKER = replace(GRADING_WORKER, wall_seconds=300.0)
+# A worker sandbox that only reads a submission.
+READING_WORKER = Limits(wall_seconds=120.0, memory=2 * GIB, threads=64)
+# A worker sandbox of the verification, which lives while there is work. Each job has the wall time of GRADING_WORKER.
+VERIFICATION_WORKER = replace(GRADING_WORKER, wall_seconds=24 * 3600.0)
+WORKER_SCRATCH = 512 * MIB  # bytes of a worker sandbox's file system
+WORKER_TMP = 64 * MIB  # bytes of a worker sandbox's /tmp, which no student's file is in
+INOTIFY_INSTANCES = 16  # of a whole worker sandbox; the kernel gives a user of the machine 128
+INOTIFY_WATCHES = 4096  # of a whole worker sandbox
 SIGNALS = 1024  # queued to each sandbox; the kernel counts them for the machine's user, too
 INSTALLED = TreeLimits()  # an install space after a build, which is copied for each grading, and kept
 # The same with what is noted of it, on its way from who built it to who keeps it and to who asked.

@@ -30,7 +30,7 @@ class Mount:
 
 @dataclass(frozen=True)
 class View:
-    """What a cell sees of the machine, beyond the system, the grader's own code and its scratch folder."""
+    """The part of the machine that a worker sandbox sees, besides the system, the grader and its scratch folder."""
 
     shown: tuple[Path, ...] = ()  # folders and files that it reads; they are read-only
     # What was handed in. A worker of root's is another user, and may be unable to read it: it gets a copy.
@@ -48,5 +48,5 @@ class Sandbox:
     mounts: tuple[Mount, ...] = ()
     # All environment variables that the code gets, nothing is inherited.
     environment: Mapping[str, str] = field(default_factory=dict)
-    network: bool = False  # True shares the cell's loopback (to meet the grader over DDS), False has none at all
+    network: bool = False  # True: the loopback of the worker sandbox, to reach the grader over DDS; False: none
     limits: Limits = NODE  # what the tree may use

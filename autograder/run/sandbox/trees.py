@@ -1,4 +1,4 @@
-"""Files that somebody else's code has written, on their way out of a sandbox or a cell: listed, bounded and copied.
+"""Lists, bounds and copies files that untrusted code wrote, on their way out of a sandbox.
 
 Sizes are apparent ones. A sparse file costs nothing where it is written, and all of its size where it is copied.
 """

@@ -1,4 +1,4 @@
-"""Makes what a cell could not keep: it sees the grader's code read-only, and starts with an empty home."""
+"""Fills caches for worker sandboxes, which see the grader's code read-only and start with an empty home."""
 
 from __future__ import annotations
 

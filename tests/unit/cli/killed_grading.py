@@ -21,8 +21,8 @@ from autograder import cli
 from autograder.grade import batch, grade_submission
 from autograder.grade.job import Job
 from autograder.result.model import Artifact, CheckResult, Result
-from autograder.run.sandbox.cell import CellReport
 from autograder.run.sandbox.process import ExitReason
+from autograder.run.sandbox.worker_sandbox import WorkerReport
 from autograder.submission.intake import read_submission
 from autograder.suite import Outcome
 from autograder.suite.suites import Suite
@@ -40,7 +40,7 @@ class Worker:
     def __init__(self, lost: Mapping[str, tuple[str, ...]]) -> None:
         self._lost = lost
 
-    def __call__(self, job: Job) -> CellReport:
+    def __call__(self, job: Job) -> WorkerReport:
         suite, lost = job.suite, self._lost[job.student]
         checks = tuple(
             CheckResult.of(check, Outcome.FAILED if check.id in lost else Outcome.PASSED) for check in suite.checks
@@ -62,7 +62,7 @@ class Worker:
         picture = io.BytesIO()
         Image.new("RGB", (8, 8)).save(picture, "PNG")
         files = {"nan.png": picture.getvalue(), "notebook.ipynb": NOTEBOOK}
-        return CellReport(ExitReason.EXITED, 0, "", {**files, "result.json": json.dumps(result.to_json()).encode()})
+        return WorkerReport(ExitReason.EXITED, 0, "", {**files, "result.json": json.dumps(result.to_json()).encode()})
 
 
 def grade(folder: Path, lost: Mapping[str, tuple[str, ...]], version: str, *options: str, kill_at: int = -1) -> None:

@@ -15,13 +15,13 @@ from autograder.grade.job import Job
 from autograder.grade.store import LOG, write_result
 from autograder.result.model import Artifact, CheckResult, Result, Status
 from autograder.run.sandbox import Isolation
-from autograder.run.sandbox.cell import CellReport
 from autograder.run.sandbox.process import ExitReason
+from autograder.run.sandbox.worker_sandbox import WorkerReport
 from autograder.suite import Check, Outcome, suites
 
 CHAPTER = "02_nodes"
 MakeResult = Callable[..., Result]
-DONE, FAILED = CellReport(ExitReason.EXITED, 0, ""), CellReport(ExitReason.EXITED, 1, "Traceback: of the grader")
+DONE, FAILED = WorkerReport(ExitReason.EXITED, 0, ""), WorkerReport(ExitReason.EXITED, 1, "Traceback: of the grader")
 
 
 class Worker:
@@ -31,14 +31,14 @@ class Worker:
         self.left, self.alone, self.times = list(results), list[bool](), list[float]()
         self.last: list[bool] = []  # whether each try was said to be the last one
 
-    def __call__(self, job: Job) -> CellReport:
+    def __call__(self, job: Job) -> WorkerReport:
         self.alone.append(pipeline._machine._turn.locked())
         self.times.append(job.seconds)
         self.last.append(job.last)
         result = self.left.pop(0)
         if result is None:
             return FAILED
-        return CellReport(ExitReason.EXITED, 0, "", {"result.json": json.dumps(result.to_json()).encode()})
+        return WorkerReport(ExitReason.EXITED, 0, "", {"result.json": json.dumps(result.to_json()).encode()})
 
 
 @pytest.fixture
@@ -116,7 +116,7 @@ class SlowWorker(Worker):
         super().__init__(*results)
         self.part = part
 
-    def __call__(self, job: Job) -> CellReport:
+    def __call__(self, job: Job) -> WorkerReport:
         time.sleep(self.part * job.seconds)
         return super().__call__(job)
 

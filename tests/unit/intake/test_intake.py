@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError, UsageError
-from autograder.run.sandbox.cell import copy_submission
+from autograder.run.sandbox.worker_sandbox import copy_submission
 from autograder.submission import intake
 from autograder.submission.intake import (
     SubmittedFile,

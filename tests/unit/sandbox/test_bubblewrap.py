@@ -8,7 +8,7 @@ from pathlib import Path
 
 from autograder import layout
 from autograder.run.sandbox import Limits, Mount, Sandbox, bubblewrap
-from autograder.run.sandbox.limits import CELL_SCRATCH
+from autograder.run.sandbox.limits import WORKER_SCRATCH
 from autograder.run.sandbox.spec import View
 
 
@@ -103,17 +103,17 @@ def test_the_grader_s_own_python_is_shown_read_only(tmp_path: Path) -> None:
 
 
 def test_a_worker_sandbox_has_namespaces_and_a_scratch_folder_of_limited_size(tmp_path: Path) -> None:
-    arguments = bubblewrap.cell(["worker"], View(), scratch=tmp_path)
+    arguments = bubblewrap.worker_sandbox(["worker"], View(), scratch=tmp_path)
     options = _options(arguments)
     for flag in ("--unshare-net", "--unshare-user", "--unshare-pid", "--unshare-ipc"):
         assert flag in options
     at = options.index(str(tmp_path))
-    assert options[at - 3 : at] == ["--size", str(CELL_SCRATCH), "--tmpfs"]
+    assert options[at - 3 : at] == ["--size", str(WORKER_SCRATCH), "--tmpfs"]
     assert arguments[-1] == "worker"
 
 
 def test_a_sandbox_of_root_becomes_an_ordinary_user_before_it_creates_namespaces(tmp_path: Path) -> None:
-    arguments = bubblewrap.cell(["worker"], View(), scratch=tmp_path, user=47001)
+    arguments = bubblewrap.worker_sandbox(["worker"], View(), scratch=tmp_path, user=47001)
     assert "--unshare-user" not in _options(arguments)
     become = arguments[arguments.index("setpriv") :]
     assert {"--reuid=47001", "--regid=47001", "--clear-groups", "--no-new-privs"} <= set(become)
@@ -122,7 +122,9 @@ def test_a_sandbox_of_root_becomes_an_ordinary_user_before_it_creates_namespaces
 
 def test_a_worker_sandbox_shows_the_grader_s_code_and_only_the_declared_files_of_chapters(tmp_path: Path) -> None:
     shown, out = layout.SOLUTIONS / "speed_guard", tmp_path / "out"
-    options = _options(bubblewrap.cell(["worker"], View((shown,), (tmp_path,), (out,)), scratch=Path("/tmp/cell")))
+    options = _options(
+        bubblewrap.worker_sandbox(["worker"], View((shown,), (tmp_path,), (out,)), scratch=Path("/tmp/worker"))
+    )
     read_only, writable = _pairs(options, "--ro-bind"), _pairs(options, "--bind")
     assert writable == [str(out)]
     assert {str(layout.ROOT / "autograder"), str(shown), str(tmp_path)} <= set(read_only)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.run.sandbox.cell import copy_submission
+from autograder.run.sandbox.worker_sandbox import copy_submission
 
 
 @pytest.fixture

@@ -23,7 +23,7 @@ from autograder.lms.serve import service
 from autograder.lms.serve.grading import Way
 from autograder.lms.serve.settings import read_settings
 from autograder.run.sandbox import Isolation
-from autograder.run.sandbox.cell import CellReport
+from autograder.run.sandbox.worker_sandbox import WorkerReport
 from tests.unit.cli.killed_grading import Worker
 
 OWN = str(Path(service.__file__).parent)
@@ -56,7 +56,7 @@ def serve(
     os.environ.update(environment)
     worker = Worker(defaultdict(tuple))
 
-    def run(job: Job) -> CellReport:
+    def run(job: Job) -> WorkerReport:
         if hold:
             wait((data.parent / HOLD).exists, 120.0)
         with (data.parent / ORDER).open("a") as order:

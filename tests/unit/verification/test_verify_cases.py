@@ -20,8 +20,8 @@ from autograder.grade.job import Job, Scope
 from autograder.grade.pipeline import refused
 from autograder.result.model import Status
 from autograder.run.sandbox import Isolation
-from autograder.run.sandbox.cell import CellReport
 from autograder.run.sandbox.process import ExitReason
+from autograder.run.sandbox.worker_sandbox import WorkerReport
 from autograder.submission.intake import read_submission
 from autograder.suite.suites import Suite
 
@@ -37,9 +37,9 @@ class NoGrader:
     def __init__(self) -> None:
         self._together = threading.Barrier(WORKERS, timeout=60.0)
 
-    def __call__(self, job: Job) -> CellReport:
+    def __call__(self, job: Job) -> WorkerReport:
         self._together.wait()
-        return CellReport(ExitReason.EXITED, 1, f"nobody grades {job.student}")
+        return WorkerReport(ExitReason.EXITED, 1, f"nobody grades {job.student}")
 
 
 class OneByOne(NoGrader):
@@ -56,12 +56,12 @@ class Recorder(OneByOne):
 
     count, calls = 1, 0
 
-    def __call__(self, job: Job) -> CellReport:
+    def __call__(self, job: Job) -> WorkerReport:
         self.calls += 1
         digest = read_submission(job.path, job.assignment).sha256
         result = refused(job, Diagnosis(Kind.OK, "It was looked at."))
         recorded = replace(result, submission_sha256=digest, status=Status.GRADED).to_json()
-        return CellReport(ExitReason.EXITED, 0, "", {"result.json": json.dumps(recorded).encode()})
+        return WorkerReport(ExitReason.EXITED, 0, "", {"result.json": json.dumps(recorded).encode()})
 
 
 def case(assignment: str, write: Callable[[Path], None] = Path.mkdir) -> Case:

@@ -1,4 +1,4 @@
-"""A bomb in a sandbox ends with its sandbox, and not with the cell around it: the submission is graded."""
+"""A bomb in a sandbox ends with its sandbox, and not with the worker sandbox around it: the submission is graded."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from autograder.run.sandbox import ExitReason, Isolation, cgroup
-from autograder.run.sandbox.cell import run_in_cell
+from autograder.run.sandbox.worker_sandbox import run_in_worker_sandbox
 
 # The bounds of `ros2 launch` are the widest: its program can have 4,096 threads before the watcher looks.
 WORKER = """
@@ -34,6 +34,6 @@ for _ in range(3):
 
 @pytest.mark.skipif("pids" not in cgroup.bounds(), reason="root without control groups: a bomb stops the machine")
 def test_a_bomb_in_the_widest_sandbox_does_not_end_the_worker() -> None:
-    report = run_in_cell(lambda scratch: [sys.executable, "-c", WORKER], Isolation.BUBBLEWRAP)
+    report = run_in_worker_sandbox(lambda scratch: [sys.executable, "-c", WORKER], Isolation.BUBBLEWRAP)
     assert (report.exit_reason, report.returncode) == (ExitReason.EXITED, 0), report.output
     assert report.output.split() == [ExitReason.THREADS.value] * 3

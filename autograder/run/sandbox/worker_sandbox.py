@@ -1,4 +1,4 @@
-"""A cell: a trusted worker process in namespaces of its own, with a scratch folder that dies with it."""
+"""A worker sandbox: a trusted worker process in its own namespaces, with a scratch folder that is removed with it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from autograder.run.sandbox import bubblewrap, cgroup, warm_caches
 from autograder.run.sandbox.identity import ordinary_user
 from autograder.run.sandbox.isolation import Isolation, gives_up_root, require
 from autograder.run.sandbox.launcher import ISOLATION_VARIABLE
-from autograder.run.sandbox.limits import GRADING_CELL, Limits, TreeLimits
+from autograder.run.sandbox.limits import GRADING_WORKER, Limits, TreeLimits
 from autograder.run.sandbox.process import ExitReason, Process
 from autograder.run.sandbox.spec import View
 from autograder.run.sandbox.trees import copy_unread
@@ -29,7 +29,7 @@ from autograder.submission.intake.ignored import environment_parts, is_ignored
 NOTHING = View()
 # One more of each than intake takes, so that it refuses a copy as it refuses the original.
 _SUBMITTED = TreeLimits(names=MAX_SCANNED + 2, size=MAX_READ_BYTES, depth=MAX_DEPTH + 2)
-_PREFIX = "autograder-cell-"
+_PREFIX = "autograder-worker-"
 _PASSED = (
     *("PATH", "LANG", "LC_", "TZ", "PYTHON", "LD_LIBRARY_PATH", "COVERAGE_", "AUTOGRADER_"),
     *("AMENT_", "CMAKE_PREFIX_PATH", "COLCON_", "FASTDDS_", "FASTRTPS_", "RCUTILS_", "RMW_", "ROS_"),
@@ -38,7 +38,7 @@ _YOUNG = 60.0  # s in which a folder that was just made gets its lock
 
 
 @dataclass(frozen=True)
-class CellReport:
+class WorkerReport:
     """How a worker ended, what it wrote to stdout and stderr, and the files that it left."""
 
     exit_reason: ExitReason
@@ -47,41 +47,41 @@ class CellReport:
     files: Mapping[str, bytes] = field(default_factory=dict)
 
 
-def run_in_cell(
+def run_in_worker_sandbox(
     make_command: Callable[[Path], list[str]],
     isolation: Isolation,
-    limits: Limits = GRADING_CELL,
+    limits: Limits = GRADING_WORKER,
     *,
     view: View = NOTHING,
-) -> CellReport:
-    """Run a trusted command in a new cell and wait for its end; arguments and errors are those of `in_cell`."""
-    with in_cell(make_command, isolation, limits, view=view) as (process, _):
+) -> WorkerReport:
+    """Run a trusted command in a new worker sandbox until it ends. Arguments and errors: see `in_worker_sandbox`."""
+    with in_worker_sandbox(make_command, isolation, limits, view=view) as (process, _):
         return ended(process)
 
 
-def ended(process: Process) -> CellReport:
+def ended(process: Process) -> WorkerReport:
     """Wait for a process to end, and report it."""
     process.wait(None)
     assert process.exit_reason is not None
-    return CellReport(process.exit_reason, process.returncode or 0, process.output)
+    return WorkerReport(process.exit_reason, process.returncode or 0, process.output)
 
 
 @contextmanager
-def in_cell(
+def in_worker_sandbox(
     make_command: Callable[[Path], list[str]],
     isolation: Isolation,
-    limits: Limits = GRADING_CELL,
+    limits: Limits = GRADING_WORKER,
     *,
     view: View = NOTHING,
     pass_fds: tuple[int, ...] = (),
 ) -> Iterator[tuple[Process, Path]]:
-    """Start a trusted command in a new cell; give its process and the cell's scratch folder, which both end with it.
+    """Start a trusted command in a new worker sandbox, and yield its process and its scratch folder. Both end with it.
 
     Args:
-        make_command: gets the cell's scratch folder, returns the command.
-        isolation: how strongly the cell is kept apart; an IsolationError where this machine cannot give it.
-        limits: a bound on the whole cell, students' processes included.
-        view: what the cell sees of the machine, at the isolation level `bubblewrap`.
+        make_command: gets the worker sandbox's scratch folder, returns the command.
+        isolation: the isolation level. An IsolationError says why this machine does not support it.
+        limits: a bound on the whole worker sandbox, students' processes included.
+        view: the parts of the machine that it sees, at the isolation level `bubblewrap`.
         pass_fds: descriptors that the command inherits.
     """
     require(isolation)
@@ -99,7 +99,9 @@ def in_cell(
                 user = stack.enter_context(ordinary_user())
                 group = cgroup.make_nested(limits, user)
                 view = view if user is None else _reachable(view, scratch, user)
-                command = group.enter(bubblewrap.cell(command, view, scratch=scratch, user=user, groups=group.folders))
+                command = group.enter(
+                    bubblewrap.worker_sandbox(command, view, scratch=scratch, user=user, groups=group.folders)
+                )
                 environment = {
                     **passed_variables(environment),
                     **_own(scratch, isolation),
@@ -128,7 +130,7 @@ def in_cell(
 
 
 def place_of(path: Path, isolation: Isolation, scratch: Path) -> Path:
-    """Return where the command of a cell finds what was handed in: in its own place, or in a copy that it can read."""
+    """Return where the command of a worker sandbox finds the submission: at its path, or as a readable copy."""
     return scratch / "submitted" / path.name if gives_up_root(isolation) else path
 
 
@@ -155,12 +157,12 @@ def _own(scratch: Path, isolation: Isolation) -> dict[str, str]:
 
 
 def passed_variables(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return the variables that a cell gets: a shell's others may hold keys, which are nobody's business in it."""
+    """Return the variables for a worker sandbox, without others of the shell, which may contain secrets."""
     return {name: value for name, value in environment.items() if name.startswith(_PASSED)}
 
 
 def _sweep() -> None:
-    """Remove cells' folders whose grader was killed: nobody holds their lock."""
+    """Remove the folders of worker sandboxes whose grader was killed: their locks are free."""
     for folder in Path(tempfile.gettempdir()).glob(f"{_PREFIX}*"):
         with suppress(OSError):
             if folder.stat().st_uid != os.geteuid() or time.time() - folder.stat().st_mtime < _YOUNG:

@@ -1,11 +1,11 @@
-"""Running a piece of test code where the grader's worker runs: in a cell, with ROS switched on.
+"""Runs a piece of test code where the grader's worker runs: in a worker sandbox, with ROS available.
 
-The piece is a function of a test module. It is run by name in a process of its own and answers in JSON:
+The piece is a function of a test module. It runs by name in a separate process and answers in JSON:
 
-    answer = in_cell(probe, "argument")     # runs probe(scratch, "argument") in a cell, returns what it returned
+    answer = in_worker_sandbox(probe, "argument")     # runs probe(scratch, "argument") there, and returns its result
 
-Its process is forked from one that has imported ROS and the harness, as those of the proof are. All pieces of a pytest
-process use that one's cell, one after another, and each has a scratch folder of its own.
+Its process is forked from one that has imported ROS and the harness, as in the verification. All pieces of a pytest
+process use the same worker sandbox, one after another, and each has its own scratch folder.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, TextIO
 
-from autograder.run.sandbox import Isolation, Process, cell
-from autograder.run.sandbox.limits import PROOF_CELL
+from autograder.run.sandbox import Isolation, Process, worker_sandbox
+from autograder.run.sandbox.limits import VERIFICATION_WORKER
 from autograder.run.sandbox.spec import View
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -34,17 +34,21 @@ _MARK = "answer: "
 _VIEW = View(shown=(ROOT,))  # the tests, and what they grade
 
 
-def in_cell(function: Callable[..., Any], *arguments: Any, isolation: Isolation = Isolation.BUBBLEWRAP) -> Any:
-    """Run `function(scratch, *arguments)` in a cell; return its answer, which crosses as JSON.
+def in_worker_sandbox(
+    function: Callable[..., Any], *arguments: Any, isolation: Isolation = Isolation.BUBBLEWRAP
+) -> Any:
+    """Run `function(scratch, *arguments)` in a worker sandbox; return its answer, which crosses as JSON.
 
     Args:
         function: a function of a test module.
         arguments: what JSON can hold.
-        isolation: of the cell; any but bubblewrap gets a cell of its own.
+        isolation: of the worker sandbox; any level except bubblewrap gets a separate one.
     """
     piece = _piece(function, arguments)
     if isolation is not Isolation.BUBBLEWRAP:
-        report = cell.run_in_cell(lambda scratch: [*_PROGRAM, piece, str(scratch)], isolation, view=_VIEW)
+        report = worker_sandbox.run_in_worker_sandbox(
+            lambda scratch: [*_PROGRAM, piece, str(scratch)], isolation, view=_VIEW
+        )
         status, said = report.returncode, report.output
     else:
         status, said = _shared_cell().run(piece)
@@ -56,9 +60,11 @@ def in_cell(function: Callable[..., Any], *arguments: Any, isolation: Isolation 
 
 @contextmanager
 def started_in_cell(function: Callable[..., Any], *arguments: Any) -> Iterator[Process]:
-    """Start `function(scratch, *arguments)` in a cell of its own, and end it with the block."""
+    """Start `function(scratch, *arguments)` in its own worker sandbox, and end it with the block."""
     command = [*_PROGRAM, _piece(function, arguments)]
-    with cell.in_cell(lambda scratch: [*command, str(scratch)], Isolation.BUBBLEWRAP, view=_VIEW) as (process, _):
+    with worker_sandbox.in_worker_sandbox(
+        lambda scratch: [*command, str(scratch)], Isolation.BUBBLEWRAP, view=_VIEW
+    ) as (process, _):
         yield process
 
 
@@ -77,13 +83,13 @@ def is_forked(process: Process) -> bool:
     return b"autograder.run.fork_server" in words
 
 
-# A cell's process is started in /, from where no path leads to the tests.
-_RUN = f"import sys; sys.path[0] = {str(ROOT)!r}; from tests.e2e.cell_support import main; main()"
+# A worker sandbox's process is started in /, from where no path leads to the tests.
+_RUN = f"import sys; sys.path[0] = {str(ROOT)!r}; from tests.e2e.sandbox_support import main; main()"
 _PROGRAM = (sys.executable, "-c", _RUN)
 
 
 class _SharedCell:
-    """A cell with a process that forks for each piece."""
+    """A worker sandbox with a process that forks for each piece."""
 
     def __init__(self) -> None:
         stack = ExitStack()
@@ -92,8 +98,12 @@ class _SharedCell:
         with theirs:
             fd = theirs.fileno()
             command = [*_PROGRAM, "serve", str(fd)]
-            made = cell.in_cell(
-                lambda scratch: [*command, str(scratch)], Isolation.BUBBLEWRAP, PROOF_CELL, view=_VIEW, pass_fds=(fd,)
+            made = worker_sandbox.in_worker_sandbox(
+                lambda scratch: [*command, str(scratch)],
+                Isolation.BUBBLEWRAP,
+                VERIFICATION_WORKER,
+                view=_VIEW,
+                pass_fds=(fd,),
             )
             self._process, _ = stack.enter_context(made)
         self._requests, self._replies = ours.makefile("w"), ours.makefile("r")

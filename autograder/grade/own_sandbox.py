@@ -1,4 +1,4 @@
-"""One submission in a cell of its own, and what its worker sees there."""
+"""Grades one submission in its own worker sandbox, and defines what its worker sees there."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ from pathlib import Path
 from autograder import layout
 from autograder.building.keeper import attend
 from autograder.grade.job import Job
-from autograder.run.sandbox.cell import CellReport, ended, in_cell, place_of
-from autograder.run.sandbox.limits import GRADING_CELL
+from autograder.run.sandbox.limits import GRADING_WORKER
 from autograder.run.sandbox.parcel import ParcelError
 from autograder.run.sandbox.spec import View
+from autograder.run.sandbox.worker_sandbox import WorkerReport, ended, in_worker_sandbox, place_of
 from autograder.suite import fingerprint
 
 GRACE = 30.0  # s in which a worker that knows that its time is over ends what runs, and says what it knows
 
 
-def in_own_cell(job: Job) -> CellReport:
-    """Run a job by a worker of its own in a cell of its own; report the files that it left."""
+def in_own_sandbox(job: Job) -> WorkerReport:
+    """Run a job with a worker in its own sandbox, and report the files that it left."""
     ours, theirs = Pipe()
 
     def command(scratch: Path) -> list[str]:
         path = place_of(job.path, job.isolation, scratch)
         return _worker(replace(job, path=path, scratch=scratch, out=scratch / "out"), theirs.fileno())
 
-    limits = replace(GRADING_CELL, wall_seconds=job.seconds + GRACE)
+    limits = replace(GRADING_WORKER, wall_seconds=job.seconds + GRACE)
     with ours, ExitStack() as stack:
         with theirs:
-            cell = in_cell(command, job.isolation, limits, view=view(job), pass_fds=(theirs.fileno(),))
-            process, _ = stack.enter_context(cell)
+            sandbox = in_worker_sandbox(command, job.isolation, limits, view=view(job), pass_fds=(theirs.fileno(),))
+            process, _ = stack.enter_context(sandbox)
         try:
             files, _ = attend(ours, job.isolation, lambda: process.exit_reason is not None)
             return replace(ended(process), files=files)

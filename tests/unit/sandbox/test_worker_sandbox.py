@@ -1,4 +1,4 @@
-"""A grader that is killed leaves nothing: its cells end with it, and the next one removes their folders."""
+"""The worker sandboxes of a killed grader end with it, and the next grader removes their folders."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import pytest
 
 from autograder import layout
 from autograder.run.sandbox import Isolation, procfs
-from autograder.run.sandbox.cell import run_in_cell
+from autograder.run.sandbox.worker_sandbox import run_in_worker_sandbox
 
 
 def test_only_folders_of_worker_sandboxes_without_a_lock_are_removed(
@@ -25,18 +25,20 @@ def test_only_folders_of_worker_sandboxes_without_a_lock_are_removed(
     monkeypatch.setattr(tempfile, "tempdir", str(entered_tmp_path))
     left, held, young, other = (
         entered_tmp_path / f"{name}"
-        for name in ("autograder-cell-1", "autograder-cell-2", "autograder-cell-3", "other")
+        for name in ("autograder-worker-1", "autograder-worker-2", "autograder-worker-3", "other")
     )
     for folder in (left, held, young, other):
         (folder / "ws").mkdir(parents=True)
         if folder != young:
             os.utime(folder, (0, 0))
-    link = entered_tmp_path / "autograder-cell-4"
+    link = entered_tmp_path / "autograder-worker-4"
     link.symlink_to(other)
     descriptor = os.open(held, os.O_RDONLY)
     fcntl.flock(descriptor, fcntl.LOCK_EX)
     try:
-        report = run_in_cell(lambda scratch: [sys.executable, "-c", f"print({str(scratch)!r})"], Isolation.PROCESS)
+        report = run_in_worker_sandbox(
+            lambda scratch: [sys.executable, "-c", f"print({str(scratch)!r})"], Isolation.PROCESS
+        )
     finally:
         os.close(descriptor)
     assert Path(report.output.strip()).parent == entered_tmp_path
@@ -51,7 +53,9 @@ def test_a_worker_imports_nothing_from_the_folder_that_the_grader_was_started_in
         (tmp_path / f"{module}.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')\n")
     monkeypatch.chdir(tmp_path)
     for isolation in (Isolation.PROCESS, Isolation.BUBBLEWRAP):
-        report = run_in_cell(lambda scratch: [sys.executable, "-m", "autograder.grade.worker", "{}"], isolation)
+        report = run_in_worker_sandbox(
+            lambda scratch: [sys.executable, "-m", "autograder.grade.worker", "{}"], isolation
+        )
         assert "JSON" not in report.output
         assert "TypeError" in report.output  # it came as far as reading its job
     assert not (tmp_path / "ran").exists()
@@ -61,9 +65,9 @@ CELL = """
 import sys
 from autograder import layout
 from autograder.run.sandbox import Isolation, procfs
-from autograder.run.sandbox.cell import in_cell
+from autograder.run.sandbox.worker_sandbox import in_worker_sandbox
 
-with in_cell(lambda scratch: ["sh", "-c", "echo up; exec sleep 600"], Isolation.BUBBLEWRAP) as (process, _):
+with in_worker_sandbox(lambda scratch: ["sh", "-c", "echo up; exec sleep 600"], Isolation.BUBBLEWRAP) as (process, _):
     while "up" not in process.output:
         process.wait(0.05)
     print("up", flush=True)
