@@ -20,7 +20,7 @@ from autograder.run.sandbox.limits import BUILD, INSTALLED
 from autograder.run.sandbox.trees import Entry, TreeError, read_tree, survey
 from autograder.run.workspace import Workspace
 
-HOST = Path(__file__).with_name("colcon_host.py")
+RUNNER = Path(__file__).with_name("colcon_runner.py")
 LOG_LINES = 40
 
 
@@ -33,7 +33,7 @@ def colcon_command(workspace: Workspace, folders: Iterable[Path], verb: str, *wo
 
     What colcon would find by itself may be other packages than those that are judged.
     """
-    command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "colcon-log"), verb]
+    command = [sys.executable, str(RUNNER), "--log-base", str(workspace.scratch / "colcon-log"), verb]
     # colcon hears a build's two streams apart: what it prints of both together has another order each time.
     together = "console_cohesion-" if verb == "build" else "console_cohesion+"
     paths = sorted(glob.escape(str(folder.relative_to(workspace.root))) for folder in folders)
@@ -72,7 +72,7 @@ def _run(workspace: Workspace, overlay: Path, command: list[str]) -> tuple[str, 
         "COLCON_HOME": str(workspace.scratch),
         "MAKEFLAGS": f"-j{min(3, (os.cpu_count() or 1) + 1)}",
     }
-    mounts = (*plain.mounts, Mount(HOST), Mount(workspace.root, writable=True), Mount(overlay))
+    mounts = (*plain.mounts, Mount(RUNNER), Mount(workspace.root, writable=True), Mount(overlay))
     spec = replace(plain, workdir=workspace.root, mounts=mounts, environment=environment, network=False)
     with launch(command, spec, profile="colcon") as process:
         process.wait(BUILD.wall_seconds + 10)

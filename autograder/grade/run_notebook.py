@@ -1,7 +1,7 @@
 """Runs a submitted notebook in the sandbox, client and kernel. Its cells write files into a fresh workspace.
 
 No message of the kernel reaches this process: a program in the sandbox takes them, and answers with the outputs of each
-cell in bounded JSON (`notebook_host`). The cells' own text is the grader's, never the answer's.
+cell in bounded JSON (`notebook_runner`). The cells' own text is the grader's, never the answer's.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from autograder.run.workspace import Workspace
 from autograder.submission.reading import reading
 from sim.grading import GRADING_VARIABLE
 
-HOST = Path(__file__).with_name("notebook_host.py")
+RUNNER = Path(__file__).with_name("notebook_runner.py")
 CELL_SECONDS = 60  # wall time of a cell; one that takes longer ends the run
 MAX_OUTPUT = 4 * 1024 * 1024  # characters
 MAX_WHY = 2000  # characters
@@ -75,7 +75,7 @@ def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> Noteb
         given.write(json.dumps(order).encode())
         given.seek(0)
         descriptors = given.fileno(), taken.fileno()
-        command = [sys.executable, str(HOST), *map(str, descriptors)]
+        command = [sys.executable, str(RUNNER), *map(str, descriptors)]
         with launch(command, _sandbox(folder, workspace), pass_fds=descriptors) as process:
             process.wait(KERNEL.wall_seconds + 10)
         taken.seek(0)
@@ -100,7 +100,7 @@ class Answer:
 
 
 def read_answer(data: bytes) -> Answer:
-    """Read the lines of `notebook_host`, which the student's code may have forged; what is not valid is left out."""
+    """Read the lines of `notebook_runner`, which the student's code may have forged; what is not valid is left out."""
     begun, why, cells, left = False, "", dict[int, NotebookNode](), MAX_VALUES
     for line in data.split(b"\n", MAX_LINES)[:MAX_LINES]:
         with suppress(StudentError), reading("An output of your notebook"):
@@ -166,6 +166,6 @@ def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
     environment["PYTHONPATH"] = os.pathsep.join([*filter(None, [environment["PYTHONPATH"]]), str(layout.ROOT)])
     code = (Path(autograder.__file__).parent, Path(sim.__file__).parent)
     worlds = filter(Path.is_dir, {layout.SHARED_WORLDS, layout.WORLDS})
-    readable = (HOST, *code, *worlds, layout.course().root / layout.COURSE_FILE)
+    readable = (RUNNER, *code, *worlds, layout.course().root / layout.COURSE_FILE)
     mounts = (*plain.mounts, *map(Mount, readable), Mount(folder, writable=True))
     return replace(plain, workdir=folder, mounts=mounts, environment=environment, network=False)

@@ -30,7 +30,7 @@ from autograder.run.sandbox.limits import LAUNCH
 from autograder.run.workspace import Workspace
 from autograder.submission.reading import hold, reading
 
-HOST = Path(__file__).with_name("launch_host.py")
+RUNNER = Path(__file__).with_name("launch_runner.py")
 ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
 _POLL_SECONDS = 0.05  # between two looks at a condition while nothing arrives
 _PROGRAM = re.compile(r"/lib/(?P<package>[^/]+)/(?P<name>[^/]+)$")
@@ -74,7 +74,7 @@ def start(arguments: Sequence[str], spec: Sandbox, status: int | None = None) ->
         spec: from `sandbox`.
         status: a descriptor that gets the exit status, as a line; the process then lives on after `ros2`.
     """
-    command = [sys.executable, str(HOST), "-" if status is None else str(status), *arguments]
+    command = [sys.executable, str(RUNNER), "-" if status is None else str(status), *arguments]
     return launch(command, spec, pass_fds=() if status is None else (status,), profile="launch")
 
 
@@ -258,15 +258,15 @@ class LaunchHarness(contextlib.ExitStack):
     def interrupt(self, seconds: float) -> Stop:
         """Do what Ctrl-C does; wait at most `seconds` of real time for the end."""
         if self.status is None:
-            host = self.process.innermost()  # of `ros2`, its first child
-            os.kill(procfs.children(host)[0], signal.SIGINT)
+            runner = self.process.innermost()  # the parent of `ros2`
+            os.kill(procfs.children(runner)[0], signal.SIGINT)
         self.wait_for(lambda: self.status is not None, seconds)
         return Stop(self.status, self.left())
 
     def left(self) -> tuple[str, ...]:
         """Return the commands that are still running now that the launch has ended."""
-        host = self.process.innermost()
-        pids = [pid for pid in procfs.measure(host).pids if pid != host and _command_of(pid)]
+        runner = self.process.innermost()
+        pids = [pid for pid in procfs.measure(runner).pids if pid != runner and _command_of(pid)]
         return tuple(" ".join(_command_of(pid)) for pid in pids) if self.status is not None else ()
 
 

@@ -31,8 +31,8 @@ from autograder.run.workspace import Workspace
 from autograder.submission.reading import beyond_bounds, reading
 from autograder.suite import CheckFailed
 
-REFERENCE = "$made"  # as in call_host.py, which runs alone in the sandbox
-HOST = Path(__file__).with_name("call_host.py")
+REFERENCE = "$made"  # as in call_runner.py, which runs alone in the sandbox
+RUNNER = Path(__file__).with_name("call_runner.py")
 MAX_ANSWER = 1024 * 1024
 MAX_KINDS = 20
 
@@ -108,13 +108,13 @@ def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False
         StudentError: the module cannot be imported, or its code hangs, ends the process or goes over a limit.
     """
     spec = workspace.sandbox(CALLS)
-    spec = replace(spec, network=network, mounts=(*spec.mounts, Mount(HOST)))
+    spec = replace(spec, network=network, mounts=(*spec.mounts, Mount(RUNNER)))
     order = json.dumps({"module": module, "steps": [asdict(step) for step in steps]})
     with os.fdopen(os.memfd_create("order"), "w+b") as given, os.fdopen(os.memfd_create("answer"), "w+b") as taken:
         given.write(order.encode())
         given.seek(0)
         descriptors = given.fileno(), taken.fileno()
-        command = [sys.executable, str(HOST), *map(str, descriptors)]
+        command = [sys.executable, str(RUNNER), *map(str, descriptors)]
         with launch(command, spec, pass_fds=descriptors, profile="tests") as process:
             process.wait(CALLS.wall_seconds + 10)
             taken.seek(0)
@@ -125,7 +125,7 @@ def parse_answer(data: bytes, module: str, count: int, process: Process) -> list
     """Read the answer of a process that was to carry out `count` steps with a module.
 
     Raises:
-        StudentError: the module could not be imported, or the answer is cut short, or was not written by our host.
+        StudentError: the module could not be imported, or the answer is cut short, or was not written by `call_runner`.
     """
     with reading(f"What {module} answered"):
         answer = _parse(data)

@@ -11,7 +11,7 @@ import secrets
 from dataclasses import replace
 from pathlib import Path
 
-from autograder.building.colcon import HOST, colcon_command
+from autograder.building.colcon import RUNNER, colcon_command
 from autograder.probes.files import read_below
 from autograder.probes.installed import Installed
 from autograder.probes.student_test_reports import MAX_BYTES, Claims, Report, parse_claims
@@ -65,7 +65,7 @@ def _colcon_test(workspace: Workspace, package: str, *pytest_arguments: str) -> 
     choice = ["--packages-select", package, "--return-code-on-test-failure"]
     choice += ["--pytest-args", "-o", f"junit_suite_name={run}", *pytest_arguments]
     found, _ = find_packages(workspace.root / "src")
-    plain = sandboxed(workspace, HOST, limits=COLCON_TEST)
+    plain = sandboxed(workspace, RUNNER, limits=COLCON_TEST)
     environment = {**plain.environment, "COLCON_HOME": str(workspace.scratch)}
     del environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"]  # colcon is the student's own way to run them, plug-ins and all
     mounts = tuple(mount for mount in plain.mounts if mount.path != workspace.install)

@@ -42,7 +42,7 @@ from autograder.run.workspace import Workspace
 from autograder.submission.intake import read_packages
 from autograder.submission.reading import hold, reading
 
-HOST = Path(__file__).with_name("pytest_host.py")
+RUNNER = Path(__file__).with_name("pytest_runner.py")
 STANDINS = Path(autograder.ros.__file__).parent / "standins"
 JOBS = 5  # runs at a time: most of a run is waiting, for processes to start and for time to pass
 HOME = Path("/tmp")  # the sandbox's own
@@ -142,10 +142,10 @@ def _run_in(place: Path, workspace: Workspace, source: Source, wanted: TestRun) 
 def _confined(workspace: Workspace, folder: Path, wanted: TestRun, home: Path) -> Sandbox:
     """Describe the sandbox of one run: nothing in it can be written to but its own /tmp, where there is one."""
     if current_isolation() is Isolation.BUBBLEWRAP:
-        spec = sandboxed(replace(workspace, scratch=HOME), folder, HOST, network=wanted.sniffed)
+        spec = sandboxed(replace(workspace, scratch=HOME), folder, RUNNER, network=wanted.sniffed)
         return replace(spec, workdir=folder, mounts=tuple(mount for mount in spec.mounts if mount.path != HOME))
     home.mkdir(parents=True)
-    return replace(sandboxed(replace(workspace, scratch=home), folder, HOST, network=True), workdir=folder)
+    return replace(sandboxed(replace(workspace, scratch=home), folder, RUNNER, network=True), workdir=folder)
 
 
 def _arguments(source: Source, folder: Path, wanted: TestRun, launches: bool) -> list[str]:
@@ -176,7 +176,7 @@ def _host(spec: Sandbox, wanted: TestRun, arguments: list[str], launches: bool) 
     go_read, go_write = os.pipe()
     with os.fdopen(os.memfd_create("report"), "w+b") as report:
         theirs = (report.fileno(), status_write, go_read)
-        command = [sys.executable, str(HOST), *map(str, theirs), str(int(wanted.backwards)), *arguments]
+        command = [sys.executable, str(RUNNER), *map(str, theirs), str(int(wanted.backwards)), *arguments]
         try:
             process = launch(command, spec, pass_fds=theirs, profile="launch" if launches else "tests")
         finally:

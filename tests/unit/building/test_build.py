@@ -155,7 +155,7 @@ def test_packages_are_found_where_colcon_finds_them(tmp_path: Path) -> None:
     (tmp_path / "src/a/b/deep/not_COLCON_IGNORE").touch()
     found, broken = packages.find_packages(tmp_path / "src")
     assert (set(found), broken) == ({"plain", "outer", "deep"}, {})
-    command = [sys.executable, str(colcon.HOST), "--log-base", str(tmp_path / "log"), "list", "--base-paths", "src"]
+    command = [sys.executable, str(colcon.RUNNER), "--log-base", str(tmp_path / "log"), "list", "--base-paths", "src"]
     listed = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
     assert {tuple(line.split("\t")[:2]) for line in listed.splitlines()} == {
         (name, str(folder.relative_to(tmp_path))) for name, folder in found.items()

@@ -33,9 +33,9 @@ TRIED = {
 # What these read, the grader or a course's author has written, or a program of the sandbox reads it there.
 OWN = {
     *("building/interface_bundle.py", "checks/ch06_testing/hidden/faults.py", "suite/contract.py"),
-    *("grade/batch.py", "grade/job.py", "grade/notebook_host.py", "building/keeper.py"),
+    *("grade/batch.py", "grade/job.py", "grade/notebook_runner.py", "building/keeper.py"),
     *("grade/store.py", "building/interfaces/generate.py", "building/interfaces/tutorials.py"),
-    *("run/lockstep/lockstep_host/pipes.py", "probes/call_host.py", "probes/versions.py"),
+    *("run/lockstep/lockstep_host/pipes.py", "probes/call_runner.py", "probes/versions.py"),
     "submission/reading.py",  # an example in its docstring
     "grade/bounded_json.py",  # what a worker answers, with bounds of its own
 }

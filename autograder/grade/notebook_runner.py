@@ -1,6 +1,6 @@
 """Runs inside the sandbox: executes a notebook's cells in a kernel, and says cell by cell what came of them.
 
-    python notebook_host.py ORDER_FD ANSWER_FD
+    python notebook_runner.py ORDER_FD ANSWER_FD
 
 The order, `{"notebook": ..., "skipped": [INDEX, ...], "cell_seconds": ..., "max_output": ...}`, comes on one
 descriptor. The answer goes to another, a line of JSON each: `{"event": "begin"}` before there is a kernel, `{"event":

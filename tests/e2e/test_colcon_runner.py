@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from autograder import layout
-from autograder.building.colcon import HOST
+from autograder.building.colcon import RUNNER
 from autograder.harness import Workspace
 from autograder.ros import environment
 from autograder.run.sandbox import Mount, Sandbox
@@ -62,9 +62,9 @@ def build(workspace: Workspace, profile: str | None) -> tuple[int | None, str]:
     for folder in (workspace.root / "build", workspace.install, workspace.scratch):
         shutil.rmtree(folder, ignore_errors=True)
     workspace.scratch.mkdir()
-    command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "log"), "build", "--executor"]
+    command = [sys.executable, str(RUNNER), "--log-base", str(workspace.scratch / "log"), "build", "--executor"]
     command += ["sequential", "--event-handlers", "console_cohesion+", "desktop_notification-"]
-    mounts = (Mount(HOST), Mount(workspace.root, writable=True), Mount(workspace.scratch, writable=True))
+    mounts = (Mount(RUNNER), Mount(workspace.root, writable=True), Mount(workspace.scratch, writable=True))
     spec = Sandbox(workspace.root, mounts, environment=workspace.environment(), limits=BUILD)
     with launch(command, spec, profile=profile) as process:
         assert profile is None or is_forked(process)

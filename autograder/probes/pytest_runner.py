@@ -1,6 +1,6 @@
 """Runs pytest in the sandbox, reports how it ended, and stays until the trusted side has looked at what is left.
 
-    python pytest_host.py REPORT_FD STATUS_FD GO_FD REVERSED ARGUMENTS...
+    python pytest_runner.py REPORT_FD STATUS_FD GO_FD REVERSED ARGUMENTS...
 
 When pytest has ended, its report of JUnit XML goes to REPORT_FD and its exit status to STATUS_FD; the process then
 waits for the end of GO_FD. All of it is in the power of the tests that run here: the trusted side takes what it hears

@@ -1,6 +1,6 @@
 """`ros2` in a sandbox, with a process that outlives it and sees what it has left behind.
 
-    python launch_host.py DESCRIPTOR WORDS-OF-ROS2...
+    python launch_runner.py DESCRIPTOR WORDS-OF-ROS2...
 
 When `ros2` has ended, its exit status is written to DESCRIPTOR, and this process waits to be killed. `ros2` is its
 first child; whatever loses its parent becomes another one. If DESCRIPTOR is a dash, this process becomes `ros2` itself.

@@ -1,6 +1,6 @@
 """Runs inside the sandbox: calls functions and classes of a student's module as JSON says, and answers in JSON.
 
-    python call_host.py ORDER_FD ANSWER_FD
+    python call_runner.py ORDER_FD ANSWER_FD
 
 The order, `{"module": ..., "steps": [...]}`, comes on one descriptor; steps are as in `autograder.probes.calls`. The
 answer goes to another, so that what the student's code prints is not part of it. It is a claim of the process that the

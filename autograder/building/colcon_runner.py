@@ -1,6 +1,6 @@
 """colcon in a sandbox.
 
-    python colcon_host.py ARGUMENTS-OF-COLCON
+    python colcon_runner.py ARGUMENTS-OF-COLCON
 
 To build one Python package, colcon starts Python three times for its setup.py, and most of what those do is to import
 setuptools. Where this process was forked, they are forked, too.
