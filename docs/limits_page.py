@@ -5,9 +5,9 @@ from __future__ import annotations
 from autograder.author.course.markdown_table import table
 from autograder.building.interfaces.cache import LIMIT
 from autograder.building.keeper import CACHE
-from autograder.grade.answer import MAX_RESULT, MAX_SHOWN
 from autograder.grade.bounded_json import NOTEBOOK_VALUES, RESULT_VALUES, RUN_VALUES
 from autograder.grade.executed_notebook import MAX_BYTES
+from autograder.grade.reply import MAX_RESULT, MAX_SHOWN
 from autograder.harness.launch import MAX_STATUS
 from autograder.run.fork_server import seccomp
 from autograder.run.lockstep.protocol import MAX_LINE

@@ -15,7 +15,7 @@ from autograder.exceptions import StudentError
 from autograder.ros import activate
 from autograder.run.sandbox.launcher import restore_sigint
 from autograder.run.sandbox.limits import SOURCES
-from autograder.run.sandbox.parcel import receive_tree, send_message, send_tree, write_received
+from autograder.run.sandbox.messages import receive_tree, send_message, send_tree, write_received
 from autograder.run.workspace import Workspace
 from autograder.submission.reading import reading
 

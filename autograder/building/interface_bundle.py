@@ -21,7 +21,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.run.sandbox import line
 from autograder.run.sandbox.limits import MIB, SOURCES
-from autograder.run.sandbox.parcel import write_received
+from autograder.run.sandbox.messages import write_received
 from autograder.run.sandbox.trees import Entry, TreeError, read_tree
 from autograder.run.workspace import Workspace
 from autograder.submission.packages import Package

@@ -29,8 +29,8 @@ from autograder.exceptions import GraderError, StudentError
 from autograder.ros import find
 from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.limits import BUILD, GRADING_WORKER, KEPT, RESULT_FILES, SOURCES
-from autograder.run.sandbox.parcel import (
-    ParcelError,
+from autograder.run.sandbox.messages import (
+    MessageError,
     receive_message,
     receive_tree,
     send_message,
@@ -55,7 +55,7 @@ def attend(
     a word has an empty last message.
 
     Raises:
-        ParcelError: it says what no worker would.
+        MessageError: it says what no worker would.
     """
     files: dict[str, bytes] = {}
     while True:
@@ -72,7 +72,7 @@ def attend(
             elif message.get("do") == "done":
                 return files, message
             else:
-                raise ParcelError("a worker asks for what nobody offers")
+                raise MessageError("a worker asks for what nobody offers")
         except (EOFError, ConnectionError):
             return files, {}
 
@@ -161,6 +161,6 @@ def _make(sources: Mapping[Entry, bytes], isolation: Isolation, entry: Path) -> 
             if "diagnosis" in reply:
                 raise _refusal(reply)
             write_received(receive_tree(ours, KEPT), entry)
-        except (EOFError, OSError, ParcelError, KeyError, ValueError, TypeError) as error:
+        except (EOFError, OSError, MessageError, KeyError, ValueError, TypeError) as error:
             process.kill()
             raise GraderError(f"interface packages could not be built: {error!r}\n{ended(process).output}") from None

@@ -14,7 +14,7 @@ import click
 from autograder.cli.options import isolation_option
 from autograder.cli.terminal import echo
 from autograder.exceptions import UsageError
-from autograder.grade.job import Job, Scope
+from autograder.grade.job import Job, Options
 from autograder.grade.pipeline import grade_submission
 from autograder.report import feedback
 from autograder.report.export.stored import load
@@ -75,8 +75,8 @@ def _grade_again(
     result: Result, check: str, submission: Path, out: Path, isolation: Isolation, recordings: bool
 ) -> Result:
     """Grade a check and its dependencies again with the seed of its result."""
-    scope = Scope(only=suites.hidden(result.assignment).with_dependencies(check), recordings=recordings)
-    graded = grade_submission(Job(submission, result.assignment, result.student, result.seed, out, isolation, scope))
+    options = Options(only=suites.hidden(result.assignment).with_dependencies(check), recordings=recordings)
+    graded = grade_submission(Job(submission, result.assignment, result.student, result.seed, out, isolation, options))
     if graded.status is Status.GRADED and graded.submission_sha256 != result.submission_sha256:
         echo(f"Note: {submission} differs from the graded submission, so the run may differ.", err=True)
     return graded

@@ -1,4 +1,4 @@
-"""A job: one submission to grade, as data that crosses a process boundary."""
+"""A job: one submission to grade, as data that crosses process boundaries."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from autograder.suite.suites import Suite
 
 
 @dataclass(frozen=True)
-class Scope:
-    """How much of a suite is run. Anything but all of it is for the proof and for a replay, where nobody gets marks."""
+class Options:
+    """How a suite is run. Anything except the defaults is for verification and replay, which give no marks."""
 
     only: tuple[str, ...] = ()  # the checks to run; all of them when empty
     first_loss: bool = False  # whether to stop at the first check that does not pass
@@ -26,21 +26,21 @@ class Scope:
     built: str = ""  # a built workspace of other sources, which takes the place of a build; see `building.prebuilt`
 
 
-ALL = Scope()
+WHOLE_SUITE = Options()
 
 
 @dataclass(frozen=True)
 class Job:
     """One submission to grade."""
 
-    path: Path  # what was handed in: an assignment's folder, an archive of one, a notebook, or a source tree
-    assignment: str  # which assignment it answers
-    student: str  # whose it is; stands in the result only
+    path: Path  # the submission: an assignment's folder, an archive of one, a notebook, or a source tree
+    assignment: str  # the assignment
+    student: str  # whose it is; used only in the result
     seed: int  # every hidden input is drawn from it; the same seed gives the same inputs
     # The folder that gets `result.json`, `notebook.ipynb` and the pictures; `grader.log` if the grader failed.
     out: Path
     isolation: Isolation = Isolation.BUBBLEWRAP  # how the submission is isolated
-    scope: Scope = ALL  # how much of the suite is run
+    options: Options = WHOLE_SUITE  # how the suite is run
     seconds: float = (
         GRADING_WORKER.wall_seconds
     )  # real time for all of it: a second grading has what the first has left

@@ -12,7 +12,7 @@ from autograder import layout
 from autograder.building.keeper import attend
 from autograder.grade.job import Job
 from autograder.run.sandbox.limits import GRADING_WORKER
-from autograder.run.sandbox.parcel import ParcelError
+from autograder.run.sandbox.messages import MessageError
 from autograder.run.sandbox.spec import View
 from autograder.run.sandbox.worker_sandbox import WorkerReport, ended, in_worker_sandbox, place_of
 from autograder.suite import fingerprint
@@ -36,7 +36,7 @@ def in_own_sandbox(job: Job) -> WorkerReport:
         try:
             files, _ = attend(ours, job.isolation, lambda: process.exit_reason is not None)
             return replace(ended(process), files=files)
-        except ParcelError as error:
+        except MessageError as error:
             process.kill()
             report = ended(process)
             return replace(report, returncode=report.returncode or 1, output=f"{report.output}\n{error}")
@@ -46,7 +46,7 @@ def view(job: Job) -> View:
     """Return what the worker of a job sees: its submission, its chapter, and what its suite reads."""
     chapter = layout.chapter(job.assignment)
     own = fingerprint.places(job.assignment, job.suite.reads)
-    built = (Path(job.scope.built),) if job.scope.built else ()
+    built = (Path(job.options.built),) if job.options.built else ()
     return View(shown=(chapter, *own, *built), submitted=(job.path,))
 
 

@@ -13,10 +13,10 @@ from datetime import datetime, timezone
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
-from autograder.grade.answer import AnswerError, checked
 from autograder.grade.job import Job
 from autograder.grade.machine_lock import MachineLock
 from autograder.grade.own_sandbox import in_own_sandbox
+from autograder.grade.reply import ReplyError, checked
 from autograder.grade.store import LOG, write_result
 from autograder.result.model import Build, CheckResult, Result, Status
 from autograder.ros.launch_packages import describe_launch
@@ -97,7 +97,7 @@ def _grade(job: Job, run_job: RunJob, budget: Budget) -> tuple[Result, Mapping[s
         if report.returncode == 0 and report.files:
             try:
                 return checked(report.files, job), report.files
-            except AnswerError as error:
+            except ReplyError as error:
                 said += f"\n{error}"
     return not_graded(job, why, said)
 

@@ -23,7 +23,7 @@ import pytest
 
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import AutograderError, DoubtfulError, StudentError
-from autograder.grade.job import ALL, Scope
+from autograder.grade.job import WHOLE_SUITE, Options
 from autograder.result.artifacts import Artifacts
 from autograder.result.model import CheckResult
 from autograder.run import patience
@@ -40,7 +40,7 @@ class GradingPlugin:
         seed: every hidden input of the run is drawn from it.
         artifacts: saves the pictures; each check gets its own.
         builds: what became of each package, for checks of a build that may fail.
-        scope: how much of the suite is run.
+        options: how the suite is run.
         last: whether no other try of this grading follows.
 
     Attributes:
@@ -56,12 +56,12 @@ class GradingPlugin:
         seed: int,
         artifacts: Artifacts,
         builds: Mapping[str, Diagnosis] | None = None,
-        scope: Scope = ALL,
+        options: Options = WHOLE_SUITE,
         last: bool = False,
     ) -> None:
         self._workspace = workspace
         self._builds = builds or {}
-        self._scope = scope
+        self._options = options
         self._last = last
         self._seed = seed
         self._artifacts = artifacts
@@ -74,8 +74,8 @@ class GradingPlugin:
 
     @property
     def is_finished(self) -> bool:
-        """Whether the scope asks for no more than the first check that does not pass, and one did not."""
-        return self._scope.first_loss and any(r.outcome is not Outcome.PASSED for r in self.results.values())
+        """Whether the run ends with the first check that does not pass, and one did not."""
+        return self._options.first_loss and any(r.outcome is not Outcome.PASSED for r in self.results.values())
 
     @pytest.fixture(scope="session")
     def workspace(self) -> Workspace:
@@ -114,7 +114,7 @@ class GradingPlugin:
         config.option.tbstyle = "native"  # nobody reads the other, for which whole files are parsed at every failure
 
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        if only := self._scope.only:
+        if only := self._options.only:
             items[:] = [item for item in items if (check := _declared_by(item)) and check.id in only]
 
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
@@ -168,7 +168,9 @@ class GradingPlugin:
         else:
             self.failures.append("".join(traceback.format_exception(error)))
             verdict = CheckResult.not_checked(check, "the grader failed here", seconds=seconds)
-        self.results[check.id] = replace(verdict, talk=self._workspace.exchanges.take() if self._scope.pictures else ())
+        self.results[check.id] = replace(
+            verdict, talk=self._workspace.exchanges.take() if self._options.pictures else ()
+        )
 
     @property
     def _is_last(self) -> bool:

@@ -34,7 +34,7 @@ from autograder.run.sandbox import line
 from autograder.run.sandbox.isolation import Isolation
 from autograder.run.sandbox.launcher import restore_sigint
 from autograder.run.sandbox.limits import RESULT_FILES
-from autograder.run.sandbox.parcel import send_message, send_tree
+from autograder.run.sandbox.messages import send_message, send_tree
 from autograder.run.sandbox.trees import read_tree
 from autograder.run.time_record import REAL
 from autograder.run.workspace import Workspace
@@ -56,7 +56,7 @@ class Grading:
         # Without a network namespace, a domain of its own is the least that keeps two submissions apart.
         domain = 0 if job.isolation is Isolation.BUBBLEWRAP else Domain().number
         self._workspace = Workspace(job.scratch / "ws", activate(), home, domain=domain)
-        self._artifacts = Artifacts(job.out, disabled=not job.scope.pictures, recordings=job.scope.recordings)
+        self._artifacts = Artifacts(job.out, disabled=not job.options.pictures, recordings=job.options.recordings)
         self._phases: dict[str, float] = {}
         self._sha256 = _NO_DIGEST
         self._status = Status.UNCLEAR  # until what was handed in has been read
@@ -141,7 +141,7 @@ class Grading:
         with reading("Your submission"):
             write_tree(packages, source)
         with self._phase("build"), reading("Your packages, or what their build left,"):
-            if built := self._job.scope.built:
+            if built := self._job.options.built:
                 seen = copy_prebuilt(Path(built), self._workspace, self._suite.packages)
             else:
                 seen = build_workspace(self._workspace, self._suite.packages, may_fail=self._suite.build_may_fail)
@@ -158,11 +158,11 @@ class Grading:
 
     def _check(self, results: dict[str, CheckResult]) -> Diagnosis:
         plugin = GradingPlugin(
-            self._workspace, self._job.seed, self._artifacts, self._builds, self._job.scope, self._job.last
+            self._workspace, self._job.seed, self._artifacts, self._builds, self._job.options, self._job.last
         )
         with self._phase("checks"):
             run(self._suite.files, plugin)
-        wanted = self._job.scope.only or [check.id for check in self._suite.checks]
+        wanted = self._job.options.only or [check.id for check in self._suite.checks]
         missing = set(wanted) - set(plugin.results)
         if missing and not plugin.failures and not plugin.is_finished:
             plugin.failures.append(f"no record of {', '.join(sorted(missing))}")

@@ -136,7 +136,7 @@ def _check(
     """
     from autograder.building.build import build_workspace
     from autograder.building.colcon import StoppedBuildError
-    from autograder.grade.job import Scope
+    from autograder.grade.job import Options
     from autograder.grade.plugin import GradingPlugin, run
     from autograder.notebook.exercises import Exercise, checks_of
     from autograder.result.artifacts import Artifacts
@@ -169,8 +169,8 @@ def _check(
         diagnosis = observed.diagnosis
         for ids in filter(None, (early, others)):
             is_all = len(ids) == len(suite.checks)
-            scope = Scope(only=() if is_all else suite.with_dependencies(*ids))
-            plugin = GradingPlugin(workspace, SEED, Artifacts(out), observed.diagnoses, scope)
+            options = Options(only=() if is_all else suite.with_dependencies(*ids))
+            plugin = GradingPlugin(workspace, SEED, Artifacts(out), observed.diagnoses, options)
             run(suite.files, plugin)
             if plugin.failures:
                 raise GraderError("\n".join(plugin.failures))

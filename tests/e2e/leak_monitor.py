@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from autograder.grade.batch import OnResult, grade_all
-from autograder.grade.job import Job, Scope
+from autograder.grade.job import Job, Options
 from autograder.grade.parallel import map_parallel
 from autograder.grade.pipeline import DEFAULT_SEED, grade_submission
 from autograder.run.sandbox import Limits, cgroup
@@ -69,7 +69,7 @@ def _grade(place: str, assignment: str, paths: dict[str, str], only: list[str]) 
     """Grade submissions, two at once."""
 
     def each(jobs: Sequence[Job], on_done: OnResult) -> None:
-        part = [replace(job, scope=Scope(only=tuple(only))) for job in jobs]
+        part = [replace(job, options=Options(only=tuple(only))) for job in jobs]
         map_parallel(grade_submission, part, jobs=2, on_done=on_done)
 
     submissions = {student: Path(path) for student, path in paths.items()}

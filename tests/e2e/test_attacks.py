@@ -20,7 +20,7 @@ from autograder.author.verification.leaks import STOLEN, hidden_text_in, texts_o
 from autograder.author.verification.payloads import CANARY
 from autograder.checks.ch02_nodes.attacks import CHAPTER
 from autograder.grade import grade_submission
-from autograder.grade.job import Job, Scope
+from autograder.grade.job import Job, Options
 from autograder.grade.store import NOTEBOOK
 from autograder.grade.submitted_notebook import grade_id
 from autograder.report import feedback
@@ -52,8 +52,8 @@ def _grade(assignment: str, attack: Attack, checks: frozenset[str], folder: Path
     attack.write(folder / "work")
     submission = folder / "work" / "submission"
     path = submission if submission.is_dir() else folder / "work"
-    scope = Scope(only=suites.hidden(assignment).with_dependencies(*checks))
-    return grade_submission(Job(path, assignment, "mallory", 2026, folder / "out", scope=scope))
+    options = Options(only=suites.hidden(assignment).with_dependencies(*checks))
+    return grade_submission(Job(path, assignment, "mallory", 2026, folder / "out", options=options))
 
 
 @pytest.mark.promise("No attack gains a point.")

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from autograder.author.verification.mutants import mutants, write_mutant, write_reference
-from autograder.grade.job import Job, Scope
+from autograder.grade.job import Job, Options
 from autograder.grade.pipeline import grade_submission
 from autograder.harness.auto import TIME_VARIABLE
 from autograder.result.model import Result
@@ -32,7 +32,7 @@ THREADED = """thread = threading.Thread(target=rclpy.spin, args=(node,), daemon=
 
 def grade(folder: Path, assignment: str = "02_nodes", checks: tuple[str, ...] = CHECKS) -> Result:
     """Grade a source tree by a few of its assignment's checks."""
-    return grade_submission(Job(folder, assignment, "s", 11, folder / "out", scope=Scope(only=checks)))
+    return grade_submission(Job(folder, assignment, "s", 11, folder / "out", options=Options(only=checks)))
 
 
 def outcomes(result: Result, checks: tuple[str, ...] = CHECKS) -> dict[str, str]:

@@ -71,7 +71,7 @@ for path in Path("/proc/sys/user").iterdir():
     except OSError: pass
 """
 FORGE = """
-from autograder.run.sandbox.parcel import send_message, send_tree
+from autograder.run.sandbox.messages import send_message, send_tree
 from autograder.run.sandbox.trees import Entry
 send_message(line, {"do": "result"})
 answer = json.loads(RESULT)
@@ -86,7 +86,7 @@ FLOOD = """
 while True: line.send_bytes(bytes(3 << 20))
 """
 CLIMB = """
-from autograder.run.sandbox.parcel import send_message, send_tree
+from autograder.run.sandbox.messages import send_message, send_tree
 from autograder.run.sandbox.trees import Entry
 send_message(line, {"do": "result"})
 send_tree(line, {Entry("../bob/result.json", "file", False, 4): b"mine"})

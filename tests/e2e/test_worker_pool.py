@@ -17,7 +17,7 @@ from autograder.author.verification.mutants import write_reference
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.diagnosis import Kind
 from autograder.grade import grade_submission
-from autograder.grade.job import ALL, Job, Scope
+from autograder.grade.job import WHOLE_SUITE, Job, Options
 from autograder.grade.pipeline import RunJob, in_own_sandbox
 from autograder.grade.store import LOG
 from autograder.result.model import Result, Status
@@ -26,7 +26,7 @@ from autograder.run.sandbox import Isolation
 ASSIGNMENT = "02_nodes"
 PACKAGE = "my_robot_package"
 Servers = Callable[[], list[int]]
-SOME = Scope(only=("starts", "node_name", "publishes_cmd_vel", "threshold"))
+SOME = Options(only=("starts", "node_name", "publishes_cmd_vel", "threshold"))
 
 
 @pytest.fixture(scope="module")
@@ -46,9 +46,9 @@ def half(reference: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _grade(
-    path: Path, out: Path, workers: RunJob, scope: Scope = ALL, isolation: Isolation = Isolation.BUBBLEWRAP
+    path: Path, out: Path, workers: RunJob, options: Options = WHOLE_SUITE, isolation: Isolation = Isolation.BUBBLEWRAP
 ) -> Result:
-    return grade_submission(Job(path, ASSIGNMENT, "s", 3, out, isolation, scope), workers)
+    return grade_submission(Job(path, ASSIGNMENT, "s", 3, out, isolation, options), workers)
 
 
 def _verdicts(result: Result) -> list[tuple[object, ...]]:
@@ -105,7 +105,7 @@ def test_a_failed_grading_reports_the_reason_and_does_not_change_the_next_one(
     reference: Path, half: Path, servers: Servers, tmp_path: Path
 ) -> None:
     with WorkerPool(Isolation.BUBBLEWRAP, 1) as workers:
-        failed = _grade(reference, tmp_path / "failed", workers, Scope(only=("no_such_check",)))
+        failed = _grade(reference, tmp_path / "failed", workers, Options(only=("no_such_check",)))
         graded = _grade(half, tmp_path / "graded", workers)
         assert len(servers()) == 1
     assert failed.status is Status.NOT_GRADED

@@ -16,12 +16,12 @@ from autograder.author.verification.claims import Attack, CaseKind, verify_full_
 from autograder.author.verification.equivalent_rewrites import rewrites
 from autograder.author.verification.generated_mutants import written_by_students
 from autograder.author.verification.mutants import Mutant, mutants, write_mutant, write_reference
-from autograder.grade.job import Scope
+from autograder.grade.job import Options
 from autograder.result.model import Result
 from autograder.suite import suites
 
 Verifier = Callable[[Result], str]
-WITHOUT_PICTURES = Scope(pictures=False)
+WITHOUT_PICTURES = Options(pictures=False)
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Case:
     """A submission with a known mark.
 
     `name` is unique in the assignment. `write` writes the submission to a folder. `verify` describes how a result
-    differs from the expected one, or returns an empty string. `scope` limits the checks that are run.
+    differs from the expected one, or returns an empty string. `options` limits the checks that are run.
     """
 
     assignment: str
@@ -37,7 +37,7 @@ class Case:
     name: str
     write: Callable[[Path], None]
     verify: Verifier
-    scope: Scope = WITHOUT_PICTURES
+    options: Options = WITHOUT_PICTURES
 
 
 def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
@@ -86,7 +86,7 @@ def one_mutant_per_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]
 
 def _mutant(assignment: str, mutant: Mutant, sources: tuple[str, ...], only: tuple[str, ...] = ()) -> Case:
     write, verify = partial(write_mutant, mutant, sources), partial(verify_mutant, mutant, only=frozenset(only))
-    return Case(assignment, CaseKind.MUTANT, mutant.id, write, verify, scope=replace(WITHOUT_PICTURES, only=only))
+    return Case(assignment, CaseKind.MUTANT, mutant.id, write, verify, options=replace(WITHOUT_PICTURES, only=only))
 
 
 def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:

@@ -27,7 +27,7 @@ from autograder.grade.job import Job
 from autograder.run.fork_server.profiles import PROFILES
 from autograder.run.sandbox import line
 from autograder.run.sandbox.launcher import warm_up
-from autograder.run.sandbox.parcel import send_message
+from autograder.run.sandbox.messages import send_message
 
 OUTPUT = 1024 * 1024  # bytes: the end of a child's output that goes into the reply
 

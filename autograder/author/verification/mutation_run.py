@@ -23,7 +23,7 @@ from autograder.author.verification.mutants import write_reference
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.building.build import build_workspace
 from autograder.diagnosis import Kind
-from autograder.grade.job import Job, Scope
+from autograder.grade.job import Job, Options
 from autograder.grade.parallel import map_parallel
 from autograder.grade.pipeline import grade_submission
 from autograder.result.model import Result, Status
@@ -76,7 +76,7 @@ class MutationRun:
 
     def _passed(self, built: Path) -> frozenset[str]:
         """Return the checks that the reference passes with this workspace instead of a new build."""
-        result = self._grade({}, Scope(pictures=False, built=str(built)))
+        result = self._grade({}, Options(pictures=False, built=str(built)))
         return frozenset(check.id for check in result.checks if check.outcome is Outcome.PASSED)
 
     def run_mutant(self, mutant: GeneratedMutant, version: str = "") -> MutantResult:
@@ -111,20 +111,20 @@ class MutationRun:
         return frozenset(name for name, _ in killers.most_common(FIRST))
 
     def _killer(self, texts: dict[str, str], only: tuple[str, ...], built: str) -> str:
-        result = self._grade(texts, Scope(only=only, first_loss=True, pictures=False, built=built))
+        result = self._grade(texts, Options(only=only, first_loss=True, pictures=False, built=built))
         if result.status is not Status.GRADED or result.unjudged:
             return FAILED
         failed = [check.id for check in result.checks if check.outcome is Outcome.FAILED]
         return failed[0] if failed else "" if result.diagnosis.kind is Kind.OK else result.diagnosis.kind.value
 
-    def _grade(self, texts: dict[str, str], scope: Scope) -> Result:
+    def _grade(self, texts: dict[str, str], options: Options) -> Result:
         with tempfile.TemporaryDirectory(prefix="mutant-") as name:
             folder = Path(name)
             write_reference(self._suite.sources, folder / "mutant")
             for file, text in texts.items():
                 (folder / "mutant" / "src" / file).write_text(text, encoding="utf-8")
             assignment, isolation = self._suite.assignment, self._workers.isolation
-            job = Job(folder / "mutant", assignment, "mutant", self._seed, folder / "out", isolation, scope)
+            job = Job(folder / "mutant", assignment, "mutant", self._seed, folder / "out", isolation, options)
             return grade_submission(job, self._workers)
 
 

@@ -51,9 +51,9 @@ def verify_cases(
     def grade(case: Case) -> Verdict:
         with tempfile.TemporaryDirectory(prefix="verification-") as name:
             path, folder = _write(case, Path(name) / case.name), out / case.assignment / case.name
-            is_whole_suite = not case.scope.only
+            is_whole_suite = not case.options.only
             folder = folder if is_whole_suite else folder / PART
-            job = Job(path, case.assignment, case.name, seed, folder, workers.isolation, case.scope)
+            job = Job(path, case.assignment, case.name, seed, folder, workers.isolation, case.options)
             result = stored(job) if is_whole_suite else None
             if result is None or result.files_digest != job.suite.files_digest:  # only these very files are verified
                 result = grade_submission(job, in_own_sandbox if case.kind is CaseKind.ATTACK else workers)
@@ -66,7 +66,7 @@ def verify_cases(
             errors = errors_in_checks(text, layout.CHECKS)
             if named := "; ".join(errors) or ", ".join(result.unjudged):
                 mismatch = f"checks raised errors: {named}; {log} has the details"
-        return Verdict(case.assignment, case.kind, case.name, result, mismatch, case.scope.only)
+        return Verdict(case.assignment, case.kind, case.name, result, mismatch, case.options.only)
 
     verdicts = map_parallel(grade, _interleaved(cases), jobs=workers.count, on_done=on_verdict)
     by_name = {(verdict.assignment, verdict.name): verdict for verdict in verdicts}

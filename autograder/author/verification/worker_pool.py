@@ -20,7 +20,7 @@ from autograder.grade.job import Job
 from autograder.grade.own_sandbox import GRACE
 from autograder.run.sandbox.isolation import Isolation, require
 from autograder.run.sandbox.limits import VERIFICATION_WORKER
-from autograder.run.sandbox.parcel import ParcelError
+from autograder.run.sandbox.messages import MessageError
 from autograder.run.sandbox.process import ExitReason
 from autograder.run.sandbox.spec import View
 from autograder.run.sandbox.worker_sandbox import WorkerReport, copy_submission, in_worker_sandbox
@@ -107,13 +107,13 @@ class _Worker:
             Path(folder).chmod(0o755)
             path = Path(folder, job.path.name)
             copy_submission(job.path, path)
-            scope = replace(job.scope, built=job.scope.built and str(self._share(Path(job.scope.built))))
-            sent = replace(job, path=path, scope=scope, scratch=scratch, out=scratch / "out")
+            options = replace(job.options, built=job.options.built and str(self._share(Path(job.options.built))))
+            sent = replace(job, path=path, options=options, scratch=scratch, out=scratch / "out")
             try:
                 self._server.send_bytes(sent.to_json().encode())
                 is_over = lambda: self._process.exit_reason is not None or time.monotonic() > deadline  # noqa: E731
                 files, reply = attend(self._server, self._isolation, is_over)
-            except (ParcelError, OSError):
+            except (MessageError, OSError):
                 files, reply = {}, {}
         return WorkerReport(ExitReason.EXITED, reply["status"], reply["output"], files) if reply else self._dead()
 

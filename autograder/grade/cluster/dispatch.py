@@ -18,7 +18,6 @@ from dataclasses import dataclass, replace
 from distributed import Client, Future
 
 from autograder.exceptions import StudentError
-from autograder.grade.answer import AnswerError
 from autograder.grade.batch import OnResult
 from autograder.grade.cluster import MAX_WORKER_DEATHS, work
 from autograder.grade.cluster.accept import accept
@@ -27,6 +26,7 @@ from autograder.grade.cluster.machine import difference, resource
 from autograder.grade.cluster.task import Task
 from autograder.grade.job import Job
 from autograder.grade.pipeline import not_graded, refused
+from autograder.grade.reply import ReplyError
 from autograder.grade.store import write_result
 from autograder.submission.intake import read_files
 from autograder.submission.intake.files import digest
@@ -204,7 +204,7 @@ class _Dispatch:
             return
         try:
             self._on_result(accept(future.result(), pending.job, pending.sha256))
-        except AnswerError as error:
+        except ReplyError as error:
             if pending.tries < TRIES:
                 self._send(replace(pending, tries=pending.tries + 1))
                 return

@@ -13,9 +13,9 @@ from typing import Any
 
 import msgpack
 
-from autograder.grade.answer import AnswerError
 from autograder.grade.cluster.exceptions import ClusterError
 from autograder.grade.job import Job
+from autograder.grade.reply import ReplyError
 from autograder.run.sandbox import Isolation
 from autograder.submission.intake import MAX_FILES, MAX_TOTAL_BYTES, SubmittedFile
 
@@ -67,13 +67,13 @@ class Reply:
 
     @classmethod
     def unpack(cls, data: object) -> Reply:
-        """Read a worker's reply. Raises AnswerError if it exceeds a limit or is not a valid reply."""
+        """Read a worker's reply. Raises ReplyError if it exceeds a limit or is not a valid reply."""
         if not isinstance(data, bytes):
-            raise AnswerError(f"a worker sent {type(data).__name__} instead of bytes")
+            raise ReplyError(f"a worker sent {type(data).__name__} instead of bytes")
         try:
             return cls(*_reply(data))
         except (ValueError, TypeError, msgpack.UnpackException) as error:
-            raise AnswerError(f"a worker's reply cannot be read: {error}") from None
+            raise ReplyError(f"a worker's reply cannot be read: {error}") from None
 
 
 def _reply(data: bytes) -> tuple[dict[str, bytes], str]:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from autograder.diagnosis import OK, Diagnosis, Kind
-from autograder.grade.job import ALL, Scope
+from autograder.grade.job import WHOLE_SUITE, Options
 from autograder.grade.plugin import GradingPlugin, run
 from autograder.result.artifacts import Artifacts
 from autograder.ros import activate
@@ -34,13 +34,13 @@ def grade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Grade:
     monkeypatch.setenv("PYTEST_ADDOPTS", "--collect-only")
     monkeypatch.setenv("PYTEST_PLUGINS", "no_such_plugin")
 
-    def grade_text(text: str, scope: Scope = ALL, last: bool = False, seed: int = 7) -> GradingPlugin:
+    def grade_text(text: str, options: Options = WHOLE_SUITE, last: bool = False, seed: int = 7) -> GradingPlugin:
         # A name of its own: pytest keeps the modules that this process has imported.
         path = tmp_path / "chapter" / "hidden" / f"checks_{next(_NUMBERS)}.py"
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(HEAD + textwrap.dedent(text))
         workspace = Workspace(tmp_path / "ws", activate(), tmp_path)
-        plugin = GradingPlugin(workspace, seed, Artifacts(tmp_path / "out"), scope=scope, last=last)
+        plugin = GradingPlugin(workspace, seed, Artifacts(tmp_path / "out"), options=options, last=last)
         run((path,), plugin)
         return plugin
 
@@ -67,9 +67,9 @@ def test_with_first_loss_no_check_runs_after_a_failed_one(grade: Grade) -> None:
             '''It comes later.'''
     """
     assert list(grade(text).results) == ["right", "wrong", "later"]
-    plugin = grade(text, Scope(first_loss=True))
+    plugin = grade(text, Options(first_loss=True))
     assert (list(plugin.results), plugin.is_finished, plugin.failures) == (["right", "wrong"], True, [])
-    plugin = grade(text, Scope(only=("right", "later"), first_loss=True))
+    plugin = grade(text, Options(only=("right", "later"), first_loss=True))
     assert (list(plugin.results), plugin.is_finished) == (["right", "later"], False)
 
 
@@ -441,4 +441,4 @@ def test_a_check_gets_only_the_messages_of_its_own_set_up_and_call(grade: Grade)
     """
     said = {name: [row.name for row in result.talk] for name, result in grade(text).results.items()}
     assert said == {"first": ["/prepare", "/go"], "second": ["/stop"]}
-    assert [result.talk for result in grade(text, Scope(pictures=False)).results.values()] == [(), ()]
+    assert [result.talk for result in grade(text, Options(pictures=False)).results.values()] == [(), ()]

@@ -16,7 +16,7 @@ from autograder.author.verification.claims import CaseKind, verify_full_marks
 from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.grade.job import Job, Scope
+from autograder.grade.job import Job, Options
 from autograder.grade.pipeline import refused
 from autograder.result.model import Status
 from autograder.run.sandbox import Isolation
@@ -115,14 +115,17 @@ def test_a_result_is_reused_only_for_the_same_files_submission_and_whole_suite(
 ) -> None:
     worker = Recorder()
 
-    def gradings(text: str, scope: Scope = WITHOUT_PICTURES, seed: int = 1) -> int:
+    def gradings(text: str, options: Options = WITHOUT_PICTURES, seed: int = 1) -> int:
         def write(folder: Path) -> None:
             (folder / "src").mkdir(parents=True)
             (folder / "src" / "package.xml").write_text(text)
 
         before = worker.calls
         verify_cases(
-            [replace(case(CHAPTERS[0], write), scope=scope)], seed=seed, out=tmp_path, workers=cast(WorkerPool, worker)
+            [replace(case(CHAPTERS[0], write), options=options)],
+            seed=seed,
+            out=tmp_path,
+            workers=cast(WorkerPool, worker),
         )
         return worker.calls - before
 

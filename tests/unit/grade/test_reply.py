@@ -13,11 +13,11 @@ import pytest
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
-from autograder.grade import answer, executed_notebook
-from autograder.grade.answer import AnswerError, checked
+from autograder.grade import executed_notebook, reply
 from autograder.grade.bounded_json import NOTEBOOK_VALUES, read_json
 from autograder.grade.executed_notebook import MAX_BYTES, decode, encode
 from autograder.grade.job import Job
+from autograder.grade.reply import ReplyError, checked
 from autograder.grade.run_notebook import MAX_VALUES
 from autograder.result.model import Artifact, CheckResult, Result
 from autograder.run.sandbox.limits import MIB
@@ -38,12 +38,12 @@ def files(result: Result, **others: bytes) -> dict[str, bytes]:
     return {"result.json": json.dumps(result.to_json()).encode(), **others}
 
 
-def test_no_error_that_an_answer_causes_ends_a_class(result: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_error_that_a_reply_causes_ends_a_class(result: Result, monkeypatch: pytest.MonkeyPatch) -> None:
     for error in (OverflowError, KeyError, AttributeError, MemoryError):
         monkeypatch.setattr(
-            answer, "from_json", lambda data, source, error=error: (_ for _ in ()).throw(error("of data"))
+            reply, "from_json", lambda data, source, error=error: (_ for _ in ()).throw(error("of data"))
         )
-        with pytest.raises(AnswerError, match=f"cannot be checked: {error.__name__}: .*of data"):
+        with pytest.raises(ReplyError, match=f"cannot be checked: {error.__name__}: .*of data"):
             checked(files(result), JOB)
 
 
@@ -72,7 +72,7 @@ def test_a_string_counts_as_one_value() -> None:
 def test_a_result_with_a_number_that_no_page_can_show_is_refused(result: Result, number: str) -> None:
     assert checked(files(result), JOB) == result
     text = json.dumps(replace(result, seconds=123.25).to_json()).replace("123.25", number)
-    with pytest.raises(AnswerError, match=r"it holds (a|the) number"):
+    with pytest.raises(ReplyError, match=r"it holds (a|the) number"):
         checked({"result.json": text.encode()}, JOB)
 
 
@@ -80,18 +80,18 @@ def test_a_result_with_a_number_that_no_page_can_show_is_refused(result: Result,
 def test_each_file_that_is_parsed_is_counted_first(result: Result, name: str) -> None:
     own = files(replace(result, artifacts=(Artifact("a.png", "track", "0" * 64, "x", run="a.run.json"),)))
     values = b'{"cells": [' + b"[]," * NOTEBOOK_VALUES + b"0]}"
-    with pytest.raises(AnswerError, match=r"more than [0-9,]+ values|cannot identify image"):
+    with pytest.raises(ReplyError, match=r"more than [0-9,]+ values|cannot identify image"):
         checked({**own, "a.png": b"", "a.run.json": b"{}", name: values}, JOB)
 
 
 def test_a_large_result_is_refused(result: Result) -> None:
-    with pytest.raises(AnswerError, match="a result of 8,"):
+    with pytest.raises(ReplyError, match="a result of 8,"):
         checked({"result.json": b" " * (8 * MIB + 1)}, JOB)
 
 
 def test_a_file_that_a_result_names_a_thousand_times_is_not_shown_so_often(result: Result) -> None:
     again = replace(result, artifacts=(Artifact("a.png", "track", "0" * 64, "x"),) * 1000)
-    with pytest.raises(AnswerError, match="shows its 1 files 1000 times"):
+    with pytest.raises(ReplyError, match="shows its 1 files 1000 times"):
         checked(files(again, **{"a.png": bytes(MIB)}), JOB)
 
 
@@ -135,5 +135,5 @@ def test_jupyter_reads_a_notebook_as_it_is_written_and_the_grader_one_of_jupyter
     ],
 )
 def test_a_file_that_is_not_a_notebook_is_rejected(result: Result, data: bytes) -> None:
-    with pytest.raises(AnswerError, match="the notebook in a worker's answer cannot be read"):
+    with pytest.raises(ReplyError, match="the notebook in a worker's reply cannot be read"):
         checked(files(result, **{"notebook.ipynb": data}), JOB)

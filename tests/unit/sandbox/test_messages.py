@@ -11,7 +11,7 @@ import pytest
 
 from autograder.building import keeper
 from autograder.run.sandbox.limits import SOURCES
-from autograder.run.sandbox.parcel import ParcelError, receive_tree, send_tree, write_received
+from autograder.run.sandbox.messages import MessageError, receive_tree, send_tree, write_received
 from autograder.run.sandbox.trees import Entry, TreeError, read_tree, survey
 
 FOLDER = Entry("p", "folder")
@@ -26,9 +26,9 @@ def sent(tree: dict[Entry, bytes]) -> dict[Entry, bytes]:
 
 
 def test_a_file_has_the_size_that_the_list_says() -> None:
-    with pytest.raises(ParcelError, match="more than 1 bytes"):
+    with pytest.raises(MessageError, match="more than 1 bytes"):
         sent({Entry("a", "file", False, 1): b"more"})
-    with pytest.raises(ParcelError, match="a file of 9 bytes has 4"):
+    with pytest.raises(MessageError, match="a file of 9 bytes has 4"):
         sent({Entry("a", "file", False, 9): b"less"})
 
 
@@ -55,7 +55,7 @@ def test_a_path_only_leads_through_folders_of_the_tree(entries: list[Entry]) -> 
     with ours, theirs:
         theirs.send_bytes(json.dumps([astuple(entry) for entry in entries]).encode())
         theirs.close()
-        with pytest.raises(ParcelError):
+        with pytest.raises(MessageError):
             receive_tree(ours, SOURCES)
 
 
@@ -63,7 +63,7 @@ def test_a_list_with_a_size_without_end_is_refused() -> None:
     ours, theirs = Pipe()
     with ours, theirs:
         theirs.send_bytes(b'[["a", "file", false, Infinity]]')
-        with pytest.raises(ParcelError):
+        with pytest.raises(MessageError):
             receive_tree(ours, SOURCES)
 
 

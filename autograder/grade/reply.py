@@ -1,4 +1,4 @@
-"""Checks what a worker has left: it may have been taken over, and then it may harm the result of one submission."""
+"""Checks the files that a worker left. A worker that was taken over can harm only the result of its submission."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ MAX_SHOWN = 64 * MIB  # bytes of all pictures and runs on a page: a result may n
 _UNREAD = "0" * 64  # the digest in the result of a submission that could not be read
 
 
-class AnswerError(GraderError):
-    """A worker's answer is none to what was asked."""
+class ReplyError(GraderError):
+    """A worker's reply does not fit its job."""
 
 
 def checked(files: Mapping[str, bytes], job: Job, sha256: str = "") -> Result:
     """Check the files that a worker left, and return the result among them.
 
-    `sha256` is the digest of the submission, where it is known. Raises AnswerError if they are no answer to the job.
+    `sha256` is the digest of the submission, where it is known. Raises ReplyError if they do not fit the job.
     """
     others = {name: data for name, data in files.items() if name not in (RESULT, NOTEBOOK, LOG)}
     try:
@@ -39,33 +39,33 @@ def checked(files: Mapping[str, bytes], job: Job, sha256: str = "") -> Result:
         _require_artifacts(others, result)
         if NOTEBOOK in files:
             _require_notebook(files[NOTEBOOK])
-    except AnswerError:
+    except ReplyError:
         raise
-    except Exception as error:  # whatever one answer causes, the class goes on
-        raise AnswerError(f"a worker's answer cannot be checked: {type(error).__name__}: {str(error)[:1000]}") from None
+    except Exception as error:  # no reply may stop the grading of a class
+        raise ReplyError(f"a worker's reply cannot be checked: {type(error).__name__}: {str(error)[:1000]}") from None
     return result
 
 
 def _result(data: bytes, job: Job, sha256: str) -> Result:
     if len(data) > MAX_RESULT:
-        raise AnswerError(f"a worker's answer holds a result of {len(data):,} bytes")
+        raise ReplyError(f"a worker's reply contains a result of {len(data):,} bytes")
     try:
-        result = from_json(read_json(data, RESULT_VALUES), source="a worker's answer")
+        result = from_json(read_json(data, RESULT_VALUES), source="a worker's reply")
     except (ValueError, UsageError, RecursionError) as error:
-        raise AnswerError(f"a worker's answer holds no result: {str(error)[:1000]}") from None
+        raise ReplyError(f"a worker's reply contains no result: {str(error)[:1000]}") from None
     suite, graded = job.suite, result.status is Status.GRADED
     versions, theirs = (suite.version, suite.files_digest), (result.suite_version, result.files_digest)
     found = (result.assignment, result.student, *theirs, result.seed, result.isolation, result.max_score)
     wanted = (suite.assignment, job.student, *versions, job.seed, job.isolation.value, suite.max_score)
     if found != wanted:
-        raise AnswerError(f"a worker graded {found} instead of {wanted}")
+        raise ReplyError(f"a worker graded {found} instead of {wanted}")
     if graded and sha256 and result.submission_sha256 not in (sha256, _UNREAD):
-        raise AnswerError(f"a worker graded {result.submission_sha256} instead of {sha256}")
+        raise ReplyError(f"a worker graded {result.submission_sha256} instead of {sha256}")
     worth = [(check.id, check.group, check.points) for check in suite.checks]
     if [(check.id, check.group, check.max_points) for check in result.checks] != worth:
-        raise AnswerError("a worker's answer does not hold the checks of the suite")
+        raise ReplyError("a worker's reply does not contain the checks of the suite")
     if any(not 0 <= check.points <= check.max_points for check in result.checks):
-        raise AnswerError("a worker's answer gives more points than a check is worth")
+        raise ReplyError("a worker's reply gives more points than a check is worth")
     return result
 
 
@@ -74,19 +74,19 @@ def _require_artifacts(files: Mapping[str, bytes], result: Result) -> None:
     runs = {artifact.run for artifact in result.artifacts if artifact.run}
     recordings = {name for name in files if RECORDING.fullmatch(name)}  # which a replay asks for
     if set(files) - recordings != pictures | runs:
-        raise AnswerError(f"a worker's answer holds {sorted(files)} and its result names {sorted(pictures | runs)}")
+        raise ReplyError(f"a worker's reply contains {sorted(files)} and its result names {sorted(pictures | runs)}")
     shown = [name for artifact in result.artifacts for name in (artifact.name, artifact.run) if name]
     if sum(len(files[name]) for name in shown) > MAX_SHOWN:
-        raise AnswerError(f"a worker's answer shows its {len(files)} files {len(shown)} times, which is too much")
+        raise ReplyError(f"a worker's reply shows its {len(files)} files {len(shown)} times, which is too much")
     for name, data in files.items():
         if name in recordings:
             continue
         if not (PICTURE if name in pictures else RUN).fullmatch(name):
-            raise AnswerError(f"a worker's answer holds a file of the name {name[:100]!r}")
+            raise ReplyError(f"a worker's reply contains a file of the name {name[:100]!r}")
         try:
             _require_picture(data) if name in pictures else _require_run(data)
         except (OSError, SyntaxError, ValueError, RecursionError, Image.DecompressionBombError) as error:
-            raise AnswerError(f"the file {name} in a worker's answer cannot be read: {error}") from None
+            raise ReplyError(f"the file {name} in a worker's reply cannot be read: {error}") from None
 
 
 def _require_picture(data: bytes) -> None:
@@ -109,4 +109,4 @@ def _require_notebook(data: bytes) -> None:
     try:
         decode(data)
     except (ValueError, RecursionError) as error:
-        raise AnswerError(f"the notebook in a worker's answer cannot be read: {error}") from None
+        raise ReplyError(f"the notebook in a worker's reply cannot be read: {error}") from None

@@ -1,7 +1,7 @@
-"""What a worker sends to who started it: plain messages, and trees of files, each within bounds.
+"""Messages between a worker and the process that started it: JSON, and trees of files, each within bounds.
 
-A worker may have been taken over. Its messages are JSON or bytes, the receiver says beforehand how large they may be,
-and paths lead nowhere but into the folder that the receiver names.
+A worker may have been taken over. Its messages are JSON or bytes, the receiver sets their maximum size beforehand, and
+paths lead only into the folder that the receiver names.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from autograder.run.sandbox.trees import Entry, TreeError, survey
 _FRESH = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
 
 
-class ParcelError(Exception):
-    """A message is larger than it may be, or is none of those that are understood."""
+class MessageError(Exception):
+    """A message is too large or not understood."""
 
 
 def send_message(line: Connection, message: Mapping[str, Any]) -> None:
@@ -33,15 +33,15 @@ def receive_message(line: Connection) -> dict[str, Any]:
     """Receive a message of at most `limits.MESSAGE` bytes.
 
     Raises:
-        ParcelError: it is larger, or no JSON object.
+        MessageError: it is larger, or not a JSON object.
         EOFError: the sender is gone.
     """
     try:
         message = json.loads(_receive(line, MESSAGE))
     except (ValueError, RecursionError):
-        raise ParcelError("a message is no JSON") from None
+        raise MessageError("a message is not JSON") from None
     if not isinstance(message, dict):
-        raise ParcelError("a message is no JSON object")
+        raise MessageError("a message is not a JSON object")
     return message
 
 
@@ -57,7 +57,7 @@ def receive_tree(line: Connection, limits: TreeLimits) -> dict[Entry, bytes]:
     """Receive a tree: what is in each file, and where each link leads.
 
     Raises:
-        ParcelError: it breaks the limits, has a path that leads out of it, or is not what its list says.
+        MessageError: it breaks the limits, has a path that leads out of it, or is not what its list says.
         EOFError: the sender is gone.
     """
     try:
@@ -65,17 +65,17 @@ def receive_tree(line: Connection, limits: TreeLimits) -> dict[Entry, bytes]:
         listed = json.loads(_receive(line, max(MESSAGE, 6 * limits.paths + 64 * limits.names)))
         entries = [Entry(str(p), str(kind), bool(x), int(size)) for p, kind, x, size in listed]
     except (ValueError, TypeError, OverflowError, RecursionError):
-        raise ParcelError("a list of files is not as it has to be") from None
+        raise MessageError("a list of files is malformed") from None
     if len(entries) > limits.names or sum(entry.size for entry in entries) > limits.size:
-        raise ParcelError(f"a tree of {len(entries)} files is too large")
+        raise MessageError(f"a tree of {len(entries)} files is too large")
     folders = {""}
     for entry in entries:
         if entry.path in folders or not _is_plain(entry, limits) or entry.path.rpartition("/")[0] not in folders:
-            raise ParcelError("a tree has paths that lead out of it")
+            raise MessageError("a tree has paths that lead out of it")
         if entry.kind == "folder":
             folders.add(entry.path)
     if len({entry.path for entry in entries}) < len(entries):
-        raise ParcelError("a tree has two files of one name")
+        raise MessageError("a tree has two files of one name")
     return {entry: b"" if entry.kind == "folder" else _receive_file(line, entry.size) for entry in entries}
 
 
@@ -96,7 +96,7 @@ def write_received(tree: Mapping[Entry, bytes], root: Path) -> None:
     try:
         survey(root, TreeLimits(names=len(tree), size=sum(map(len, tree.values())), depth=deepest + 1))
     except TreeError as error:
-        raise ParcelError(f"a tree holds {error}") from None
+        raise MessageError(f"a tree contains {error}") from None
 
 
 def _is_plain(entry: Entry, limits: TreeLimits) -> bool:
@@ -112,7 +112,7 @@ def _is_plain(entry: Entry, limits: TreeLimits) -> bool:
 def _receive_file(line: Connection, size: int) -> bytes:
     data = _receive(line, size)
     if len(data) != size:
-        raise ParcelError(f"a file of {size} bytes has {len(data)}")
+        raise MessageError(f"a file of {size} bytes has {len(data)}")
     return data
 
 
@@ -122,4 +122,4 @@ def _receive(line: Connection, most: int) -> bytes:
     except EOFError:
         raise
     except OSError:
-        raise ParcelError(f"a message has more than {most} bytes") from None
+        raise MessageError(f"a message has more than {most} bytes") from None

@@ -14,12 +14,12 @@ import pytest
 from PIL import Image
 
 from autograder.exceptions import StudentError
-from autograder.grade.answer import AnswerError
 from autograder.grade.cluster.accept import accept
 from autograder.grade.cluster.exceptions import ClusterError
 from autograder.grade.cluster.task import MAX_REPLY, Reply, Task
 from autograder.grade.job import Job
 from autograder.grade.pipeline import not_graded, refused
+from autograder.grade.reply import ReplyError
 from autograder.grade.store import write_result
 from autograder.result.model import Artifact, CheckResult, Result, Status
 from autograder.run.sandbox import Isolation
@@ -115,18 +115,18 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
         "a name that is none": (b"\x92\x81\x01\xc4\x00\xa0", "does not consist of named files"),
         "too many files": (msgpack.packb([{str(n): b"" for n in range(201)}, ""]), "does not consist of named files"),
         "no files": (msgpack.packb([[1], ""]), "cannot be read"),
-        "no result": (Reply({}).pack(), "holds no result"),
-        "no schema": (Reply({"result.json": b'{"score": 100}'}).pack(), "holds no result"),
+        "no result": (Reply({}).pack(), "contains no result"),
+        "no schema": (Reply({"result.json": b'{"score": 100}'}).pack(), "contains no result"),
         "another seed": (answer(replace(result, seed=8)), "a worker graded"),
         "another submission": (answer(replace(result, submission_sha256="b" * 64)), "a worker graded"),
         "another suite": (answer(replace(result, suite_version="0" * 12)), "a worker graded"),
         "other files": (answer(replace(result, files_digest="0" * 12)), "a worker graded"),
         "another maximum": (answer(replace(result, max_score=99.0)), "a worker graded"),
         "another isolation level": (answer(replace(result, isolation="process")), "a worker graded"),
-        "a check too few": (answer(replace(result, checks=tuple(rest))), "does not hold the checks"),
+        "a check too few": (answer(replace(result, checks=tuple(rest))), "does not contain the checks"),
         "a check worth more": (
             answer(replace(result, checks=(replace(first, max_points=99.0), *rest))),
-            "does not hold the checks",
+            "does not contain the checks",
         ),
         "too many points": (
             answer(replace(result, checks=(replace(first, points=99.0), *rest))),
@@ -153,7 +153,7 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
             answer(with_run(result, "../x.run.json"), **picture, **{"../x.run.json": b"{}"}),
             "of the name",
         ),
-        "no notebook": (answer(result, **{"notebook.ipynb": b"[]"}), "notebook in a worker's answer"),
+        "no notebook": (answer(result, **{"notebook.ipynb": b"[]"}), "notebook in a worker's reply"),
         "a failure": (Reply({}, "Traceback: disk full").pack(), "the worker failed: Traceback: disk full"),
     }
 
@@ -161,7 +161,7 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
 @pytest.mark.promise("The client treats replies as untrusted.", "It writes nothing until the whole reply is valid.")
 def test_a_hostile_reply_is_rejected_and_writes_nothing(job: Job, result: Result) -> None:
     for name, (data, why) in hostile(result).items():
-        with pytest.raises(AnswerError, match=why):
+        with pytest.raises(ReplyError, match=why):
             pytest.fail(f"{name}: {accept(data, job, SHA256)}")
         assert not job.out.exists(), name
 
