@@ -9,7 +9,8 @@ import tempfile
 from pathlib import Path
 
 from autograder.author.verification.mutants import write_reference
-from autograder.notebook import DriveReport, drive
+from autograder.notebook import drive
+from autograder.notebook.driving import DriveReport
 
 OUT = Path(__file__).with_suffix(".png")
 

@@ -47,6 +47,8 @@ Parameters = Mapping[str, object] | str | Path
 class DriveReport:
     """A drive. It is shown in the player, or as a picture of the robot's track if the player is not available.
 
+    The player plays once when it is seen. A drive with a collision is shown at its first collision instead.
+
     Attributes:
         recording: the run: times, poses, scans, collisions.
         output: the program's log and printed output.
@@ -78,7 +80,7 @@ class DriveReport:
 
         gaps = self.recording.clearances.min(axis=1).tolist()
         margin = Margin("the gap to the nearest thing, in m", self.recording.times.tolist(), gaps, self.collided_at)
-        return Player(self.recording, margins=[margin], still=self.picture)
+        return Player(self.recording, margins=[margin], still=self.picture, play=True, note="collision")
 
     def __repr__(self) -> str:
         return self.picture.alt

@@ -36,7 +36,7 @@ class SimulatorSession:
             return Notice("The robot has not been simulated yet.")
         from sim.view import Player
 
-        return Player(self.recording)
+        return Player(self.recording, play=True)
 
 
 @contextmanager

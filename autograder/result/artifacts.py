@@ -66,6 +66,6 @@ class Artifacts:
         ]
         if self.recordings:
             recording.save(self.folder / f"{stem}.npz")
-        run = f"{stem}.run.json"
-        (self.folder / run).write_text(sim.view.encode(recording, caption, margins), encoding="utf-8")
+        run, data = f"{stem}.run.json", sim.view.encode(recording, caption, margins, mark=mark, note=note)
+        (self.folder / run).write_text(data, encoding="utf-8")
         self.saved.append(Artifact(f"{stem}.png", "track", recording.sha256(), self.check, caption, run))

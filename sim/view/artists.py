@@ -1,7 +1,6 @@
-"""What a world, a robot, a scan and a track look like: each function adds artists to an Axes and returns them.
+"""Things as Matplotlib artists: each function adds artists to an Axes, as `sim.view.marks` describes, and returns them.
 
-Units are metres, frame `map`. Sizes on the paper are in points and chosen for a projector. The static figures and the
-live view are drawn by the same functions.
+Units are metres, frame `map`. The static figures and the live view are drawn by the same functions.
 """
 
 from __future__ import annotations
@@ -17,18 +16,70 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle, PathPatch, Polygon
 from matplotlib.path import Path
+from matplotlib.patheffects import withStroke
 
 from sim.lidar import LidarSpec
 from sim.pose import Pose
 from sim.robot import RobotSpec
-from sim.simulation import Simulation
+from sim.view.marks import BEAMS, MARKS, MIDDLE, OWN, POINTER, spacing_of
+from sim.view.shapes import (
+    Floats,
+    Moment,
+    beam_ends,
+    body_outline,
+    is_full_turn,
+    margin_of,
+    nose_outline,
+    outlines,
+    place,
+)
 from sim.view.theme import Theme
 from sim.world import World
 
-Floats = npt.NDArray[np.float64]
 
-MARGIN = 0.035
-"""Paper around the world's bounds, as a share of its larger side: room for the names of the outer walls."""
+def area(name: str, theme: Theme, own: str = "") -> dict[str, Any]:
+    """Return how a patch looks, `own` being the robot's colour."""
+    mark = MARKS[name]
+    return {
+        "facecolor": _colour(mark.fill, theme, own),
+        "edgecolor": _colour(mark.line, theme, own),
+        "linewidth": mark.width,
+        "linestyle": (0, mark.dash) if mark.dash else "-",
+        "alpha": mark.alpha,
+        "zorder": mark.layer,
+    }
+
+
+def line(name: str, theme: Theme, own: str = "") -> dict[str, Any]:
+    """Return how a line looks, `own` being the robot's colour."""
+    mark = MARKS[name]
+    return {
+        "color": _colour(mark.line, theme, own),
+        "linewidth": mark.width,
+        "linestyle": (0, mark.dash) if mark.dash else "-",
+        "alpha": mark.alpha,
+        "zorder": mark.layer,
+    }
+
+
+def symbol(name: str, theme: Theme, own: str = "", marker: str = "o") -> dict[str, Any]:
+    """Return how a symbol of one size in every world looks, `own` being the robot's colour."""
+    mark = MARKS[name]
+    return {
+        "linestyle": "none",
+        "marker": marker,
+        "markersize": mark.size,
+        "color": _colour(mark.fill or mark.line, theme, own),
+        "markerfacecolor": _colour(mark.fill, theme, own),
+        "markeredgecolor": _colour(mark.line, theme, own),
+        "markeredgewidth": mark.width,
+        "alpha": mark.alpha,
+        "zorder": mark.layer,
+    }
+
+
+def _colour(name: str, theme: Theme, own: str) -> str:
+    return own if name == OWN else str(getattr(theme, name)) if name else "none"
 
 
 def set_stage(ax: Axes, world: World, theme: Theme) -> None:
@@ -41,201 +92,118 @@ def set_stage(ax: Axes, world: World, theme: Theme) -> None:
     ax.set_facecolor(theme.outside)
     for spine in ax.spines.values():
         spine.set_visible(False)
-    spacing = _grid_spacing(max(right - left, high - low))
+    spacing = spacing_of(max(right - left, high - low))
     for axis, start, end in ((ax.xaxis, left, right), (ax.yaxis, low, high)):
         ticks = np.arange(math.ceil(start / spacing - 1e-9), math.floor(end / spacing + 1e-9) + 1) * spacing
         labels = [f"{tick:g}" for tick in ticks]
         if labels:
             labels[-1] += " m"
         axis.set_ticks(ticks, labels=labels)
-    ax.tick_params(length=0, labelsize=8.5, labelcolor=theme.muted, pad=3)
-    ax.grid(True, color=theme.grid, linewidth=0.7, zorder=0.5)
+    ax.tick_params(length=0, labelsize=MARKS["words"].size, labelcolor=theme.muted, pad=3)
+    ax.grid(True, **line("grid", theme))
     ax.set_axisbelow(True)
-
-
-def margin_of(world: World) -> float:
-    """Return the paper around the world's bounds, in metres."""
-    left, low, right, high = world.bounds
-    return max(0.05, MARGIN * max(right - left, high - low))
-
-
-def _grid_spacing(extent: float) -> float:
-    steps = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
-    return next((step for step in steps if extent / step <= (14 if step >= 1.0 else 8)), steps[-1])
 
 
 def draw_walls(ax: Axes, world: World, theme: Theme) -> list[Artist]:
     """Draw segments and circles; what is closed all round, and holds no robot, is filled."""
-    lines = LineCollection(
-        list(world.segments.reshape(-1, 2, 2)), colors=theme.wall, linewidths=2.2, capstyle="round", zorder=4
-    )
+    look = line("wall", theme)
+    lines = LineCollection(list(world.segments.reshape(-1, 2, 2)), capstyle="round", **_many(look))
     ax.add_collection(lines, autolim=False)
     artists: list[Artist] = [lines]
     room, solid = outlines(world)
-    artists.append(ax.add_patch(Polygon(room, closed=True, facecolor=theme.floor, linewidth=0, zorder=0.3)))
+    artists.append(ax.add_patch(Polygon(room, closed=True, **area("floor", theme))))
     if solid:
         shape = Path.make_compound_path(*(Path(loop, closed=True) for loop in solid))
-        artists.append(ax.add_patch(PathPatch(shape, facecolor=theme.solid, linewidth=0, zorder=1.2)))
+        artists.append(ax.add_patch(PathPatch(shape, **area("solid", theme))))
     for x, y, radius in world.circles.tolist():
-        artists.append(
-            ax.add_patch(Circle((x, y), radius, facecolor=theme.solid, edgecolor=theme.wall, linewidth=1.8, zorder=4))
-        )
+        artists.append(ax.add_patch(Circle((x, y), radius, **area("pillar", theme))))
     return artists
 
 
-def outlines(world: World) -> tuple[Floats, list[Floats]]:
-    """Return the outline of the room the robot starts in, and those of solid things, each (K, 2).
-
-    An outline is a run of segments each of which starts where the last one ended, and which closes. The room is the
-    smallest around the start pose (the world's bounds, if none is). It is no solid thing, unless an odd number of
-    others are around it: then it is the inner face of a thick wall.
-    """
-    loops = _closed_loops(world.segments)
-    here = (world.starts[0].x, world.starts[0].y)
-    around = sorted(
-        (index for index, loop in enumerate(loops) if Path(loop).contains_point(here)),
-        key=lambda index: float(np.ptp(loops[index], axis=0).prod()),
-    )
-    if not around:
-        left, low, right, high = world.bounds
-        return np.array([[left, low], [right, low], [right, high], [left, high]]), loops
-    room = loops[around[0]]
-    if len(around) % 2:
-        del loops[around[0]]
-    return room, loops
-
-
-def _closed_loops(segments: Floats) -> list[Floats]:
-    loops: list[Floats] = []
-    first = 0
-    for index in range(len(segments)):
-        if index > first and not np.array_equal(segments[index, :2], segments[index - 1, 2:]):
-            first = index
-        if index > first + 1 and np.array_equal(segments[index, 2:], segments[first, :2]):
-            loops.append(np.vstack([segments[first : index + 1, :2], segments[first, :2]]))
-            first = index + 1
-    return loops
+def _many(look: dict[str, Any]) -> dict[str, Any]:
+    """Return the look of a line as a collection of lines is told it."""
+    return {"colors": look.pop("color"), "linewidths": look.pop("linewidth"), **look}
 
 
 def draw_places(ax: Axes, world: World, theme: Theme, *, radius: float = 0.105, starts: bool = True) -> list[Artist]:
     """Draw goals (rings), the paths of moving obstacles (dotted) and, if wanted, start poses (dashed robots)."""
     artists: list[Artist] = []
     for goal in world.goals:
-        artists += [
-            ax.add_patch(
-                Circle((goal.x, goal.y), goal.radius, facecolor=theme.goal, alpha=0.12, edgecolor="none", zorder=1)
-            ),
-            ax.add_patch(
-                Circle((goal.x, goal.y), goal.radius, fill=False, edgecolor=theme.goal, linewidth=1.4, zorder=2)
-            ),
-            ax.add_patch(Circle((goal.x, goal.y), goal.radius * 0.18, color=theme.goal, linewidth=0, zorder=2)),
-        ]
+        for name, share in (("goal", 1.0), ("goal ring", 1.0), ("goal middle", MIDDLE)):
+            artists.append(ax.add_patch(Circle((goal.x, goal.y), share * goal.radius, **area(name, theme))))
     for start in world.starts if starts else ():
-        artists.append(
-            ax.add_patch(
-                Circle(
-                    (start.x, start.y),
-                    radius,
-                    fill=False,
-                    edgecolor=theme.start,
-                    linewidth=1.1,
-                    linestyle=(0, (2.2, 1.8)),
-                    zorder=2,
-                )
-            )
-        )
-        tip = (start.x + 2.6 * radius * math.cos(start.theta), start.y + 2.6 * radius * math.sin(start.theta))
-        nose = (start.x + radius * math.cos(start.theta), start.y + radius * math.sin(start.theta))
-        artists += ax.plot(*zip(nose, tip, strict=True), color=theme.start, linewidth=1.1, zorder=2)
+        artists.append(ax.add_patch(Circle((start.x, start.y), radius, **area("start", theme))))
+        ahead = radius * np.array([math.cos(start.theta), math.sin(start.theta)])
+        ends = np.array([start.x, start.y]) + np.array([ahead, POINTER * ahead])
+        artists += ax.plot(*ends.T, **line("start nose", theme))
     for mover in world.movers:
         path = np.array([*mover.path, *(mover.path[:1] if mover.loop else ())])
-        artists += ax.plot(*path.T, color=theme.mover, linewidth=1.0, linestyle=(0, (1, 2.4)), zorder=1)
+        artists += ax.plot(*path.T, **line("route", theme))
     return artists
 
 
 def mover_patch(x: float, y: float, radius: float, theme: Theme) -> Circle:
-    """Return a moving obstacle: a soft disc with a double rim."""
-    return Circle((x, y), radius, facecolor=theme.mover, alpha=0.85, edgecolor=theme.paper, linewidth=1.0, zorder=5)
-
-
-def body_outline(spec: RobotSpec, points: int = 40) -> Floats:
-    """Return the footprint of `spec` as (N, 2) points in base_link."""
-    if spec.footprint is not None:
-        return np.array(spec.footprint, dtype=np.float64)
-    angle = np.linspace(0.0, math.tau, points, endpoint=False)
-    return spec.radius * np.column_stack([np.cos(angle), np.sin(angle)])
-
-
-def nose_outline(spec: RobotSpec) -> Floats:
-    """Return the arrowhead on the robot's back that shows where it looks, as (4, 2) points in base_link."""
-    reach = float(np.hypot(*body_outline(spec).T).max())
-    return reach * np.array([[0.78, 0.0], [-0.45, 0.48], [-0.2, 0.0], [-0.45, -0.48]])
-
-
-def place(outline: Floats, pose: Pose) -> Floats:
-    """Return `outline`, (N, 2) in base_link, in the frame `map`."""
-    cosine, sine = math.cos(pose.theta), math.sin(pose.theta)
-    x, y = outline.T
-    return np.column_stack([pose.x + cosine * x - sine * y, pose.y + sine * x + cosine * y])
+    """Return a moving obstacle: a soft disc with a rim."""
+    return Circle((x, y), radius, **area("mover", theme))
 
 
 def draw_robot(ax: Axes, spec: RobotSpec, pose: Pose, theme: Theme, colour: str) -> list[Artist]:
     """Draw the footprint to scale, an arrowhead for the heading, and a halo that is found from the back row."""
-    halo = ax.plot(pose.x, pose.y, "o", markersize=24, color=colour, alpha=0.16, mew=0, zorder=7.5)
-    body = Polygon(
-        place(body_outline(spec), pose), closed=True, facecolor=colour, edgecolor=theme.paper, linewidth=1.2, zorder=8
-    )
-    nose = Polygon(place(nose_outline(spec), pose), closed=True, facecolor=theme.paper, linewidth=0, zorder=9)
+    halo = ax.plot(pose.x, pose.y, **symbol("halo", theme, colour))
+    body = Polygon(place(body_outline(spec), pose), closed=True, **area("body", theme, colour))
+    nose = Polygon(place(nose_outline(spec), pose), closed=True, **area("nose", theme))
     ax.add_patch(body)
     ax.add_patch(nose)
     return [*halo, body, nose]
 
 
-def beam_ends(ranges: npt.NDArray[Any], lidar: LidarSpec, pose: Pose) -> tuple[Floats, Floats, npt.NDArray[np.bool_]]:
-    """Return the sensor's place (2,), each beam's end (N, 2) in metres, and which beams hit something (N,).
-
-    A beam without a return ends at `range_max`; one that is invalid or too close ends at the sensor.
-    """
-    mount = place(np.array([[lidar.mount.x, lidar.mount.y]]), pose)[0]
-    angles = pose.theta + lidar.mount.theta + lidar.angle_min + np.arange(lidar.beams) * lidar.angle_increment
-    ranges = np.asarray(ranges, dtype=np.float64)
-    hit = np.isfinite(ranges)
-    length = np.where(hit, ranges, np.where(ranges == math.inf, lidar.range_max, 0.0))
-    ends = mount + length[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
-    return mount, ends, hit
+def name_text(ax: Axes, name: str, theme: Theme) -> Any:
+    """Return the text that names one robot of several, to be put at `name_place` as its `xy`."""
+    text = ax.annotate(name, (0, 0), (0, 4), textcoords="offset points", ha="center", va="bottom", **words(theme))
+    text.set_clip_on(True)
+    return text
 
 
-def is_full_turn(lidar: LidarSpec) -> bool:
-    """Say whether the beams go all the way round."""
-    return math.isclose(lidar.beams * lidar.angle_increment, math.tau, rel_tol=0.02)
+def name_place(spec: RobotSpec, pose: Pose) -> tuple[float, float]:
+    """Return the place below a robot's name: the upper edge of what it can cover."""
+    return pose.x, pose.y + float(np.hypot(*body_outline(spec).T).max())
 
 
-def draw_scan(
-    ax: Axes, ranges: npt.NDArray[Any], lidar: LidarSpec, pose: Pose, theme: Theme, *, beams: int = 90
-) -> list[Artist]:
-    """Draw about `beams` thin beams, the area that the scan has seen to be free, and a point for each hit."""
+def words(theme: Theme) -> dict[str, Any]:
+    """Return how words on the floor look: with an edge of paper, to be read on any ground."""
+    mark = MARKS["words"]
+    return {
+        "fontsize": mark.size,
+        "color": _colour(mark.fill, theme, ""),
+        "zorder": mark.layer,
+        "path_effects": [withStroke(linewidth=mark.width, foreground=_colour(mark.line, theme, ""))],
+    }
+
+
+def chosen_beams(hit: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
+    """Return which of the beams are drawn as lines: of about `BEAMS` all round, those that hit something."""
+    shown = np.zeros(len(hit), dtype=bool)
+    shown[:: max(1, round(len(hit) / BEAMS))] = True
+    return np.flatnonzero(shown & hit)
+
+
+def draw_scan(ax: Axes, ranges: npt.NDArray[Any], lidar: LidarSpec, pose: Pose, theme: Theme) -> list[Artist]:
+    """Draw thin beams, the area that the scan has seen to be free, and a point for each hit."""
     mount, ends, hit = beam_ends(ranges, lidar, pose)
     outline = ends if is_full_turn(lidar) else np.vstack([mount, ends])
-    seen = Polygon(outline, closed=True, facecolor=theme.beam, alpha=0.10, linewidth=0, zorder=1.5)
+    seen = Polygon(outline, closed=True, **area("seen", theme))
     ax.add_patch(seen)
-    shown = np.zeros(len(ends), dtype=bool)
-    shown[:: max(1, round(len(ends) / beams))] = True
-    rays = LineCollection(
-        [np.vstack([mount, end]) for end in ends[shown & hit]],
-        colors=theme.beam,
-        linewidths=0.5,
-        alpha=0.45,
-        zorder=3,
-    )
+    rays = LineCollection([np.vstack([mount, end]) for end in ends[chosen_beams(hit)]], **_many(line("ray", theme)))
     ax.add_collection(rays, autolim=False)
-    (points,) = ax.plot(*ends[hit].T, linestyle="none", marker="o", markersize=2.4, color=theme.hit, mew=0, zorder=6)
+    (points,) = ax.plot(*ends[hit].T, **symbol("hit", theme))
     return [seen, rays, points]
 
 
 def draw_track(ax: Axes, points: Floats, values: Floats, colours: Any, limits: tuple[float, float]) -> LineCollection:
     """Draw a track (K, 2) whose pieces are coloured by `values` (K,) between `limits`."""
     pieces = np.stack([points[:-1], points[1:]], axis=1)
-    track = LineCollection(list(pieces), cmap=colours, linewidths=2.6, capstyle="round", zorder=5)
+    mark = MARKS["track"]
+    track = LineCollection(list(pieces), cmap=colours, linewidths=mark.width, capstyle="round", zorder=mark.layer)
     track.set_array((values[:-1] + values[1:]) / 2.0)
     track.set_clim(*limits)
     ax.add_collection(track, autolim=False)
@@ -247,11 +215,37 @@ def draw_crosses(ax: Axes, places: Sequence[tuple[float, float]], theme: Theme) 
     if not places:
         return []
     x, y = zip(*places, strict=True)
-    halo = ax.plot(x, y, linestyle="none", marker="x", markersize=7.5, mew=3.6, color=theme.paper, zorder=10)
-    cross = ax.plot(x, y, linestyle="none", marker="x", markersize=6.5, mew=1.8, color=theme.alarm, zorder=11)
-    return [*halo, *cross]
+    return [
+        *ax.plot(x, y, **symbol("collision halo", theme, marker="x")),
+        *ax.plot(x, y, **symbol("collision", theme, marker="x")),
+    ]
 
 
-def movers_at(simulation: Simulation, time_ns: int) -> list[tuple[float, float]]:
-    """Return where the centre of each moving obstacle is at `time_ns`, in metres."""
-    return [(x, y) for x, y, _ in simulation.scene.movers_at(time_ns)]
+def draw_moment(ax: Axes, moment: Moment, world: World, theme: Theme) -> None:
+    """Draw the line to what is nearest at a moment; ring the robot and write a note, if somebody chose the moment."""
+    near, between = moment.near, "gap" if moment.marked else "closest"
+    if math.isfinite(near.x) and math.isfinite(near.y):
+        ax.plot((moment.x, near.x), (moment.y, near.y), **line(between, theme))
+        ax.plot(near.x, near.y, **symbol(f"{between} end", theme))
+    if not moment.marked:
+        style = {"textcoords": "offset points", "ha": "left", "va": "center", **words(theme)}
+        ax.annotate(moment.words, moment.spot, (7, 0), annotation_clip=True, **style)
+        return
+    ax.plot(moment.x, moment.y, **symbol("instant", theme))
+    left, low, right, high = world.bounds
+    side = -1.0 if moment.x > (left + right) / 2 else 1.0
+    rise = -1.0 if moment.y > (low + high) / 2 else 1.0
+    ax.annotate(
+        moment.words,
+        moment.spot,
+        (side * 30, rise * 34),
+        textcoords="offset points",
+        ha="left" if side > 0 else "right",
+        va="bottom" if rise > 0 else "top",
+        fontsize=9.5,
+        linespacing=1.45,
+        color=theme.ink,
+        zorder=MARKS["words"].layer,
+        bbox={"boxstyle": "round,pad=0.45", "facecolor": theme.paper, "edgecolor": theme.alarm, "linewidth": 1.0},
+        arrowprops={"arrowstyle": "-", "color": theme.alarm, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 7},
+    )

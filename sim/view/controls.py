@@ -50,13 +50,14 @@ class Player(Protocol):
 
 
 class Controls:
-    """One image, a row to play with time, a pad to drive, and a place for errors."""
+    """A place for errors, and below it as in the player of a run: an image, a row to play with time, a pad to drive."""
 
-    def __init__(self, view: Player, source: Source, speed: float) -> None:
+    def __init__(self, view: Player, source: Source, speed: float, width: int) -> None:
+        """Make the widgets of `view`, whose image is `width` pixels wide."""
         self._view = view
         self._quiet = False
-        self._image = widgets.Image(format="jpeg", layout={"width": "100%", "max_width": "980px"})
-        self._play = widgets.ToggleButton(value=False, icon="play", tooltip="Play", layout={"width": "44px"})
+        self._image = widgets.Image(format="jpeg", layout={"width": "100%", "max_width": f"{width}px", "margin": "0"})
+        self._play = widgets.ToggleButton(value=False, description="Play", tooltip="Play", layout={"width": "80px"})
         self._slider = widgets.FloatSlider(
             min=0.0,
             max=10.0,
@@ -82,8 +83,8 @@ class Controls:
         time_row = [self._play, step, *([reset] if source.growing else []), self._slider]
         if source.paced:
             time_row.append(self._speed)
-        timing = widgets.HBox(time_row, layout={"max_width": "980px", "align_items": "center"})
-        rows: list[Any] = [timing, self._output, self._image]
+        timing = widgets.HBox(time_row, layout={"max_width": f"{width}px", "align_items": "center"})
+        rows: list[Any] = [self._output, self._image, timing]
         if source.growing:
             rows.append(self._pad(source.can_be_released))
         self.box = widgets.VBox(rows)
@@ -104,8 +105,7 @@ class Controls:
         """Make the button say what pressing it would do."""
         self._quiet = True
         self._play.value = playing
-        self._play.icon = "pause" if playing else "play"
-        self._play.tooltip = "Pause" if playing else "Play"
+        self._play.description = self._play.tooltip = "Pause" if playing else "Play"
         self._slider.disabled = playing
         self._quiet = False
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, Literal
 
 import matplotlib
@@ -12,10 +11,11 @@ from matplotlib.figure import Figure
 
 from sim.pose import Pose
 from sim.recording import Recording
-from sim.rows import newest_scan, row_at, state_at
-from sim.simulation import Clearance, Simulation, State, clearance, observe
+from sim.rows import newest_scan, row_at
+from sim.simulation import Simulation, State, observe
 from sim.view import artists
 from sim.view.picture import Picture
+from sim.view.shapes import moment_of, movers_at
 from sim.view.stage import add_scale, new_axes, prepare, write_names
 from sim.view.theme import STYLE, Theme, theme_named
 from sim.world import World
@@ -56,6 +56,7 @@ def show(
                 if scan is not None and spec.lidar is not None:
                     artists.draw_scan(ax, scan.ranges, spec.lidar, robot.pose, colours)
                 artists.draw_robot(ax, spec, robot.pose, colours, colours.robot_colour(index))
+                _name_robot(ax, simulation, index, robot.pose, colours)
     return Picture(_figure(ax), _world_alt(world, state))
 
 
@@ -71,7 +72,7 @@ def plot(
     names: bool = False,
     title: str | None = None,
 ) -> Picture:
-    """Draw the tracks of a recording, its collisions and, if wanted, one marked instant.
+    """Draw the tracks of a recording, its collisions, and its closest place or one marked instant.
 
     Args:
         recording: the run.
@@ -91,6 +92,7 @@ def plot(
     if colour not in ("time", "clearance"):
         raise ValueError(f"a track has no colour {colour!r}: choose time or clearance")
     indices = _robots(simulation, robot)
+    moment = moment_of(recording, indices, mark, note)
     row = None if mark is None else row_at(recording, mark)
     now = len(recording) - 1 if row is None else row
     with matplotlib.rc_context(STYLE):  # type: ignore[arg-type]
@@ -98,29 +100,30 @@ def plot(
         prepare(ax, world, scheme, title or _heading(world), _summary(recording, indices, nearest=len(indices) == 1))
         _draw_world(ax, simulation, int(recording.times_ns[now]), scheme, names)
         for place in reversed(indices):
-            _draw_one(ax, recording, place, colour, scheme, now, row is not None)
+            _draw_one(ax, recording, place, colour, scheme, now, scan=row is None or place == indices[0])
         _add_scale(ax, recording, indices[0], colour, scheme)
-        if row is not None:
-            _draw_mark(ax, recording, indices[0], row, note, scheme)
+        if moment is not None:
+            artists.draw_moment(ax, moment, world, scheme)
     return Picture(_figure(ax), _track_alt(recording, indices, mark, note))
 
 
-def describe(recording: Recording) -> str:
-    """Return the sentence that stands for a recording where it can't be seen."""
-    return _track_alt(recording, _robots(recording.simulation, None), None, "")
+def heading(recording: Recording) -> tuple[str, str]:
+    """Return the title of a run, and the line below it: how long it took, how far it went, what it touched."""
+    indices = _robots(recording.simulation, None)
+    return _heading(recording.simulation.world), _summary(recording, indices, nearest=len(indices) == 1)
 
 
 def _draw_world(ax: Axes, simulation: Simulation, time_ns: int, theme: Theme, names: bool, starts: bool = True) -> None:
     world = simulation.world
     artists.draw_walls(ax, world, theme)
     artists.draw_places(ax, world, theme, radius=simulation.robots[0].radius, starts=starts)
-    for mover, (x, y) in zip(world.movers, artists.movers_at(simulation, time_ns), strict=True):
+    for mover, (x, y) in zip(world.movers, movers_at(simulation, time_ns), strict=True):
         ax.add_patch(artists.mover_patch(x, y, mover.radius, theme))
     if names:
         write_names(ax, world, theme)
 
 
-def _draw_one(ax: Axes, recording: Recording, index: int, colour: str, theme: Theme, now: int, marked: bool) -> None:
+def _draw_one(ax: Axes, recording: Recording, index: int, colour: str, theme: Theme, now: int, *, scan: bool) -> None:
     points, own = recording.poses[:, index, :2], theme.robot_colour(index)
     if colour == "time":
         artists.draw_track(ax, points, recording.times, theme.time_colours(index), _time_limits(recording))
@@ -129,10 +132,19 @@ def _draw_one(ax: Axes, recording: Recording, index: int, colour: str, theme: Th
         artists.draw_track(ax, points, values, theme.clearance_colours, (0.0, CLEARANCE_SCALE))
     spec = recording.simulation.robots[index]
     events = [event for event in recording.events if event.kind == "collision" and event.robot == spec.name]
-    if not marked:
+    if scan:
         _draw_last_scan(ax, recording, index, now, theme)
     artists.draw_crosses(ax, [(event.x, event.y) for event in events], theme)
-    artists.draw_robot(ax, spec, Pose(*recording.poses[now, index].tolist()), theme, own)
+    pose = Pose(*recording.poses[now, index].tolist())
+    artists.draw_robot(ax, spec, pose, theme, own)
+    _name_robot(ax, recording.simulation, index, pose, theme)
+
+
+def _name_robot(ax: Axes, simulation: Simulation, index: int, pose: Pose, theme: Theme) -> None:
+    """Write a robot's name beside it, if it is one of several."""
+    if len(simulation.robots) > 1:
+        spec = simulation.robots[index]
+        artists.name_text(ax, spec.name, theme).xy = artists.name_place(spec, pose)
 
 
 def _add_scale(ax: Axes, recording: Recording, index: int, colour: str, theme: Theme) -> None:
@@ -151,39 +163,6 @@ def _draw_last_scan(ax: Axes, recording: Recording, index: int, row: int, theme:
     lidar, newest = recording.simulation.robots[index].lidar, newest_scan(recording, index, row)
     if lidar is not None and newest is not None:
         artists.draw_scan(ax, newest[0].ranges, lidar, newest[1], theme)
-
-
-def _draw_mark(ax: Axes, recording: Recording, index: int, row: int, note: str, theme: Theme) -> None:
-    spec = recording.simulation.robots[index]
-    x, y, _ = recording.poses[row, index].tolist()
-    _draw_last_scan(ax, recording, index, row, theme)
-    near = clearance(recording.simulation, state_at(recording, row), spec.name)
-    _draw_gap(ax, (x, y), near, theme)
-    left, low, right, high = recording.simulation.world.bounds
-    side = -1.0 if x > (left + right) / 2 else 1.0
-    rise = -1.0 if y > (low + high) / 2 else 1.0
-    ax.annotate(
-        f"t = {recording.times[row]:.1f} s" + (f"\n{note}" if note else ""),
-        (x, y),
-        (side * 30, rise * 34),
-        textcoords="offset points",
-        ha="left" if side > 0 else "right",
-        va="bottom" if rise > 0 else "top",
-        fontsize=9.5,
-        linespacing=1.45,
-        color=theme.ink,
-        zorder=14,
-        bbox={"boxstyle": "round,pad=0.45", "facecolor": theme.paper, "edgecolor": theme.alarm, "linewidth": 1.0},
-        arrowprops={"arrowstyle": "-", "color": theme.alarm, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 7},
-    )
-
-
-def _draw_gap(ax: Axes, centre: tuple[float, float], near: Clearance, theme: Theme) -> None:
-    """Ring the robot and draw the line to the obstacle nearest to it."""
-    ax.plot(*centre, marker="o", markersize=22, mfc="none", mec=theme.alarm, mew=1.3, linestyle="none", zorder=10)
-    if math.isfinite(near.x) and math.isfinite(near.y):
-        ax.plot((centre[0], near.x), (centre[1], near.y), color=theme.alarm, linewidth=1.4, zorder=7)
-        ax.plot(near.x, near.y, marker="o", markersize=4.5, color=theme.alarm, linestyle="none", zorder=12)
 
 
 def _robots(simulation: Simulation, robot: str | None) -> list[int]:

@@ -89,7 +89,7 @@ class LiveView:
         self._now_ns = 0
         self._task: asyncio.Task[None] | None = None
         self._shown: deque[float] = deque(maxlen=60)
-        self._controls = Controls(self, source, speed)
+        self._controls = Controls(self, source, speed, self._renderer.width)
         self._render()
 
     @property

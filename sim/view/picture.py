@@ -59,11 +59,16 @@ class Picture:
     def _repr_png_(self) -> bytes:
         return self.png()
 
+    def html(self, dpi: int = DPI) -> str:
+        """Return the picture as an HTML element, with its alternative text."""
+        encoded = base64.b64encode(self.png(dpi)).decode("ascii")
+        width = round(self.figure.get_figwidth() * 96)
+        text = html.escape(self.alt, quote=True)
+        return f'<img alt="{text}" width="{width}" style="max-width:100%" src="data:image/png;base64,{encoded}">'
+
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> tuple[dict[str, Any], dict[str, Any]]:
         """Offer HTML first (it carries the alternative text), PNG for viewers that drop images from HTML."""
         encoded = base64.b64encode(self.png()).decode("ascii")
         width = round(self.figure.get_figwidth() * 96)
-        text = html.escape(self.alt, quote=True)
-        image = f'<img alt="{text}" width="{width}" style="max-width:100%" src="data:image/png;base64,{encoded}">'
-        bundle = {"text/html": image, "image/png": encoded, "text/plain": self.alt}
+        bundle = {"text/html": self.html(), "image/png": encoded, "text/plain": self.alt}
         return bundle, {"image/png": {"alt": self.alt, "width": width}}

@@ -12,30 +12,22 @@ from pathlib import Path
 from typing import Any
 
 from sim.recording import Recording
-from sim.view.figures import describe, plot
-from sim.view.picture import Picture
+from sim.view.figures import plot
+from sim.view.marks import described
+from sim.view.picture import DPI, Picture
 from sim.view.run_data import Margin, encode
 from sim.view.theme import DARK, LIGHT, Theme
 
 _HERE = Path(__file__).parent
-_COLOURS = (
-    "paper",
-    "outside",
-    "floor",
-    "solid",
-    "wall",
-    "ink",
-    "muted",
-    "robot",
-    "beam",
-    "hit",
-    "start",
-    "goal",
-    "alarm",
-    "mover",
-)
+_PARTS = ("player_data", "player_drawing", "player_view", "player_lists", "player")
 
-SCRIPT = (_HERE / "player.js").read_text(encoding="utf-8")
+SCRIPT = "\n".join(
+    [
+        f'(() => {{\n"use strict";\nconst LOOK = {described()};',
+        *((_HERE / f"{part}.js").read_text(encoding="utf-8") for part in _PARTS),
+        "})();",
+    ]
+)
 """The script that brings every `div.run-player` above it to life."""
 
 
@@ -51,6 +43,7 @@ class Player:
         theme: str = "light",
         speed: float = 1.0,
         play: bool = False,
+        note: str = "",
     ) -> None:
         """Prepare the run.
 
@@ -60,11 +53,12 @@ class Player:
             still: the picture where nothing can play; the track by default.
             theme: "light", "dark", or "auto", the reader's choice.
             speed: simulated seconds in a second at first: 0.25, 0.5, 1, 2 or 4.
-            play: whether it plays at once.
+            play: whether it plays once when it is seen. A run that broke a rule stands at that instant instead.
+            note: what is said of the instant at which a rule broke.
         """
         self.recording = recording
         self._still = still or plot(recording)
-        self._data = encode(recording, self._still.alt, margins)
+        self._data = encode(recording, self._still.alt, margins, note=note)
         self._options = {"data-theme": theme, "data-speed": f"{speed:g}", **({"data-play": "yes"} if play else {})}
 
     def __repr__(self) -> str:
@@ -73,8 +67,7 @@ class Player:
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> tuple[dict[str, Any], dict[str, Any]]:
         """Offer HTML first, PNG for viewers without it."""
         bundle, metadata = self._still._repr_mimebundle_()
-        image = bundle["text/html"].replace("<img ", '<img class="run-still" ', 1)
-        player = markup(self._data, image, **self._options)
+        player = markup(self._data, _image(self._still), **self._options)
         bundle["text/html"] = f"<style>{style()}</style>{player}<script>{SCRIPT}</script>"
         return bundle, metadata
 
@@ -85,7 +78,8 @@ def markup(data: str, still: str = "", **attributes: str) -> str:
     Args:
         data: what `encode` returned.
         still: the HTML of the picture that stands for the run on paper, of the class "run-still".
-        attributes: of the element: its `id`, and what a `Player` has as options.
+        attributes: of the element: its `id`, what a `Player` has as options, `data-first` of the player that a link
+            without a run means, and `data-alone` of one that gets all keys of its page.
     """
     given = "".join(f' {name}="{html.escape(value, quote=True)}"' for name, value in attributes.items())
     name = "run-player run-still-there" if still else "run-player"
@@ -108,7 +102,9 @@ def style() -> str:
 def page(recording: Recording, margins: Sequence[Margin] = ()) -> str:
     """Return a whole page that plays a run, light or dark as its reader likes it."""
     title = html.escape(f"{recording.simulation.world.name}: {recording.times[-1]:.1f} s")
-    player = markup(encode(recording, describe(recording), margins), **{"data-theme": "auto"})
+    still = plot(recording)
+    options = {"data-theme": "auto", "data-alone": "yes"}
+    player = markup(encode(recording, still.alt, margins), _image(still, dpi=96), **options)
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta name="viewport" content="width=device-width, initial-scale=1">\n<title>{title}</title>\n'
@@ -116,13 +112,17 @@ def page(recording: Recording, margins: Sequence[Margin] = ()) -> str:
         f"@media (prefers-color-scheme: dark) {{ :root {{ {_variables(DARK)} }} }}\n"
         "body { margin: 0; background: var(--run-paper); color: var(--run-ink); }\n"
         "body { font: 15px/1.5 system-ui, sans-serif; }\n"
-        "main { max-width: 70rem; margin: 0 auto; padding: 1rem; } h1 { font-size: 1.1rem; margin: 0 0 .5rem; }\n"
+        "main { max-width: 70rem; margin: 0 auto; padding: .5rem; }\n"
+        "h1 { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }\n"
         f"</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n{player}\n</main>\n<script>{SCRIPT}</script>\n"
         "</body>\n</html>\n"
     )
 
 
+def _image(still: Picture, dpi: int = DPI) -> str:
+    """Return the HTML of the picture where nothing can play."""
+    return still.html(dpi).replace("<img ", '<img class="run-still" ', 1)
+
+
 def _variables(theme: Theme) -> str:
-    colours = {name: getattr(theme, name) for name in _COLOURS}
-    colours |= {f"other{index}": colour for index, colour in enumerate(theme.others)}
-    return "".join(f"--run-{name}:{colour};" for name, colour in colours.items())
+    return "".join(f"--run-{name}:{colour};" for name, colour in theme.named.items())

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import io
 import math
+from itertools import pairwise
 from typing import Any
 
 import matplotlib
 import numpy as np
-import numpy.typing as npt
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 from matplotlib.transforms import Bbox
@@ -25,17 +26,22 @@ from sim.lidar import LidarSpec, Scan
 from sim.pose import Pose
 from sim.simulation import Simulation
 from sim.view import artists
+from sim.view.artists import area, line, symbol
+from sim.view.marks import MARKS, PIECES
 from sim.view.session import Frame
+from sim.view.shapes import Floats, beam_ends, body_outline, is_full_turn, margin_of, movers_at, nose_outline, place
 from sim.view.stage import write_names
 from sim.view.theme import STYLE, Theme
+from sim.world import World
 
-Floats = npt.NDArray[np.float64]
+WIDTH, HEIGHT = 5.8, 4.6
+"""Inches that the world has at most."""
 
-WIDTH, HEIGHT = 9.8, 4.5
-"""Inches of a frame."""
+SIGHT = 3.2
+"""Inches of the scan as the robot sees it, beside the world."""
 
-BEAMS = 120
-"""At most so many beams are drawn as lines; every hit is drawn as a point."""
+_LEFT, _BETWEEN, _RIGHT, _BOTTOM, _TOP = 0.44, 0.25, 0.11, 0.34, 0.38
+"""Inches of paper around the two."""
 
 
 class Renderer:
@@ -46,12 +52,11 @@ class Renderer:
         self._theme = theme
         self._lidar = simulation.robots[0].lidar
         with matplotlib.rc_context(STYLE):  # type: ignore[arg-type]
-            figure = Figure(figsize=(WIDTH, HEIGHT), dpi=dpi, facecolor=theme.paper)
+            sheet, boxes = _sheet(simulation.world)
+            figure = Figure(figsize=sheet, dpi=dpi, facecolor=theme.paper)
             self._canvas: Any = FigureCanvasAgg(figure)
-            self._world = figure.add_axes((0.045, 0.075, 0.595, 0.84))
-            self._sight = figure.add_axes((0.665, 0.075, 0.325, 0.84))
+            self._world, self._sight = (figure.add_axes(box) for box in boxes)
             artists.set_stage(self._world, simulation.world, theme)
-            self._world.set_anchor("NW")
             artists.draw_walls(self._world, simulation.world, theme)
             artists.draw_places(self._world, simulation.world, theme, radius=simulation.robots[0].radius)
             if names:
@@ -65,6 +70,11 @@ class Renderer:
             canvas: Any = self._canvas
             canvas.draw()
             self._background = canvas.copy_from_bbox(figure.bbox)
+
+    @property
+    def width(self) -> int:
+        """The width of a frame, in pixels."""
+        return int(self._canvas.get_width_height()[0])
 
     def draw(self, frame: Frame, trail: Floats | None = None) -> Image.Image:
         """Return the frame as an RGB image; `trail` is the first robot's track so far, (K, 2) in metres."""
@@ -109,25 +119,32 @@ class Renderer:
 
     def _add_moving(self) -> list[Artist]:
         theme, world, sight = self._theme, self._world, self._sight
-        self._seen: Any = world.add_patch(_area(theme))
-        (self._rays,) = world.plot([], [], color=theme.beam, linewidth=0.5, alpha=0.45, zorder=3)
-        (self._hits,) = world.plot([], [], "o", markersize=2.2, color=theme.hit, mew=0, zorder=6)
-        (self._trail,) = world.plot([], [], color=theme.robot, linewidth=2.0, alpha=0.55, zorder=5)
+        simulation = self._simulation
+        self._seen: Any = world.add_patch(Polygon(np.zeros((3, 2)), closed=True, **area("seen", theme)))
+        (self._rays,) = world.plot([], [], **line("ray", theme))
+        (self._hits,) = world.plot([], [], **symbol("hit", theme))
+        mark = MARKS["track"]
+        colours = theme.time_colours(0)
+        self._trail = LineCollection([], cmap=colours, linewidths=mark.width, capstyle="round", zorder=mark.layer)
+        self._trail.set_clim(0.0, 1.0)
+        world.add_collection(self._trail, autolim=False)
         self._movers: list[Any] = [
-            world.add_patch(artists.mover_patch(0.0, 0.0, mover.radius, theme))
-            for mover in self._simulation.world.movers
+            world.add_patch(artists.mover_patch(0.0, 0.0, mover.radius, theme)) for mover in simulation.world.movers
         ]
         self._halos: list[Any] = []
         self._bodies: list[tuple[Any, Any]] = []
-        for index in range(len(self._simulation.robots)):
+        self._names: list[Any] = []
+        for index, spec in enumerate(simulation.robots):
             colour = theme.robot_colour(index)
-            self._halos += world.plot([], [], "o", markersize=24, color=colour, alpha=0.16, mew=0, zorder=7.5)
-            body = world.add_patch(Polygon(np.zeros((3, 2)), facecolor=colour, edgecolor=theme.paper, linewidth=1.0))
-            nose = world.add_patch(Polygon(np.zeros((3, 2)), facecolor=theme.paper, linewidth=0))
+            self._halos += world.plot([], [], **symbol("halo", theme, colour))
+            body = world.add_patch(Polygon(np.zeros((3, 2)), **area("body", theme, colour)))
+            nose = world.add_patch(Polygon(np.zeros((3, 2)), **area("nose", theme)))
             self._bodies.append((body, nose))
-        self._near_seen: Any = sight.add_patch(_area(theme))
-        (self._near_rays,) = sight.plot([], [], color=theme.beam, linewidth=0.5, alpha=0.35, zorder=3)
-        (self._near_hits,) = sight.plot([], [], "o", markersize=2.6, color=theme.hit, mew=0, zorder=6)
+            if len(simulation.robots) > 1:
+                self._names.append(artists.name_text(world, spec.name, theme))
+        self._near_seen: Any = sight.add_patch(Polygon(np.zeros((3, 2)), closed=True, **area("seen", theme)))
+        (self._near_rays,) = sight.plot([], [], **line("ray", theme))
+        (self._near_hits,) = sight.plot([], [], **symbol("hit", theme))
         style: dict[str, Any] = {
             "textcoords": "offset points",
             "xycoords": "axes fraction",
@@ -138,7 +155,7 @@ class Renderer:
         self._words = sight.annotate("", (0, 1), (0, 6), color=theme.muted, **style)
         pairs = [part for pair in self._bodies for part in pair]
         return [
-            *(self._seen, self._rays, self._trail, *self._movers, self._hits, *self._halos, *pairs),
+            *(self._seen, self._rays, self._trail, *self._movers, self._hits, *self._halos, *pairs, *self._names),
             *(self._near_seen, self._near_rays, *self._centre, self._near_hits),
         ]
 
@@ -146,14 +163,17 @@ class Renderer:
         state = frame.state
         for index, (robot, spec) in enumerate(zip(state.robots, self._simulation.robots, strict=True)):
             body, nose = self._bodies[index]
-            body.set_xy(artists.place(artists.body_outline(spec), robot.pose))
-            nose.set_xy(artists.place(artists.nose_outline(spec), robot.pose))
+            body.set_xy(place(body_outline(spec), robot.pose))
+            nose.set_xy(place(nose_outline(spec), robot.pose))
             body.set_facecolor(self._theme.alarm if robot.collided else self._theme.robot_colour(index))
             self._halos[index].set_data([robot.pose.x], [robot.pose.y])
-        for patch, place in zip(self._movers, artists.movers_at(self._simulation, state.time_ns), strict=True):
-            patch.center = place
-        points = np.empty((0, 2)) if trail is None else trail
-        self._trail.set_data(*points.T)
+        for text, robot, spec in zip(self._names, state.robots, self._simulation.robots, strict=False):
+            text.xy = artists.name_place(spec, robot.pose)  # a single robot has no name
+        for patch, centre in zip(self._movers, movers_at(self._simulation, state.time_ns), strict=True):
+            patch.center = centre
+        pieces = _pieces(np.empty((0, 2)) if trail is None else trail)
+        self._trail.set_segments(pieces)
+        self._trail.set_array((np.arange(len(pieces)) + 0.5) / max(1, len(pieces)))
         self._update_scan(frame.scans[0])
 
     def _update_scan(self, newest: tuple[Scan, Pose] | None) -> None:
@@ -169,18 +189,32 @@ class Renderer:
         _set_scan(scan, self._lidar, upward, self._near_seen, self._near_rays, self._near_hits)
 
 
+def _sheet(world: World) -> tuple[tuple[float, float], list[tuple[float, float, float, float]]]:
+    """Return the size of a frame in inches, and the boxes of world and scan in shares of it, with no paper unused."""
+    left, low, right, high = world.bounds
+    across, up = (side + 2 * margin_of(world) for side in (max(right - left, 0.1), max(high - low, 0.1)))
+    scale = min(WIDTH / across, HEIGHT / up)
+    width, height = max(across * scale, 1.5), max(up * scale, 0.5)
+    sheet = (_LEFT + width + _BETWEEN + SIGHT + _RIGHT, max(_BOTTOM + height, SIGHT) + _TOP)
+    top = sheet[1] - _TOP
+    boxes = ((_LEFT, top - height, width, height), (_LEFT + width + _BETWEEN, top - SIGHT, SIGHT, SIGHT))
+    return sheet, [(x / sheet[0], y / sheet[1], w / sheet[0], h / sheet[1]) for x, y, w, h in boxes]
+
+
+def _pieces(track: Floats) -> list[Floats]:
+    """Return a track (K, 2) in at most `PIECES` pieces, each of which begins where the one before ends."""
+    cuts = np.unique(np.linspace(0, max(0, len(track) - 1), PIECES + 1).round().astype(int)).tolist()
+    return [track[start : end + 1] for start, end in pairwise(cuts)]
+
+
 def _set_scan(scan: Scan, lidar: LidarSpec, pose: Pose, seen: Polygon, rays: Any, hits: Any) -> None:
-    mount, ends, hit = artists.beam_ends(scan.ranges, lidar, pose)
-    seen.set_xy(ends if artists.is_full_turn(lidar) else np.vstack([mount, ends]))
-    chosen = np.flatnonzero(hit)[:: max(1, math.ceil(len(ends) / BEAMS))]
+    mount, ends, hit = beam_ends(scan.ranges, lidar, pose)
+    seen.set_xy(ends if is_full_turn(lidar) else np.vstack([mount, ends]))
+    chosen = artists.chosen_beams(hit)
     lines = np.full((3 * len(chosen), 2), np.nan)
     lines[0::3], lines[1::3] = mount, ends[chosen]
     rays.set_data(*lines.T)
     hits.set_data(*ends[hit].T)
-
-
-def _area(theme: Theme) -> Polygon:
-    return Polygon(np.zeros((3, 2)), closed=True, facecolor=theme.beam, alpha=0.10, linewidth=0, zorder=1.5)
 
 
 def _sight_stage(ax: Axes, simulation: Simulation, theme: Theme) -> list[Artist]:
@@ -188,8 +222,8 @@ def _sight_stage(ax: Axes, simulation: Simulation, theme: Theme) -> list[Artist]
     spec, world = simulation.robots[0], simulation.world
     size = max(world.bounds[2] - world.bounds[0], world.bounds[3] - world.bounds[1])
     reach = min(spec.lidar.range_max if spec.lidar is not None else 3.0, 0.5 * size)
-    ax.set_xlim(-1.2 * reach, 1.2 * reach)
-    ax.set_ylim(-1.2 * reach, 1.2 * reach)
+    ax.set_xlim(-1.15 * reach, 1.15 * reach)
+    ax.set_ylim(-1.15 * reach, 1.15 * reach)
     ax.set_aspect("equal", anchor="N")
     ax.set_axis_off()
     spacing = next(step for step in (0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, math.inf) if reach / step <= 4)

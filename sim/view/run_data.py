@@ -19,7 +19,17 @@ import numpy.typing as npt
 
 from sim.log import Line, shorten
 from sim.recording import Recording
-from sim.view.artists import body_outline, is_full_turn, margin_of, movers_at, nose_outline, outlines
+from sim.view.figures import heading
+from sim.view.shapes import (
+    Moment,
+    body_outline,
+    is_full_turn,
+    margin_of,
+    moment_of,
+    movers_at,
+    nose_outline,
+    outlines,
+)
 from sim.world import World
 
 MAX_BYTES = 300_000
@@ -49,18 +59,33 @@ class Margin:
     broken_at: float | None
 
 
-def encode(recording: Recording, alt: str, margins: Sequence[Margin] = ()) -> str:
+def encode(
+    recording: Recording, alt: str, margins: Sequence[Margin] = (), *, mark: float | None = None, note: str = ""
+) -> str:
     """Return the JSON of a run for the player. The same run gives the same text.
 
     Args:
         recording: the run.
         alt: the sentence that stands for the run where it cannot be seen.
         margins: the rules that it was judged by.
+        mark: the instant, in seconds, that the player shows first; the first one at which a rule broke if None, or the
+            end of the run if none broke.
+        note: what is said of the instant.
+
+    Raises:
+        ValueError: `mark` is not finite.
     """
+    broken = [margin.broken_at for margin in margins if margin.broken_at is not None]
+    mark = min(broken, default=None) if mark is None else mark
+    moment = moment_of(recording, list(range(len(recording.simulation.robots))), mark, note)
+    title, summary = heading(recording)
     text = ""
     for most_rows, most_beams in LADDER:
         data = {
             "alt": alt,
+            "title": title,
+            "summary": summary,
+            "moment": None if moment is None else _moment(moment),
             "world": _world(recording.simulation.world),
             "margins": [_margin(margin, most_rows) for margin in margins],
             "said": _said(recording.said),
@@ -88,6 +113,18 @@ def _deflated(data: bytes) -> str:
     return base64.b64encode(zlib.compress(data, 9)).decode("ascii")
 
 
+def _moment(moment: Moment) -> dict[str, Any]:
+    near = (moment.near.x, moment.near.y)
+    return {
+        "time": round(moment.time, 3),
+        "at": [round(moment.x, 3), round(moment.y, 3)],
+        "near": [round(number, 3) for number in near] if all(map(math.isfinite, near)) else None,
+        "words": moment.words,
+        "spot": [round(number, 3) for number in moment.spot],
+        "marked": moment.marked,
+    }
+
+
 def _world(world: World) -> dict[str, Any]:
     room, solid = outlines(world)
     left, low, right, high = world.bounds
@@ -95,6 +132,7 @@ def _world(world: World) -> dict[str, Any]:
     return {
         "name": world.name,
         "bounds": [round(side, 3) for side in (left - edge, low - edge, right + edge, high + edge)],
+        "inside": [round(side, 3) for side in (left, low, right, high)],
         "room": pack(room, MILLI),
         "solid": [pack(loop, MILLI) for loop in solid],
         "walls": pack(world.segments.reshape(-1, 4), MILLI),
@@ -102,6 +140,7 @@ def _world(world: World) -> dict[str, Any]:
         "goals": [[round(number, 3) for number in (goal.x, goal.y, goal.radius)] for goal in world.goals],
         "starts": [[round(number, 3) for number in (place.x, place.y, place.theta)] for place in world.starts],
         "movers": [mover.radius for mover in world.movers],
+        "routes": [np.round([*mover.path, *mover.path[: int(mover.loop)]], 3).tolist() for mover in world.movers],
     }
 
 
@@ -125,7 +164,7 @@ def _run(recording: Recording, most_rows: int, most_beams: int) -> dict[str, Any
             for index, spec in enumerate(simulation.robots)
         ],
         "collisions": [
-            [round(event.time_ns / 1e9, 3), round(event.x, 3), round(event.y, 3), event.what]
+            [round(event.time_ns / 1e9, 3), round(event.x, 3), round(event.y, 3), event.what, event.robot]
             for event in recording.events[:most_rows]
             if event.kind == "collision"
         ],

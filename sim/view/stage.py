@@ -9,7 +9,8 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from sim.view.artists import margin_of, set_stage
+from sim.view.artists import set_stage
+from sim.view.shapes import margin_of
 from sim.view.theme import Theme
 from sim.world import World
 

@@ -7,12 +7,12 @@ colour alone (a goal is a ring, a collision a cross, the robot has a nose). Line
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from matplotlib.colors import LinearSegmentedColormap, to_rgb
+from matplotlib.colors import LinearSegmentedColormap, to_hex, to_rgb
 
 
 @dataclass(frozen=True)
@@ -39,9 +39,22 @@ class Theme:
 
     def time_colours(self, index: int) -> LinearSegmentedColormap:
         """Return early to late in the hue of the robot with that place: its lightness carries the meaning."""
-        own = np.array(to_rgb(self.robot_colour(index)))
-        early, late = (0.4 * own + 0.6 * np.array(to_rgb(end)) for end in (self.paper, self.ink))
-        return LinearSegmentedColormap.from_list(f"{self.name}-time-{index}", [early, own, late])
+        return LinearSegmentedColormap.from_list(f"{self.name}-time-{index}", list(self.time_hues(index)))
+
+    def time_hues(self, index: int) -> tuple[str, str, str]:
+        """Return the colours of a robot's track at its start, in the middle and at its end."""
+        own = self.robot_colour(index)
+        early, late = (_mixed(own, end, 0.6) for end in (self.paper, self.ink))
+        return early, own, late
+
+    @cached_property
+    def named(self) -> dict[str, str]:
+        """The colours that have a name: this theme's fields, and `early`, `own` and `late` of each kind of robot."""
+        colours = {field.name: getattr(self, field.name) for field in fields(self) if field.type == "str"}
+        del colours["name"]
+        for index in range(1 + len(self.others)):
+            colours |= zip((f"early{index}", f"own{index}", f"late{index}"), self.time_hues(index), strict=True)
+        return colours
 
     @cached_property
     def clearance_colours(self) -> LinearSegmentedColormap:
@@ -56,6 +69,12 @@ class Theme:
     def robot_colour(self, index: int) -> str:
         """Return the colour of the robot with that place in the simulation."""
         return self.robot if index == 0 else self.others[(index - 1) % len(self.others)]
+
+
+def _mixed(colour: str, other: str, share: float) -> str:
+    """Return `colour` with a share of another one, as a hexadecimal string."""
+    red, green, blue = (1 - share) * np.array(to_rgb(colour)) + share * np.array(to_rgb(other))
+    return to_hex((red, green, blue))
 
 
 LIGHT = Theme(

@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Locator, Page, expect
 
+from tests.browser.canvas import missing
 from tests.browser.jupyter import PATIENCE, Lab, lab
 
 __all__ = ["lab"]
@@ -39,9 +40,11 @@ live(world, broken)
 
 
 REPLAY = """
+from autograder.notebook.driving import DriveReport
 from sim import run
-recording = run(Simulation(world), lambda state, scans: Command(linear=0.3, angular=0.4), 5.0)
-live(recording, play=False)
+room = Simulation(world, (RobotSpec(radius=0.18),))
+recording = run(room, lambda state, scans: Command(linear=0.3, angular=0.5), 5.0)
+DriveReport(recording, "", ())
 """
 
 
@@ -119,22 +122,30 @@ def test_an_error_of_the_callback_is_shown_in_the_cell(page: Page, lab: Lab, scr
     page.screenshot(path=screenshots / "live-view-error.png")
 
 
-def test_a_recording_plays_in_the_notebook_and_its_keys_do_not_reach_the_notebook(
+def test_a_drive_opens_drawn_in_the_notebook_and_plays_and_its_keys_do_not_reach_the_notebook(
     page: Page, lab: Lab, screenshots: Path
 ) -> None:
-    first = DRIVE.format(world=str(ROOT / "assets/worlds/empty_room.yaml")).replace("\nview\n", "\nview.pause()\n")
+    first = DRIVE.format(world=str(ROOT / "assets/worlds/smile.yaml")).replace("\nview\n", "\nview.pause()\n")
     lab.open(page, "replay.ipynb", [first, REPLAY])
     player = page.locator(".run-player")
-    expect(player.locator("canvas")).to_be_visible(timeout=PATIENCE * 1000)
+    canvas, clock = player.locator("canvas"), player.locator("output")
+    expect(canvas).to_be_visible(timeout=PATIENCE * 1000)
     expect(player.locator("img")).to_be_hidden()
-    player.get_by_label("Time in seconds").fill("2")
+    expect(clock).to_have_text("5.00 s")
+    assert missing(canvas) == []
+    canvas.scroll_into_view_if_needed()
+    page.screenshot(path=screenshots / "drive-in-notebook.png")
+    page.locator(".jp-Cell .jp-InputPrompt").first.click()  # command mode, in which b adds a cell
+    canvas.hover()
     cells = page.locator(".jp-Notebook .jp-Cell").count()
-    for key, shown in (("ArrowRight", "2.10"), ("b", "2.10"), ("Home", "0.00")):  # b adds a cell in command mode
+    for key, shown in (("ArrowLeft", "4.90"), ("b", "4.90"), ("Home", "0.00")):
         page.keyboard.press(key)
-        expect(player.locator("output")).to_have_text(f"{shown} s")
+        expect(clock).to_have_text(f"{shown} s")
+    player.get_by_label("Time in seconds").fill("2")
+    page.keyboard.press("b")
     assert page.locator(".jp-Notebook .jp-Cell").count() == cells
     player.get_by_role("button", name="Play").click()
-    expect(player.locator("output")).to_have_text("5.00 s", timeout=PATIENCE * 1000)
+    expect(clock).to_have_text("5.00 s", timeout=PATIENCE * 1000)
     page.screenshot(path=screenshots / "replay-in-notebook.png")
 
 

@@ -1,4 +1,4 @@
-"""The player of a run in a real browser: it plays, shows any instant, obeys keys, and a link leads to an instant."""
+"""The player of a run in a real browser: it opens drawn, plays, zooms, obeys keys, and a link leads to an instant."""
 
 from __future__ import annotations
 
@@ -6,18 +6,30 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Page, expect
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Browser, Page, expect
 
 from sim import Command, Recording, RobotSpec, Simulation, load_world, run
 from sim.export import to_html
-from sim.view import Margin
+from sim.view import LIGHT, Margin, Player
 from sim.view.player import page as page_of
+from tests.browser.canvas import LATE, count, missing
 
 pytestmark = pytest.mark.browser
 
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 120_000.0  # milliseconds: a deadline, not an expectation
 MAX_BYTES = 300_000
+AHEAD, ROUND = Command(0.4, 0.2), Command(0.3, 0.5)
+RULES = {"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}}
+
+KEEP_TIMES = """
+window.times = [];
+new MutationObserver(() => {
+    const clock = document.querySelector(".run-player output");
+    if (clock && times.at(-1) !== clock.textContent) times.push(clock.textContent);
+}).observe(document, {childList: true, characterData: true, subtree: true});
+"""
 
 COUNT_FRAMES = """seconds => new Promise(resolve => {
     let frames = 0;
@@ -30,9 +42,9 @@ COUNT_FRAMES = """seconds => new Promise(resolve => {
 })"""
 
 
-def drive(world: str, seconds: float) -> Recording:
+def drive(world: str, seconds: float, command: Command = AHEAD) -> Recording:
     simulation = Simulation(load_world(ROOT / "assets" / "worlds" / f"{world}.yaml"), (RobotSpec(radius=0.18),))
-    return run(simulation, lambda state, scans: Command(0.4, 0.2), seconds)
+    return run(simulation, lambda state, scans: command, seconds)
 
 
 @pytest.fixture
@@ -49,6 +61,7 @@ def opened(page: Page, complaints: list[str], tmp_path: Path) -> Path:
     """The page of a run of two seconds, open."""
     path = to_html(drive("moving_obstacle", 2.0), tmp_path / "run.html")
     page.goto(path.as_uri())
+    expect(page.locator(".run-player.run-ready")).to_be_visible(timeout=PATIENCE)
     return path
 
 
@@ -57,10 +70,41 @@ def drawn(page: Page) -> str:
     return str(page.locator(".run-player canvas").evaluate("canvas => canvas.toDataURL()"))
 
 
+@pytest.mark.parametrize("width", [1280, 390])
+def test_a_run_opens_at_its_end_with_all_that_its_picture_shows(
+    page: Page, complaints: list[str], tmp_path: Path, screenshots: Path, width: int
+) -> None:
+    page.set_viewport_size({"width": width, "height": 800})
+    page.goto(to_html(drive("smile", 6.0, ROUND), tmp_path / "run.html").as_uri())
+    expect(page.locator(".run-player output")).to_have_text("6.00 s", timeout=PATIENCE)
+    canvas = page.locator(".run-player canvas")
+    assert missing(canvas) == []
+    expect(page.locator(".run-title")).to_contain_text("Smile")
+    expect(page.locator(".run-title")).to_contain_text("never nearer than")
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    page.screenshot(path=screenshots / f"run-page-{width}.png")
+    page.keyboard.press("Home")
+    late, own = count(canvas, LATE, LIGHT.robot)
+    assert late < 5  # what is to come is thin, in the robot's own colour
+    assert own > 5
+    assert complaints == []
+
+
+def test_a_run_without_a_script_is_a_picture(chromium: Browser, tmp_path: Path) -> None:
+    context = chromium.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto(to_html(drive("smile", 3.0), tmp_path / "run.html").as_uri())
+    picture = page.get_by_alt_text("Track of robot through “smile”", exact=False)
+    expect(picture).to_be_visible()
+    assert picture.bounding_box()["width"] > 300  # type: ignore[index]
+    context.close()
+
+
 def test_the_player_plays_to_the_end_of_the_run_and_stops(
     page: Page, opened: Path, complaints: list[str], screenshots: Path
 ) -> None:
     clock = page.locator(".run-player output")
+    page.keyboard.press("Home")
     expect(clock).to_have_text("0.00 s")
     before = drawn(page)
     page.get_by_role("button", name="Play").click()
@@ -69,6 +113,25 @@ def test_the_player_plays_to_the_end_of_the_run_and_stops(
     expect(page.get_by_role("button", name="Play")).to_be_visible()
     assert drawn(page) != before
     page.screenshot(path=screenshots / "run-page.png")
+    assert complaints == []
+
+
+@pytest.mark.parametrize("broken", [False, True])
+def test_a_run_plays_once_when_it_is_seen_unless_it_broke_a_rule(
+    page: Page, complaints: list[str], tmp_path: Path, broken: bool
+) -> None:
+    margins = [Margin("the gap in m", (0.0, 2.0), (1.0, -1.0), 1.0)] if broken else []
+    player = Player(drive("smile", 2.0), margins=margins, play=True)
+    page.emulate_media(reduced_motion="no-preference")
+    page.add_init_script(KEEP_TIMES)
+    path = tmp_path / "run.html"
+    path.write_text(f'<meta charset="utf-8">{player._repr_mimebundle_()[0]["text/html"]}', encoding="utf-8")
+    page.goto(path.as_uri())
+    if not broken:
+        page.wait_for_function("times.length > 2 && times.at(-1) === '2.00 s'", timeout=PATIENCE)
+    expect(page.get_by_role("button", name="Play")).to_be_visible()
+    times = page.evaluate("times")
+    assert times == ["1.00 s"] if broken else times[:2] == ["2.00 s", "0.00 s"] and times.count("0.00 s") == 1
     assert complaints == []
 
 
@@ -88,6 +151,88 @@ def test_the_slider_and_the_keys_show_any_instant(page: Page, opened: Path, comp
     page.keyboard.press("Space")
     expect(page.get_by_role("button", name="Play")).to_be_visible()
     assert complaints == []
+
+
+def test_keys_are_for_the_player_below_the_mouse_unless_somebody_types(page: Page, opened: Path) -> None:
+    clocks = page.locator(".run-player output")
+    page.evaluate("""() => {
+        document.querySelector("main").insertAdjacentHTML("beforeend", "<input id=field>");
+        const other = document.querySelector(".run-player").cloneNode(true);
+        other.className = "run-player";
+        delete other.dataset.alone;
+        other.querySelector(".run-stage").remove();
+        document.querySelector("main").append(other);
+        const script = document.createElement("script");
+        script.textContent = [...document.scripts].at(-1).textContent;
+        document.body.append(script);
+    }""")
+    expect(clocks).to_have_text(["2.00 s", "2.00 s"])
+    page.locator(".run-player canvas").last.hover()
+    page.keyboard.press("Home")
+    expect(clocks).to_have_text(["2.00 s", "0.00 s"])
+    page.locator(".run-player canvas").first.hover()
+    page.keyboard.press("ArrowLeft")
+    expect(clocks).to_have_text(["1.90 s", "0.00 s"])
+    page.locator("#field").focus()
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.type("b l")
+    expect(clocks).to_have_text(["1.90 s", "0.00 s"])
+    expect(page.locator("#field")).to_have_value("b l")
+
+
+def test_the_picture_zooms_moves_and_follows_the_robot(
+    page: Page, opened: Path, complaints: list[str], screenshots: Path
+) -> None:
+    canvas, whole = page.locator(".run-player canvas"), drawn(page)
+    canvas.hover()
+    page.keyboard.press("+")
+    zoomed = drawn(page)
+    assert zoomed != whole
+    page.mouse.down()
+    page.mouse.move(300, 300)
+    page.mouse.up()
+    assert drawn(page) not in (whole, zoomed)
+    page.get_by_role("button", name="Show the whole world").click()
+    assert drawn(page) == whole
+    canvas.hover()
+    page.keyboard.down("Control")
+    page.mouse.wheel(0, -200)
+    page.keyboard.up("Control")
+    page.wait_for_function("whole => document.querySelector('canvas').toDataURL() !== whole", arg=whole)
+    page.keyboard.press("0")
+    follow = page.get_by_role("button", name="Follow")
+    follow.click()
+    expect(follow).to_have_attribute("aria-pressed", "true")
+    assert count(canvas, LIGHT.robot) > count(canvas, LIGHT.alarm)
+    page.screenshot(path=screenshots / "run-page-follow.png")
+    follow.click()
+    expect(follow).to_have_attribute("aria-pressed", "false")
+    assert complaints == []
+
+
+def test_several_robots_are_named(page: Page, complaints: list[str], tmp_path: Path, screenshots: Path) -> None:
+    robots = (RobotSpec(name="one", radius=0.18), RobotSpec(name="two", radius=0.18))
+    world = load_world(ROOT / "assets" / "worlds" / "moving_obstacle.yaml")
+    commands = {"one": Command(0.3, 0.2), "two": Command(0.2, -0.3)}
+    recording = run(Simulation(world, robots), lambda state, scans: commands, 4.0)
+    page.goto(to_html(recording, tmp_path / "run.html").as_uri())
+    lines = page.locator(".run-said p")
+    expect(lines).to_have_count(2, timeout=PATIENCE)
+    expect(lines.first).to_contain_text("one: moves +0.30 m/s")
+    expect(lines.last).to_contain_text("two: moves +0.20 m/s")
+    page.get_by_role("button", name="Follow").click()
+    page.get_by_role("button", name="Follow: one").click()
+    expect(page.get_by_role("button", name="Follow: two")).to_be_visible()
+    page.screenshot(path=screenshots / "run-page-robots.png")
+    assert complaints == []
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing_wrong_with_the_player(page: Page, opened: Path, scheme: str, screenshots: Path) -> None:
+    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    page.screenshot(path=screenshots / f"run-page-{scheme}.png")
+    found = Axe().run(page, options=RULES)
+    assert found.violations_count == 0, found.generate_report()
 
 
 def test_a_link_with_an_instant_opens_the_run_at_that_instant(page: Page, opened: Path, complaints: list[str]) -> None:
@@ -126,6 +271,9 @@ def test_a_broken_rule_shows_its_instant_and_a_click_jumps_to_it(
     size = path.stat().st_size
     assert size <= MAX_BYTES
     page.goto(path.as_uri())
+    expect(page.locator(".run-player output")).to_have_text(f"{broken:.2f} s", timeout=PATIENCE)  # it opens there
+    assert count(page.locator(".run-player canvas"), LIGHT.alarm)[0] > 20
+    page.keyboard.press("End")
     page.get_by_role("button", name=f"broken at t = {broken:.1f} s").click()
     expect(page.locator(".run-player output")).to_have_text(f"{broken:.2f} s")
     expect(page.locator(".run-hit")).to_contain_text("met")
@@ -147,8 +295,9 @@ def test_lines_of_programs_are_shown_as_text_with_their_instants(
     recording = replace(drive("lab", 3.0), said=((0.3, attack), *flood, (2.0, "the last one")))
     page.goto(to_html(recording, tmp_path / "run.html").as_uri())
     lines, clock = page.locator(".run-log li"), page.locator(".run-player output")
-    expect(lines).to_have_count(1002)
+    expect(lines).to_have_count(1002, timeout=PATIENCE)
     expect(lines.first).to_have_text(f"0.3 s{attack}")
+    page.keyboard.press("Home")
     expect(page.locator(".run-log [aria-current]")).to_have_count(0)
     lines.first.click()
     expect(clock).to_have_text("0.30 s")

@@ -15,9 +15,10 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
-from sim import Recording, Simulation, World, box, start
+from sim import Command, Recording, Simulation, World, box, run, start
 from sim.view import DARK, LIGHT, plot, show
-from sim.view.artists import outlines
+from sim.view.marks import MARKS, OWN
+from sim.view.shapes import outlines
 from sim.view.stage import HEIGHT, WIDTH
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -126,6 +127,28 @@ def test_the_mark_draws_a_line_to_the_nearest_obstacle(recording: Recording) -> 
     gap = next(line for line in ends if line[0] == pytest.approx(recording.poses[row, 0, :2]))
     spec = recording.simulation.robots[0]
     assert np.hypot(*(gap[1] - gap[0])) == pytest.approx(recording.clearances[row, 0] + spec.radius, abs=1e-9)
+
+
+def test_without_a_mark_the_closest_place_is_drawn_with_its_distance(world: World) -> None:
+    safe = run(Simulation(world), lambda state, scans: Command(0.2, 0.0), 4.0)
+    row = int(np.argmin(safe.clearances[:, 0]))
+    ax = plot(safe).figure.axes[0]
+    assert f"{safe.clearances[row, 0]:.2f} m" in texts(ax)
+    (gap,) = [np.column_stack(line.get_data()) for line in ax.lines if line.get_linewidth() == MARKS["closest"].width]
+    assert gap[0] == pytest.approx(safe.poses[row, 0, :2])
+    assert np.hypot(*(gap[1] - gap[0])) == pytest.approx(safe.clearances[row, 0] + safe.simulation.robots[0].radius)
+
+
+def test_robots_are_named_if_there_are_several(world: World, recording: Recording) -> None:
+    assert {"one", "two"} <= texts(plot(recording).figure.axes[0])
+    assert {"one", "two"} <= texts(show(recording.simulation, start(recording.simulation)).figure.axes[0])
+    alone = Simulation(world)
+    assert alone.robots[0].name not in texts(show(alone, start(alone)).figure.axes[0])
+
+
+def test_each_mark_has_colours_that_each_theme_names() -> None:
+    used = {colour for mark in MARKS.values() for colour in (mark.fill, mark.line)} - {"", OWN}
+    assert used <= LIGHT.named.keys() == DARK.named.keys()
 
 
 def test_a_mark_outside_the_recording_takes_its_nearest_instant(recording: Recording) -> None:

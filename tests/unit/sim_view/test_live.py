@@ -7,6 +7,7 @@ import io
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from sim import Command, Recording, Scan, Simulation, World, load_world
+from sim import Command, Recording, RobotSpec, Scan, Simulation, World, box, load_world
 from sim.view import LiveView, Picture, Player, live, plot
 from sim.view.renderer import Renderer
 from sim.view.session import LONGEST_NS, Session
@@ -245,7 +246,27 @@ def test_frames_are_jpeg_or_png_of_one_size(world: World) -> None:
     renderer = Renderer(session.simulation, LIGHT)
     jpeg, png = (Image.open(io.BytesIO(data)) for data in (renderer.jpeg(session.at(0)), renderer.png(session.at(0))))
     assert (jpeg.format, png.format) == ("JPEG", "PNG")
-    assert jpeg.size == png.size == (980, 450)
+    assert jpeg.size == png.size
+    assert jpeg.width == renderer.width
+
+
+@pytest.mark.parametrize("size", [(12.0, 8.0), (8.0, 2.0), (2.0, 8.0), (3.0, 3.0)])
+def test_a_frame_has_no_empty_band_beside_or_below_the_world(size: tuple[float, float]) -> None:
+    session = Session(Simulation(World.from_segments(box(*size))))
+    picture = np.asarray(Renderer(session.simulation, LIGHT).draw(session.at(0))).astype(int)
+    inked = np.abs(picture - 255).max(axis=2) > 4
+    rows, columns = np.flatnonzero(inked.any(axis=1)), np.flatnonzero(inked.any(axis=0))
+    assert picture.shape[0] - rows[-1] < 40
+    assert picture.shape[1] - columns[-1] < 40
+
+
+def test_a_frame_names_robots_if_there_are_several(recording: Recording) -> None:
+    def frame(*names: str) -> Any:
+        session = Session(replace(recording.simulation, robots=tuple(RobotSpec(name=name) for name in names)))
+        return np.asarray(Renderer(session.simulation, LIGHT).draw(session.at(0))).astype(int)
+
+    difference = np.abs(frame("one", "two") - frame("one", "else")).max(axis=2) > 60
+    assert difference.sum() > 20
 
 
 def test_a_moving_obstacle_moves_in_the_picture() -> None:

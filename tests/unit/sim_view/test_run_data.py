@@ -55,6 +55,28 @@ def test_a_run_keeps_its_poses_scans_commands_and_collisions(recording: Recordin
     assert (shown["broken"], unpack(shown["values"])[:, 0].tolist()) == (1.0, [0.5, -1000.0])
 
 
+def test_a_run_opens_at_its_mark_or_else_where_a_rule_broke(recording: Recording) -> None:
+    def moment(**options: Any) -> Any:
+        margins = [Margin("far", (0.0,), (1.0,), None), Margin("near", (0.0, 2.0), (1.0, -1.0), 2.0)]
+        return json.loads(encode(recording, "", margins, **options))["moment"]
+
+    assert (moment()["time"], moment()["words"], moment()["marked"]) == (2.0, "t = 2.0 s", True)
+    assert (moment(mark=1.0, note="here")["time"], moment(mark=1.0, note="here")["words"]) == (1.0, "t = 1.0 s\nhere")
+    assert json.loads(encode(recording, ""))["moment"] is None  # robots that collide have no closest place
+
+
+def test_a_run_without_a_mark_shows_its_closest_place(world: World) -> None:
+    safe = run(Simulation(world), lambda state, scans: Command(0.2, 0.0), 4.0)
+    data = json.loads(encode(safe, ""))
+    gap = float(safe.clearances[:, 0].min())
+    assert data["moment"]["words"] == f"{gap:.2f} m"
+    assert not data["moment"]["marked"]
+    (x, y), (near_x, near_y) = data["moment"]["at"], data["moment"]["near"]
+    assert math.hypot(x - near_x, y - near_y) == pytest.approx(gap + safe.simulation.robots[0].radius, abs=0.002)
+    assert data["title"] == "The lab"
+    assert "never nearer than" in data["summary"]
+
+
 def test_the_data_of_a_minute_are_small_and_of_a_fleet_for_an_hour_are_thinned_out() -> None:
     world = load_world(ROOT / "assets" / "worlds" / "lab.yaml")
     minute = run(Simulation(world), lambda state, scans: Command(0.3, 0.2), 60.0)
