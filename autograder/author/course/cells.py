@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -33,18 +33,23 @@ WHOLE = "`course`"
 
 @dataclass(frozen=True)
 class CopiedFile:
-    """A reference file that a cell copies. Its hidden functions are `hide` in the metadata, its hidden lines `cut`."""
+    """A reference file that a cell copies.
+
+    Its hidden functions are `hide` in the metadata, the parts of them that are hidden `parts`, its hidden lines `cut`.
+    """
 
     source: PurePosixPath
     target: PurePosixPath
     hidden_functions: tuple[str, ...]
     hidden_lines: tuple[tuple[str, str], ...]
+    hidden_parts: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
     def expected_text(self) -> str:
         """Return the source that the cell must have. Raises CourseError if something is missing in the reference."""
         text = strip_licence(read_solution(self.source))
         try:
-            text = mark_functions(text, self.hidden_functions) if self.hidden_functions else text
+            if self.hidden_functions:
+                text = mark_functions(text, self.hidden_functions, self.hidden_parts)
             text = mark_lines(text, self.hidden_lines) if self.hidden_lines else text
         except CourseError as error:
             raise CourseError(f"{self.source}: {error}") from error
@@ -57,8 +62,9 @@ def copied_file(cell: NotebookNode) -> CopiedFile | None:
     if "source" not in course:
         return None
     cut = tuple((before, after) for before, after in course.get("cut", ()))
+    parts = {name: (before, after) for name, (before, after) in course.get("parts", {}).items()}
     return CopiedFile(
-        PurePosixPath(course["source"]), PurePosixPath(course["target"]), tuple(course.get("hide", ())), cut
+        PurePosixPath(course["source"]), PurePosixPath(course["target"]), tuple(course.get("hide", ())), cut, parts
     )
 
 

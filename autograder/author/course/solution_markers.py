@@ -1,13 +1,14 @@
 """Writes nbgrader's solution markers around answers. nbgrader removes the text between them from a release.
 
-In Python, the answers are the bodies of the given functions, located with `ast`. In other files, they are the lines
-between two given lines. A missing function or line is an error, because the answer would otherwise be released.
+In Python, the answers are the bodies of the given functions, located with `ast`, or the part of a body between two
+given lines. In other files, they are the lines between two given lines. A missing function or line is an error, because
+the answer would otherwise be released.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from autograder.author.course.exceptions import CourseError
@@ -19,12 +20,16 @@ BEGIN_SCHEME = "### BEGIN MARK SCHEME"
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
-def mark_functions(text: str, hide: Sequence[str]) -> str:
+def mark_functions(text: str, hide: Sequence[str], parts: Mapping[str, tuple[str, str]] | None = None) -> str:
     """Return Python source with solution markers around the bodies of the functions in `hide`.
 
     Signature, decorators and docstring are outside the markers, because the student needs them. Names are qualified:
-    `main`, `RobotController.control_loop`. Raises CourseError if one of the bodies cannot be marked.
+    `main`, `RobotController.control_loop`. Of a function in `parts`, only the lines of its body between two lines are
+    marked, which are given as in `mark_lines`. Raises CourseError if one of the bodies cannot be marked.
     """
+    parts = parts or {}
+    if unknown := sorted(parts.keys() - set(hide)):
+        raise CourseError(f"`parts` names {', '.join(unknown)}, which `hide` does not name")
     try:
         functions = list(_functions(ast.parse(text)))
     except SyntaxError as error:
@@ -35,7 +40,8 @@ def mark_functions(text: str, hide: Sequence[str]) -> str:
         if len(matches) != 1:
             known = ", ".join(sorted({qualified for qualified, _ in functions})) or "none"
             raise CourseError(f"function {name!r} occurs {len(matches)} times in the source; its functions: {known}")
-        regions.append(_region(name, matches[0]))
+        region = _region(name, matches[0])
+        regions.append(_part(text, region, *parts[name]) if name in parts else region)
     return _marked(text, regions)
 
 
@@ -45,14 +51,8 @@ def mark_lines(text: str, cuts: Sequence[tuple[str, str]]) -> str:
     The lines of a pair are given without indentation. Each must occur once in the text. An empty string means the start
     or the end of the file. Raises CourseError if one of the regions cannot be marked.
     """
-    lines = text.splitlines()
-    regions = []
-    for before, after in cuts:
-        first, end = _line_index(lines, before, -1) + 1, _line_index(lines, after, len(lines))
-        if first >= end:
-            raise CourseError(f"there is nothing to hide between the lines {before!r} and {after!r}")
-        regions.append((first, end, len(lines[first]) - len(lines[first].lstrip())))
-    return _marked(text, regions)
+    whole = (0, len(text.splitlines()), 0)
+    return _marked(text, [_part(text, whole, before, after) for before, after in cuts])
 
 
 def strip_markers(text: str) -> str:
@@ -72,6 +72,17 @@ def _marked(text: str, regions: list[tuple[int, int, int]]) -> str:
         lines[end:end] = [" " * indent + END]
         lines[first:first] = [" " * indent + BEGIN]
     return "\n".join(lines) + "\n"
+
+
+def _part(text: str, region: tuple[int, int, int], before: str, after: str) -> tuple[int, int, int]:
+    """Return the part of a region between two of its lines, for `_marked`."""
+    start, stop, _ = region
+    lines = text.splitlines()[start:stop]
+    first, end = _line_index(lines, before, -1) + 1, _line_index(lines, after, len(lines))
+    written = next((line for line in lines[first:end] if line.strip()), None)
+    if written is None:
+        raise CourseError(f"there is nothing to hide between the lines {before!r} and {after!r}")
+    return start + first, start + end, len(written) - len(written.lstrip())
 
 
 def _line_index(lines: Sequence[str], text: str, default: int) -> int:

@@ -57,6 +57,54 @@ def test_only_the_bodies_of_the_named_functions_are_marked() -> None:
     assert marked.count("# BEGIN SOLUTION") == marked.count("# END SOLUTION") == 2
 
 
+PARTS = '''def drive(node):
+    """Drive."""
+    command = Twist()
+    while node.ok():
+        command.linear.x = 1.0
+
+        command.angular.z = 0.0
+        node.publish(command)
+    return command
+'''
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "hidden"),
+    [
+        ("command = Twist()", "return command", PARTS.splitlines()[3:8]),
+        ("while node.ok():", "node.publish(command)", PARTS.splitlines()[4:7]),
+        ("", "while node.ok():", PARTS.splitlines()[2:3]),
+        ("node.publish(command)", "", PARTS.splitlines()[8:]),
+    ],
+)
+def test_of_a_function_in_parts_only_the_lines_between_two_lines_are_marked(
+    before: str, after: str, hidden: list[str]
+) -> None:
+    marked = mark_functions(PARTS, ["drive"], {"drive": (before, after)})
+    lines = marked.splitlines()
+    begin, end = (next(n for n, line in enumerate(lines) if mark in line) for mark in ("# BEGIN", "# END"))
+    assert lines[begin + 1 : end] == hidden
+    assert lines[begin].index("#") == len(hidden[0]) - len(hidden[0].lstrip())
+    assert strip_markers(marked) == PARTS
+    ast.parse(marked.replace("# BEGIN SOLUTION", CODE_STUB.splitlines()[1]))
+
+
+@pytest.mark.parametrize(
+    ("hide", "parts", "message"),
+    [
+        (["drive"], {"stop": ("", "")}, "`parts` names stop, which `hide` does not name"),
+        (["drive"], {"drive": ("def drive(node):", "")}, "the line 'def drive.* occurs 0 times"),
+        (["drive"], {"drive": ("return command", "")}, "nothing to hide"),
+    ],
+)
+def test_a_part_that_cannot_be_hidden_is_named(
+    hide: list[str], parts: dict[str, tuple[str, str]], message: str
+) -> None:
+    with pytest.raises(CourseError, match=message):
+        mark_functions(PARTS, hide, parts)
+
+
 def test_removing_the_markers_restores_the_source() -> None:
     assert strip_markers(mark_functions(MODULE, ["half", "Robot.__init__", "Robot.move"])) == MODULE
 
