@@ -55,7 +55,7 @@ check:          ## lint, types and the quick unit tests: a minute
 	@$(SIDE_BY_SIDE) $(LINTERS) fast-engine
 	$(PYTEST) tests/unit -m "not slow" $(PYTEST_ARGS)
 
-nightly:        ## the tests that take hours: each chapter's class and tour, launches by the hundred, the whole proof
+nightly:        ## the tests that take hours: each chapter's class and tour, launches by the hundred, the whole verification
 	@$(BOOTSTRAP) --dev --browser
 	$(PYTEST) -m nightly $(PYTEST_ARGS)
 	@$(BIN)/autograder verify -j $(WORKERS) $(VERIFY_ARGS)

@@ -158,6 +158,6 @@ def source_notebook(assignment: str) -> Path:
     return chapter(assignment) / f"{assignment}.ipynb"
 
 
-def judged_later(assignment: str) -> Path:
+def hidden_titles(assignment: str) -> Path:
     """Return the file with the titles of an assignment's hidden checks that students may read."""
-    return _folder("checks") / f"ch{assignment}" / "visible" / "judged_later.json"
+    return _folder("checks") / f"ch{assignment}" / "visible" / "hidden_titles.json"

@@ -1,8 +1,8 @@
 """Builds the site from the pages in `docs`. `make docs` executes the notebooks before, and looks at the site after it.
 
-Some pages are made here: the chapters as students get them, with the outputs of their last run in .build/notebooks, the
-run on the start page, the table of the proof, and what the modules named *_page.py return. SITE_ADDRESS is where the
-site will lie, for the pictures that other sites show with a link to it.
+Some pages are generated here: the chapters as students get them, with the outputs of their last run in
+.build/notebooks, the run on the start page, the table of the verification, and the pages of the modules named
+*_page.py. SITE_ADDRESS is the address of the site, for the pictures that other sites show with a link to it.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from autograder.author.course.forms import Form, in_form
 from autograder.author.course.markdown_table import table
 from autograder.author.course.sync import Chapter, chapters
 from autograder.author.verification.cases import cases
-from autograder.author.verification.claims import CaseKind
 from autograder.author.verification.mutants import mutants
+from autograder.author.verification.verdicts import CaseKind
 from autograder.suite import suites
 from sim import Command, RobotSpec, Scan, Simulation, State, load_world, run
 from sim.export import to_html
@@ -88,7 +88,7 @@ def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
     (SOURCE / "chapters").mkdir()
     for chapter in chapters():
         write_chapter(chapter, SOURCE / "chapters", words)
-    (SOURCE / "made" / "proof.md").write_text(proof_table(), encoding="utf-8")
+    (SOURCE / "made" / "verification.md").write_text(verification_table(), encoding="utf-8")
     write_run(SOURCE / "_extra" / "run.html")
     write_preview(SOURCE / "_extra" / "preview.png")
     shutil.copy(layout.WORLDS / "doorway.yaml", SOURCE / "api")
@@ -164,7 +164,7 @@ def with_number(text: str, assignment: str) -> str:
     return f"{numbered}\n\n{link}. It runs in the [folder of the course](../students.md).\n{rest}"
 
 
-def proof_table() -> str:
+def verification_table() -> str:
     """Return how much proves each suite, as a Markdown table."""
     rows = []
     for name in suites.graded_assignments():

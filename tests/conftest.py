@@ -44,10 +44,10 @@ restore_sigint()  # programs end on Ctrl-C also when the tests are a job in the 
 
 _CHAPTER = re.compile(r"\b[0-9]{2}_[a-z_]+")
 # Files of long tests that share nothing. What takes longest comes first, so that all workers end at the same time.
-_NOTEBOOKS, _PROOF = "tests/notebooks/test_chapters.py", "tests/e2e/test_mutants.py"
+_NOTEBOOKS, _VERIFICATION = "tests/notebooks/test_chapters.py", "tests/e2e/test_mutants.py"
 _JUPYTERLAB = "tests/browser/test_solve_in_jupyterlab.py"
-_APART = (_NOTEBOOKS, _PROOF, "tests/e2e/test_attacks.py", "tests/e2e/test_seeds.py")
-_FIRST = (_NOTEBOOKS, "tests/e2e/test_nbgrader.py", _JUPYTERLAB, _PROOF, "tests/e2e", "tests/browser")
+_APART = (_NOTEBOOKS, _VERIFICATION, "tests/e2e/test_attacks.py", "tests/e2e/test_seeds.py")
+_FIRST = (_NOTEBOOKS, "tests/e2e/test_nbgrader.py", _JUPYTERLAB, _VERIFICATION, "tests/e2e", "tests/browser")
 
 
 class ByFile(LoadScopeScheduling):

@@ -1,6 +1,6 @@
 """Copies a built workspace in place of a build, for sources that differ from it only in files that colcon copies.
 
-The proof grades thousands of versions of the reference, and to build each would take longer than to grade it.
+The verification grades thousands of versions of the reference, and to build each would take longer than to grade it.
 """
 
 from __future__ import annotations

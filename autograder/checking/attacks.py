@@ -1,7 +1,6 @@
 """What the `attacks.py` of a chapter imports: malicious submissions, made of the reference, mutants and payloads."""
 
 from autograder.author.verification.attack_writer import Chapter
-from autograder.author.verification.claims import Attack
 from autograder.author.verification.payloads import (
     BLOCK_REPORT,
     FORGE_PASSES,
@@ -13,6 +12,7 @@ from autograder.author.verification.payloads import (
     STOP_PARENT,
     TELL_ALL,
 )
+from autograder.author.verification.verdicts import Attack
 
 __all__ = [
     "BLOCK_REPORT",

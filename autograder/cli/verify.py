@@ -14,12 +14,12 @@ from autograder import layout
 from autograder.author.course.chapter_rules import read_checks
 from autograder.author.verification import costs
 from autograder.author.verification.cases import cases
-from autograder.author.verification.claims import CaseKind, Verdict, lost_checks
 from autograder.author.verification.generated_mutants import GeneratedMutant, generated_mutants
 from autograder.author.verification.mutation_run import MutantResult, run_mutants
 from autograder.author.verification.record import compare_again, record_failures
 from autograder.author.verification.summary import summary
 from autograder.author.verification.survivors import ChapterMutationResult, faults, mutant_counts, reasons, report
+from autograder.author.verification.verdicts import CaseKind, Verdict, failed_checks
 from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.cli.grade import Progress
@@ -184,7 +184,7 @@ def _marks(verdict: Verdict) -> str:
     """Return the score of a submission, or how many checks it fails if only a part of them was run."""
     if not verdict.only or verdict.result.status is not Status.GRADED:
         return score_text(verdict.result)
-    return f"fails {len(lost_checks(verdict.result) & {*verdict.only})} of {len(verdict.only)} checks"
+    return f"fails {len(failed_checks(verdict.result) & {*verdict.only})} of {len(verdict.only)} checks"
 
 
 def _to_json(verdict: Verdict) -> dict[str, str]:

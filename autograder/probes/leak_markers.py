@@ -1,7 +1,6 @@
-"""Words that are planted in what students must not read, so that the proof can look for them in what students get.
+"""Marks secret files with random words, so that the verification can search students' output for them.
 
-A word is drawn anew for each run. It is made of ten different syllables, which no text holds by chance, however it is
-written.
+Each run draws a new word. It consists of ten different syllables, which no text contains by chance, in any spelling.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
-"""Versions of a package under test, kept so alike from outside that only their behaviour tells them apart.
+"""Versions of a package under test, which can be told apart only by their behaviour.
 
-A test that recognises a version without trying it could claim the right thing of each: by a file's text, its hash or
-byte code, by names, paths or times. So every version, the reference too, goes through `obfuscate`: no comments,
-docstrings, local names and private attributes drawn anew for each run. Each docstring is then a leak marker, and so is
-the last comment of a file: nothing that a student gets may hold one (`proof.leaks`). Versions of different styles,
-right and faulty ones in each, are mixed in an order drawn from the seed. All have the same files, with the same times.
+A test that recognises a version without running it could report the expected result: by the text of a file, its hash or
+byte code, by names, paths or times. So `obfuscate` rewrites every version, including the reference: it removes comments
+and renames docstrings, local names and private attributes in each run. Each docstring is then a leak marker, and so is
+the last comment of a file: nothing that a student gets may contain one (`verification.leaks`). Right and faulty
+versions in different styles are mixed in an order drawn from the seed. All have the same files, with the same times.
 
 What remains: who reads a version's code as a linter would, and finds the fault in it, has found the fault. A test that
 fails at random has to pass on every right version, and more than once.

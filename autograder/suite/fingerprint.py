@@ -4,8 +4,8 @@ A submission that is graded twice with the same seed and the same version gets t
 --resume` relies on this. A version holds the digest of the chapter's files and of what its checks declare to read, and
 `GRADER_VERSION` for everything else.
 
-The digest of all files changes with every comment. It is for those who ask for more than the same mark: the proof of
-the grader, and the machines of a cluster.
+The digest of all files changes with every comment. It is for those who need more than the same mark: the verification
+of the grader, and the machines of a cluster.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ NOT_READ = frozenset(
         *("report", "result/causes.py"),
     }
 )
-# In a chapter's checks, for the proof only.
-PROOF = frozenset(
+# In a chapter's checks, for verification only.
+VERIFICATION = frozenset(
     {"attack_payloads.py", "attacks.py", "mutants.snapshot.yaml", "mutants.yaml", "survivors.yaml", "variants"}
 )
 CHECKS_IMPORT = re.compile(r"\bautograder\.checks\.(ch\d[\w.]+)(?: import (\([\w\s,]+\)|[^\n#]+))?")
@@ -77,7 +77,7 @@ def _digest(paths: Iterable[Path]) -> str:
 def places(assignment: str, reads: Iterable[str] = (), *, parts: Iterable[str] = ("visible", "hidden")) -> list[Path]:
     """Return the files and folders of the course that are an assignment's own in a grading: nothing of them is shared.
 
-    They are its checks without what is for the proof, the modules of other chapters' checks that those import, its
+    They are its checks without what is for verification, the modules of other chapters' checks that those import, its
     notebook, the packages that it gives, and what its suite says that it reads.
 
     Args:
@@ -88,7 +88,7 @@ def places(assignment: str, reads: Iterable[str] = (), *, parts: Iterable[str] =
     course = layout.course()
     checks, chapter = course.root / course.checks, course.root / course.chapters / assignment
     suite = checks / f"ch{assignment}"
-    unread = PROOF | {"__pycache__"} | {"visible", "hidden"}.difference(parts)
+    unread = VERIFICATION | {"__pycache__"} | {"visible", "hidden"}.difference(parts)
     own = [path for path in suite.iterdir() if path.name not in unread] if suite.is_dir() else []
     given = (chapter / f"{assignment}.ipynb", chapter / "ws" / "src")
     named = [*own, *_imported(own, checks), *given, *(course.root / name for name in reads)]

@@ -46,7 +46,7 @@ SIZE = """address => new Promise((resolve, reject) => {
 
 @pytest.fixture(scope="module")
 def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A class's folder: one flawed robot, graded, among others of which the proof has recorded what they fail."""
+    """A class's folder: one graded robot with a flaw, among others whose failures the verification has recorded."""
     folder, answer = (tmp_path_factory.mktemp(name) for name in ("graded", "answer"))
     flaws = {mutant.id: mutant for mutant in mutants(ASSIGNMENT)}
     write_mutant(flaws["brakes_too_late"], suites.hidden(ASSIGNMENT).sources, answer)

@@ -15,9 +15,9 @@ import pytest
 
 from autograder import layout
 from autograder.author.verification.cases import attacks
-from autograder.author.verification.claims import Attack, hidden_lines
 from autograder.author.verification.leaks import STOLEN, hidden_text_in, texts_of
 from autograder.author.verification.payloads import CANARY
+from autograder.author.verification.verdicts import Attack, hidden_lines
 from autograder.checks.ch02_nodes.attacks import CHAPTER
 from autograder.grade import grade_submission
 from autograder.grade.job import Job, Options
@@ -65,7 +65,7 @@ def test_an_attack_gains_no_point_and_learns_nothing(
         pytest.skip("root without control groups: a fork bomb stops the machine")
     monkeypatch.setenv("SECRET_OF_THE_GRADER", CANARY)
     everything = assignment == CHAPTER.assignment and attack.id not in STALLS
-    checks = CHAPTER.checks - (DRIVES - attack.loses) if everything else attack.loses
+    checks = CHAPTER.checks - (DRIVES - attack.fails) if everything else attack.fails
     result = _grade(assignment, attack, checks, tmp_path)
     assert attack.verify(result, checks) == ""
 

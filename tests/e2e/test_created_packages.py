@@ -13,8 +13,8 @@ import pytest
 import yaml
 
 from autograder.author.verification.cases import Case
-from autograder.author.verification.claims import CaseKind, verify_full_marks
 from autograder.author.verification.mutants import write_reference
+from autograder.author.verification.verdicts import CaseKind, verify_full_marks
 from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.run.sandbox import Isolation

@@ -14,7 +14,7 @@ import pytest
 from nbformat.v4 import new_code_cell, new_notebook
 
 from autograder.author.verification.cases import cases
-from autograder.author.verification.claims import Attack, CaseKind, first_sentence
+from autograder.author.verification.verdicts import Attack, CaseKind, first_sentence
 from autograder.checks.ch02_nodes.attacks import CHAPTER, CONTROLLER, PACKAGE, WRITEFILE, attacks, package_writer
 from autograder.grade.store import NOTEBOOK, RESULT
 from autograder.result.model import Result, from_json
@@ -54,7 +54,7 @@ def write_notebook(folder: Path) -> None:
 
 
 def honest(number: int) -> Writers:
-    """Return so many honest submissions: a notebook, a slow node, a build that fails, then those of the proof."""
+    """Return `number` honest submissions: a notebook, a slow node, a failing build, then those of the verification."""
     broken = package_writer(None, files={"setup.py": "print('it begins')\nraise ValueError('no version')\n"})
     own: Writers = [("notebook", write_notebook), ("slow", package_writer("five_hertz")), ("no build", broken)]
     kinds = (CaseKind.REFERENCE, CaseKind.VARIANT, CaseKind.MUTANT)

@@ -1,6 +1,6 @@
-"""The proof's part for each change: `autograder verify --quick`, the rewritten answers, and a part of each population.
+"""The verification for each change: `autograder verify --quick`, rewritten answers, and some generated mutants.
 
-It has every reference, release and variant, and one mutant for each check. `make nightly` has the whole proof.
+It has every reference, release and variant, and one mutant for each check. `make nightly` has the whole verification.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from autograder.author.verification.worker_pool import WorkerPool
 from autograder.run.sandbox import Isolation
 from autograder.suite import suites
 
-PROOF = {
+VERIFICATION = {
     f"{case.assignment}-{case.kind.value}-{case.name}": case
     for name in suites.graded_assignments()
     for case in (*cases(name, quick=True), *rewritten_cases(name))
@@ -42,7 +42,7 @@ def workers() -> Iterator[WorkerPool]:
     "The tests execute the notebooks and grade some of the submissions with a known mark.",
 )
 @pytest.mark.slow
-@pytest.mark.parametrize("case", PROOF.values(), ids=PROOF)
+@pytest.mark.parametrize("case", VERIFICATION.values(), ids=VERIFICATION)
 def test_a_submission_gets_its_expected_result(case: Case, workers: WorkerPool, tmp_path: Path) -> None:
     (verdict,) = verify_cases([case], seed=2026, out=tmp_path, workers=workers)
     log = tmp_path / case.assignment / case.name / "grader.log"

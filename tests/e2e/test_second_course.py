@@ -52,12 +52,12 @@ def test_notebooks_of_a_second_course_keep_the_rules_and_its_tables_name_its_che
     assert (checked.returncode, checked.stdout) == (0, "")
     assert "Write a node that beats | 02_beat" in (course / "chapters" / "README.md").read_text()
     assert "counts from 0" in (course / "checks.md").read_text()
-    assert json.loads((course / "checks/ch02_beat/visible/judged_later.json").read_text()) == ["It counts its beats."]
+    assert json.loads((course / "checks/ch02_beat/visible/hidden_titles.json").read_text()) == ["It counts its beats."]
 
 
 @pytest.mark.nightly
 def test_the_verification_of_a_second_course_succeeds(autograder: Run) -> None:
-    done = autograder("verify", "--quick", "-j", "2", "--json", "proof.json")
+    done = autograder("verify", "--quick", "-j", "2", "--json", "verification.json")
     assert done.returncode == 0, done.stdout + done.stderr
     for name in RIGHT:
         assert f"{name} reference" in done.stdout

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from autograder.author.verification.cases import Case, cases
-from autograder.author.verification.claims import CaseKind
+from autograder.author.verification.verdicts import CaseKind
 from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.run.sandbox import Isolation

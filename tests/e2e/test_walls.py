@@ -152,8 +152,8 @@ def test_a_compromised_worker_can_write_only_to_its_scratch_folder(
     ("code", "logged"),
     [
         pytest.param(FORGE, "a worker graded", id="the result of another student"),
-        pytest.param(LIE, "a message is no JSON", id="no message"),
-        pytest.param(FLOOD, "a message is no JSON", id="a flood"),
+        pytest.param(LIE, "a message is not JSON", id="no message"),
+        pytest.param(FLOOD, "a message is not JSON", id="a flood"),
         pytest.param(CLIMB, "paths that lead out of it", id="a path that leads out"),
     ],
 )

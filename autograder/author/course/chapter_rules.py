@@ -120,7 +120,7 @@ def require_checks(assignments: Iterable[str]) -> None:
 
 def _outdated_titles(assignment: str) -> Iterator[Finding]:
     """Yield that the list of hidden checks is out of date, which students read when all visible checks pass."""
-    path = layout.judged_later(assignment)
+    path = layout.hidden_titles(assignment)
     if not path.is_file() or path.read_text(encoding="utf-8") != titles_of(assignment):
         yield Finding(shown(path), None, "is not the list of the hidden checks: run `autograder course tables`", 1)
 

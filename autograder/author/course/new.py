@@ -114,5 +114,5 @@ def _complete(chapter: Chapter) -> None:
     first = notebook.cells[0]
     first.source = first.source.replace("NEW_MINUTES", time_sentence(effort(notebook)))
     chapter.write(notebook)
-    later = layout.judged_later(chapter.assignment)
+    later = layout.hidden_titles(chapter.assignment)
     later.write_text(titles()[later], encoding="utf-8")

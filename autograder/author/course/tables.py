@@ -108,7 +108,7 @@ def _where(locations: Sequence[Location]) -> str:
 def titles() -> dict[Path, str]:
     """Return the text of each assignment's file with titles for students, by path."""
     return {
-        layout.judged_later(name): titles_of(name)
+        layout.hidden_titles(name): titles_of(name)
         for name in sorted({*suites.checkable_assignments()} & {*suites.graded_assignments()})
     }
 

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from autograder.author.verification.claims import Attack
 from autograder.author.verification.mutants import Mutant, mutants, write_mutant, write_reference
+from autograder.author.verification.verdicts import Attack
 from autograder.suite import suites
 
 MIN_ID_LENGTH = 14  # characters; a shorter check id may coincide with another name

@@ -12,10 +12,10 @@ from pathlib import Path
 from autograder import layout
 from autograder.author.course.release import write_released
 from autograder.author.course.sync import Chapter
-from autograder.author.verification.claims import Attack, CaseKind, verify_full_marks, verify_mutant, verify_zero
 from autograder.author.verification.equivalent_rewrites import rewrites
 from autograder.author.verification.generated_mutants import written_by_students
 from autograder.author.verification.mutants import Mutant, mutants, write_mutant, write_reference
+from autograder.author.verification.verdicts import Attack, CaseKind, verify_full_marks, verify_mutant, verify_zero
 from autograder.grade.job import Options
 from autograder.result.model import Result
 from autograder.suite import suites

@@ -13,8 +13,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from autograder.author.course.markdown_table import table
-from autograder.author.verification.claims import CaseKind, Verdict
 from autograder.author.verification.mutants import Mutant, mutants
+from autograder.author.verification.verdicts import CaseKind, Verdict
 from autograder.diagnosis import Kind
 from autograder.result.model import CheckResult, Result, Status
 from autograder.suite import Outcome

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from autograder.author.verification import snapshot
-from autograder.author.verification.claims import CaseKind, Verdict, lost_checks, verify_mutant
 from autograder.author.verification.mutants import mutants
 from autograder.author.verification.snapshot import Record
+from autograder.author.verification.verdicts import CaseKind, Verdict, failed_checks, verify_mutant
 from autograder.result.model import Status
 
 
@@ -20,7 +20,7 @@ def record_failures(assignment: str, verdicts: Iterable[Verdict]) -> str:
     """
     written_for = {mutant.id: mutant.check for mutant in mutants(assignment)}
     observed = {
-        verdict.name: Record(lost_checks(verdict.result), verdict.result.diagnosis.kind)
+        verdict.name: Record(failed_checks(verdict.result), verdict.result.diagnosis.kind)
         for verdict in verdicts
         if verdict.assignment == assignment and _is_recordable(verdict)
     }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from autograder.author.verification.claims import CaseKind, Verdict, lost_checks
+from autograder.author.verification.verdicts import CaseKind, Verdict, failed_checks
 from autograder.result.model import Status
 
 
@@ -16,7 +16,7 @@ def summary(verdicts: Sequence[Verdict], seconds: float) -> dict[str, object]:
     snapshot.
     """
     mutants = _of(verdicts, CaseKind.MUTANT)
-    missed = [each for each in mutants if not (each.result.status is Status.GRADED and lost_checks(each.result))]
+    missed = [each for each in mutants if not (each.result.status is Status.GRADED and failed_checks(each.result))]
     attacks = _of(verdicts, CaseKind.ATTACK)
     return {
         "reference": min(_percents(verdicts, CaseKind.REFERENCE), default=None),

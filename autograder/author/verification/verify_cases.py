@@ -10,8 +10,8 @@ from pathlib import Path
 from autograder import layout
 from autograder.author.verification.cases import Case
 from autograder.author.verification.check_errors import errors_in_checks
-from autograder.author.verification.claims import CaseKind, Verdict, hidden_lines
 from autograder.author.verification.leaks import hidden_text_in, texts_of
+from autograder.author.verification.verdicts import CaseKind, Verdict, hidden_lines
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.grade.batch import stored
 from autograder.grade.job import Job

@@ -32,7 +32,7 @@ FILES = {
     "solutions/pkg/package.xml": "<package><name>pkg</name></package>\n",
     "checks/ch01_small/hidden/__init__.py": SUITE,
     "checks/ch01_small/visible/__init__.py": SUITE,
-    "checks/ch01_small/visible/judged_later.json": '[\n "It has its name."\n]\n',
+    "checks/ch01_small/visible/hidden_titles.json": '[\n "It has its name."\n]\n',
     "checks/ch01_small/mutants.yaml": "file: pkg/package.xml\nmutants:\n"
     "- {id: other, title: other name, edits: [{find: <name>pkg, replace: <name>other}], check: named}\n",
 }
@@ -104,7 +104,7 @@ def test_a_chapter_that_does_not_exist_is_named_with_those_that_do(course: Path)
 def test_the_lists_of_hidden_checks_that_students_get_are_up_to_date() -> None:
     stale = [path for path, text in titles().items() if path.read_text(encoding="utf-8") != text]
     assert stale == [], "run `autograder course tables`"
-    assert "The node is called robot_controller." in json.loads(layout.judged_later("02_nodes").read_text())
+    assert "The node is called robot_controller." in json.loads(layout.hidden_titles("02_nodes").read_text())
 
 
 @pytest.mark.promise("After `check(...)` has passed, it lists the hidden checks")

@@ -119,7 +119,7 @@ SLIPS = [
     (READINGS, "shuffle(readings)", "shuffle(readings", "30", "is not Python: '(' was never closed"),
     (READINGS, "import math", "import maths", "3", "cannot be imported: ModuleNotFoundError: No module named 'maths'"),
     (
-        f"{CHECKS}/visible/judged_later.json",
+        f"{CHECKS}/visible/hidden_titles.json",
         "Of each scan",
         "Of a scan",
         "1",

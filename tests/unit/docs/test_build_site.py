@@ -1,4 +1,4 @@
-"""The generated parts of the site: outputs of the chapters, links to the glossary, and the table of the proof."""
+"""The generated parts of the site: outputs of the chapters, links to the glossary, the table of the verification."""
 
 from __future__ import annotations
 
@@ -89,5 +89,5 @@ def test_the_robot_on_the_start_page_drives_into_nothing() -> None:
 
 
 def test_the_table_of_the_verification_has_each_graded_chapter() -> None:
-    lines = MADE["proof_table"]().splitlines()
+    lines = MADE["verification_table"]().splitlines()
     assert sum(line.startswith("| 0") for line in lines) == 9

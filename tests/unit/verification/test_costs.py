@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 from autograder.author.verification import costs
-from autograder.author.verification.claims import CaseKind, Verdict
 from autograder.author.verification.costs import Cost
 from autograder.author.verification.mutants import Mutant
+from autograder.author.verification.verdicts import CaseKind, Verdict
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.result.model import CheckResult
 from autograder.suite import Check, Outcome

@@ -9,8 +9,8 @@ import pytest
 from PIL import Image, PngImagePlugin
 
 from autograder import layout
-from autograder.author.verification.claims import hidden_lines
 from autograder.author.verification.leaks import ENCODINGS, hidden_text_in, texts_of
+from autograder.author.verification.verdicts import hidden_lines
 from autograder.probes.leak_markers import draw_marker
 from autograder.suite import suites
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from autograder.author.verification import snapshot
-from autograder.author.verification.claims import CaseKind, Verdict
 from autograder.author.verification.mutants import mutants
 from autograder.author.verification.record import compare_again, record_failures
 from autograder.author.verification.snapshot import Record
+from autograder.author.verification.verdicts import CaseKind, Verdict
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.result.model import CheckResult, Status
 from autograder.suite import Outcome, suites

@@ -8,9 +8,9 @@ from dataclasses import replace
 import pytest
 
 from autograder.author.verification.cases import cases
-from autograder.author.verification.claims import CaseKind, Verdict, verify_full_marks, verify_mutant, verify_zero
 from autograder.author.verification.mutants import mutants
 from autograder.author.verification.summary import summary
+from autograder.author.verification.verdicts import CaseKind, Verdict, verify_full_marks, verify_mutant, verify_zero
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.result.model import CheckResult, Result
 from autograder.suite import Outcome, suites

@@ -12,7 +12,7 @@ from typing import Any, cast
 import pytest
 
 from autograder.author.verification.cases import WITHOUT_PICTURES, Case
-from autograder.author.verification.claims import CaseKind, verify_full_marks
+from autograder.author.verification.verdicts import CaseKind, verify_full_marks
 from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.diagnosis import Diagnosis, Kind

@@ -63,7 +63,7 @@ def verify_full_marks(result: Result) -> str:
     """Describe why a correct answer does not have every point."""
     if result.diagnosis.kind is not Kind.OK:
         return result.diagnosis.sentence
-    missing = lost_checks(result)
+    missing = failed_checks(result)
     return f"fails {', '.join(sorted(missing))}" if missing else ""
 
 
@@ -86,7 +86,7 @@ def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozens
         only: ids of the checks that were run; empty means every check. The diagnosis is compared only if every check
             was run, because any of them may have caused it.
     """
-    failed, recorded, run = lost_checks(result), mutant.fails, only or {check.id for check in result.checks}
+    failed, recorded, run = failed_checks(result), mutant.fails, only or {check.id for check in result.checks}
     wrong = []
     if mutant.check in run - failed:
         wrong.append(f"passes {mutant.check}, for which it was written")
@@ -102,7 +102,7 @@ def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozens
     return "; ".join(wrong)
 
 
-def lost_checks(result: Result) -> frozenset[str]:
+def failed_checks(result: Result) -> frozenset[str]:
     """Return the ids of the checks that did not pass."""
     return frozenset(check.id for check in result.checks if check.outcome is not Outcome.PASSED)
 
@@ -111,7 +111,7 @@ def lost_checks(result: Result) -> frozenset[str]:
 class Attack:
     """A malicious submission: a description of the attacks that it combines, and a function that writes it to a folder.
 
-    `loses` names the checks that it must fail, with or without the payload. If `exactly` is set, the payload does not
+    `fails` names the checks that it must fail, with or without the payload. If `exactly` is set, the payload does not
     interfere with anything, and it must fail no other checks. The result must have one of the diagnoses; none means
     any. If every check was run, the first sentence that a student reads must contain the text `says`.
     """
@@ -119,7 +119,7 @@ class Attack:
     id: str
     description: str
     write: Callable[[Path], None]
-    loses: frozenset[str]
+    fails: frozenset[str]
     diagnosis: frozenset[Kind] = frozenset()
     exactly: bool = False
     says: str = ""
@@ -133,10 +133,10 @@ class Attack:
         """
         suite = suites.hidden(result.assignment)
         run = only or frozenset(check.id for check in suite.checks)
-        missing, loses = lost_checks(result) & run, self.loses & run
-        wrong = [f"gains {', '.join(sorted(loses - missing))}"] if loses - missing else []
-        if self.exactly and missing != loses:
-            wrong.append(f"disturbs {', '.join(sorted(missing - loses))}")
+        failed, expected = failed_checks(result) & run, self.fails & run
+        wrong = [f"gains {', '.join(sorted(expected - failed))}"] if expected - failed else []
+        if self.exactly and failed != expected:
+            wrong.append(f"disturbs {', '.join(sorted(failed - expected))}")
         if result.max_score != suite.max_score:
             wrong.append(f"changes the maximum to {result.max_score:g}")
         if self.diagnosis and result.diagnosis.kind not in self.diagnosis:
