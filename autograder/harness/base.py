@@ -27,6 +27,7 @@ from autograder.run.workspace import Workspace
 from autograder.submission.reading import hold
 
 MATCH_SECONDS = 30.0  # real time for all endpoints to be matched
+NAME_SECONDS = 5.0  # real time for the names of their nodes
 
 _NUMBERS = itertools.count()
 _SECONDS = attrgetter("seconds")
@@ -262,6 +263,8 @@ class Harness(ExitStack, ABC):
         for topic in sorted(published):
             self._grader_node.make_subscription(topic, self._subscribes[topic], self._receiver(topic))
         self._await(self._connected)
+        # An endpoint is seen before the node that it belongs to. One that rclpy did not make belongs to none.
+        self.wait_for(lambda: self._grader_node.knows_nodes_of(subscribed | published), NAME_SECONDS)
 
     def _receiver(self, topic: str) -> OnMessage:
         received = self._received[topic]

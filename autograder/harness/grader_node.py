@@ -7,7 +7,7 @@ in lockstep knows when it has taken all that was sent to it.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,6 +23,7 @@ from autograder.run.lockstep.lockstep_host import channels
 
 DEPTH = 1000
 NAME = "grader"
+UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"  # rmw_dds_common's, for an endpoint before its node is known
 
 OnMessage = Callable[[Any, int], None]
 """Called with a message and the time at which it arrived, in ns since the epoch."""
@@ -179,6 +180,11 @@ class GraderNode:
     def publishers_of(self, topic: str) -> list[Any]:
         """Return the other nodes' publishers of a topic, as rclpy's graph functions describe them."""
         return [peer for peer in self.node.get_publishers_info_by_topic(topic) if peer.node_name != NAME]
+
+    def knows_nodes_of(self, topics: Iterable[str]) -> bool:
+        """Return whether the node of each other endpoint of these topics is known."""
+        peers = (peer for topic in topics for peer in (*self.publishers_of(topic), *self.subscriptions_of(topic)))
+        return all(peer.node_name != UNKNOWN_NODE for peer in peers)
 
     def other_nodes(self) -> list[str]:
         """Return the fully qualified names of the other nodes that are seen now."""

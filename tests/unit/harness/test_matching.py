@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 
 import pytest
+import rclpy
+from std_msgs.msg import String
 
 from autograder.harness.grader_node import GraderNode
 from autograder.harness.matching import connected
@@ -48,3 +51,22 @@ def test_programs_are_connected_when_each_has_discovered_all_its_endpoints(
     programs: list[Description], matched: bool, grader_node: GraderNode
 ) -> None:
     assert connected(programs, grader_node) is matched
+
+
+def test_the_topics_of_a_node_are_listed_once_the_nodes_of_all_endpoints_are_known(
+    grader_node: GraderNode, ros_domain: int
+) -> None:
+    context, nodes = rclpy.Context(), []
+    rclpy.init(context=context, domain_id=ros_domain)
+    try:
+        for number in range(20):
+            topic, name = f"/topic_{number}", f"node_{number}"
+            nodes.append(rclpy.create_node(name, context=context))
+            nodes[-1].create_publisher(String, topic, 1)
+            deadline = time.monotonic() + 30
+            while not (grader_node.publishers_of(topic) and grader_node.knows_nodes_of([topic])):
+                assert time.monotonic() < deadline
+                grader_node.spin(0.001)
+            assert topic in dict(grader_node.node.get_publisher_names_and_types_by_node(name, "/"))
+    finally:
+        context.shutdown()
