@@ -89,6 +89,4 @@ def ros() -> None:
 
 def grade(assignment: str, group: str) -> NotGraded:
     """Say that the hidden checks of `group` run after submission. Nothing is graded in the kernel."""
-    return NotGraded(
-        f"{assignment}: the hidden checks of “{group}” run after you have submitted, outside this notebook."
-    )
+    return NotGraded(f"{assignment}: the hidden checks of “{group}” run after you have submitted.")

@@ -50,6 +50,13 @@ def test_a_release_holds_no_line_of_its_answers(chapter: Chapter) -> None:
 
 
 @each_chapter
+def test_a_release_folds_the_code_of_its_grade_cells_and_of_no_other(chapter: Chapter) -> None:
+    cells = in_form(chapter.read(), Form.RELEASED).cells
+    folded = [cell.id for cell in cells if cell.metadata.get("jupyter", {}).get("source_hidden")]
+    assert folded == [cell.id for cell in cells if cell.source.startswith("grade(")]
+
+
+@each_chapter
 def test_no_text_mentions_the_printed_chapter_or_a_textbook_that_00_does_not_introduce(chapter: Chapter) -> None:
     texts = [cell.source for cell in chapter.read().cells]
     assert [text for text in texts if re.search(r"\b[Tt]he (printed )?chapter\b", text)] == []
