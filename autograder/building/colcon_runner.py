@@ -17,7 +17,7 @@ def main() -> int | str | None:
     """Run colcon."""
     sys.path[0] = str(Path(sys.executable).parent)  # where colcon's own script is, and no module of this folder
     sys.argv[0] = "colcon"
-    if fork_children := globals().get("fork_children"):  # given by `prefork`
+    if fork_children := globals().get("fork_children"):  # set by the fork server
         fork_children()
     status: int | str | None = importlib.import_module("colcon_core.command").main()
     return status

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from autograder.author.course.release import write_bundle
+from autograder.author.course.release import write_release
 from autograder.cli.options import json_option
 from autograder.cli.terminal import echo
 from autograder.result.model import write_json
@@ -29,7 +29,7 @@ def release(names: tuple[str, ...], out: Path, newest: str, json_file: Path | No
     autograder. It contains no hidden checks and no solutions. `autograder update` updates a student's folder to a later
     release.
     """
-    written = write_bundle(out, names, newest)
+    written = write_release(out, names, newest)
     echo(f"{out}: {', '.join(written)}")
     if json_file is not None:
         write_json(json_file, {"out": str(out), "assignments": written})

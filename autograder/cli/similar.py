@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from autograder import layout
-from autograder.author.course.release import write_bundle
+from autograder.author.course.release import write_release
 from autograder.cli.options import json_option
 from autograder.cli.submissions import find_submissions, roster_option
 from autograder.cli.terminal import echo, on_line
@@ -61,7 +61,7 @@ def similar(
         echo(f"Compared in part: {on_line(student)}: {what}", err=True)
 
     with tempfile.TemporaryDirectory() as name:
-        write_bundle(Path(name) / "given", (assignment,))
+        write_release(Path(name) / "given", (assignment,))
         given = code(read_submission(Path(name) / "given" / layout.course().chapters / assignment, assignment))
     with find_submissions(paths, assignment, roster, verb="compared") as (submissions, all_fit):
         codes, all_read = _codes(submissions, assignment)

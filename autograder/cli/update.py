@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from autograder import layout
-from autograder.author.bundle import read_manifest, update_bundle
+from autograder.author.student_release import read_manifest, update_release
 from autograder.cli.terminal import echo
 from autograder.exceptions import UsageError
 
@@ -23,7 +23,7 @@ def update(release: Path | None) -> None:
     course = read_manifest(layout.ROOT).course
     if release is None and not course:
         raise UsageError("this release does not know where to find a newer one: unpack one and give its folder")
-    done = update_bundle(layout.ROOT, release or Path(course))
+    done = update_release(layout.ROOT, release or Path(course))
     for name in done.kept:
         echo(f"Kept unchanged: {name}")
     for name, copy in done.set_aside.items():

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from autograder import layout
-from autograder.author.bundle import MANIFEST
+from autograder.author.student_release import MANIFEST
 from autograder.doctor.finding import Finding, Status
 from autograder.doctor.system import System
 from autograder.ros.distribution import DISTRIBUTION

@@ -35,7 +35,7 @@ def main() -> None:
         if child:
             report_exit(child, int(descriptor))
         os.close(int(descriptor))
-    if fork_children := globals().get("fork_children"):  # given by `prefork`
+    if fork_children := globals().get("fork_children"):  # set by the fork server
         fork_children()
     del sys.path[0]  # this file's folder is none of the launch's business
     runpy.run_module("autograder.ros.ros2", run_name="__main__", alter_sys=True)

@@ -44,6 +44,6 @@ def main() -> None:
 
 if __name__ == "__main__":
     sys.path.pop(0)  # this file's folder is none of the tests' business
-    if fork_children := globals().get("fork_children"):  # given by `prefork`
+    if fork_children := globals().get("fork_children"):  # set by the fork server
         fork_children()
     main()

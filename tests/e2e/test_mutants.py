@@ -24,9 +24,9 @@ VERIFICATION = {
     for name in suites.graded_assignments()
     for case in (*cases(name, quick=True), *rewritten_cases(name))
 }
-# Chapters of which the whole population was graded, and every survivor has a reason.
+# Chapters whose generated mutants were all graded, with a reason for every survivor.
 SURVEYED = [name for name in suites.graded_assignments() if (suites.hidden(name).folder / "survivors.yaml").is_file()]
-PART = 4  # mutants of a chapter's population
+PART = 4  # generated mutants of a chapter
 
 
 @pytest.fixture(scope="session")

@@ -150,7 +150,7 @@ def test_the_package_and_the_node_of_a_new_chapter_have_the_given_names(course: 
 def test_every_command_of_the_tutorial_prints_what_the_page_says(tmp_path: Path) -> None:
     compare(DOCS / "first_check.md", tmp_path, 9)
     assert "The node is called nearest." in (tmp_path / "graded" / "ada" / "feedback.html").read_text()
-    assert not [*(tmp_path / "bundle").rglob("hidden")]
+    assert not [*(tmp_path / "students").rglob("hidden")]
 
 
 @pytest.mark.promise(

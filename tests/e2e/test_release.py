@@ -1,4 +1,4 @@
-"""The students' bundle works by itself, and holds no hidden check and no solution."""
+"""The students' release works by itself, and holds no hidden check and no solution."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from autograder.cli import group
 
 
 @pytest.fixture(scope="module")
-def bundle(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def release(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("release") / "course"
     assert run("--out", str(out)).exit_code == 0
     return out
@@ -34,33 +34,33 @@ def text_of(folder: Path) -> str:
 
 
 @pytest.mark.promise("autograder release --out course", "The folder contains the notebooks without their solutions")
-def test_the_release_contains_every_chapter_as_nbgrader_releases_it(bundle: Path) -> None:
+def test_the_release_contains_every_chapter_as_nbgrader_releases_it(release: Path) -> None:
     for chapter in chapters():
         released = in_form(chapter.read(), Form.RELEASED)
-        text = (bundle / "chapters" / chapter.assignment / chapter.notebook_path.name).read_text()
+        text = (release / "chapters" / chapter.assignment / chapter.notebook_path.name).read_text()
         assert all(cell.id in text for cell in released.cells)
         assert "BEGIN SOLUTION" not in text
         assert "BEGIN MARK SCHEME" not in text
 
 
-def test_the_release_contains_no_caches_or_build_folders(bundle: Path) -> None:
-    left = [path for name in ("__pycache__", ".mypy_cache", ".pytest_cache") for path in bundle.rglob(name)]
+def test_the_release_contains_no_caches_or_build_folders(release: Path) -> None:
+    left = [path for name in ("__pycache__", ".mypy_cache", ".pytest_cache") for path in release.rglob(name)]
     assert left == []
     names = ["src", "build", "__pycache__", ".mypy_cache", ".ruff_cache", ".devcontainer"]
-    assert layout.NOT_COPIED(str(bundle), names) == {"build", "__pycache__", ".mypy_cache", ".ruff_cache"}
+    assert layout.NOT_COPIED(str(release), names) == {"build", "__pycache__", ".mypy_cache", ".ruff_cache"}
 
 
 @pytest.mark.promise("Students start it with `make lab`.")
-def test_each_make_target_that_the_release_names_is_in_its_makefile(bundle: Path) -> None:
-    texts = [path for path in bundle.rglob("*") if path.suffix in (".py", ".md", ".ipynb")]
+def test_each_make_target_that_the_release_names_is_in_its_makefile(release: Path) -> None:
+    texts = [path for path in release.rglob("*") if path.suffix in (".py", ".md", ".ipynb")]
     named = {name for path in texts for name in re.findall(r"`make ([a-z-]+)`", path.read_text())}
-    targets = set(re.findall(r"^([a-z-]+):", (bundle / "Makefile").read_text(), re.MULTILINE))
+    targets = set(re.findall(r"^([a-z-]+):", (release / "Makefile").read_text(), re.MULTILINE))
     assert {"setup", "real-launch"} <= named <= targets
 
 
 @pytest.mark.promise("It contains no hidden checks and no solutions.", "autograder release --out course")
-def test_the_release_contains_no_line_of_a_hidden_suite(bundle: Path) -> None:
-    shown = text_of(bundle)
+def test_the_release_contains_no_line_of_a_hidden_suite(release: Path) -> None:
+    shown = text_of(release)
     hidden = {
         line.strip()
         for path in layout.CHECKS.glob("ch*/**/*")
@@ -72,23 +72,23 @@ def test_the_release_contains_no_line_of_a_hidden_suite(bundle: Path) -> None:
     public += text_of(layout.SOLUTIONS)  # given tests are in the reference, and in a variant made from the notebook
     assert len(hidden) > 300
     assert [line for line in sorted(hidden) if line in shown and line not in public] == []
-    assert not (bundle / "solutions").exists()
-    kept = {path.name for path in (bundle / "autograder" / "checks").glob("ch*/*")}
+    assert not (release / "solutions").exists()
+    kept = {path.name for path in (release / "autograder" / "checks").glob("ch*/*")}
     assert kept == {"__init__.py", "conftest.py", "support", "visible"}
 
 
 @pytest.mark.promise("autograder check 02_nodes` does the same", "`autograder check 02_nodes` runs the same checks")
-def test_check_of_the_release_runs_without_the_instructors_modules(bundle: Path) -> None:
-    """A copy of Python's environment is not needed for it: the code of the bundle comes first on the path."""
+def test_check_of_the_release_runs_without_the_instructors_modules(release: Path) -> None:
+    """A copy of Python's environment is not needed for it: the code of the release comes first on the path."""
     check = [sys.executable, "-m", "autograder", "check", "00_welcome"]
-    environment = {**os.environ, "PYTHONPATH": str(bundle)}
+    environment = {**os.environ, "PYTHONPATH": str(release)}
     done = subprocess.run(
-        check, cwd=bundle / "chapters" / "00_welcome", env=environment, text=True, capture_output=True
+        check, cwd=release / "chapters" / "00_welcome", env=environment, text=True, capture_output=True
     )
     assert done.returncode == 1, done.stderr
     assert "square" in done.stdout or "hint 1" in done.stdout
     listed = subprocess.run(
-        [sys.executable, "-m", "autograder", "--help"], cwd=bundle, env=environment, text=True, capture_output=True
+        [sys.executable, "-m", "autograder", "--help"], cwd=release, env=environment, text=True, capture_output=True
     )
     assert re.findall(r"^  ([a-z]+)  ", listed.stdout, re.MULTILINE) == ["check", "doctor", "ros", "update"]
 
@@ -101,8 +101,8 @@ def test_check_of_the_release_runs_without_the_instructors_modules(bundle: Path)
     "Students unpack it and type `autograder update FOLDER`.",
     "A later release, of one chapter or all, updates the folders that students already have:",
 )
-def test_a_release_of_one_chapter_updates_a_release_of_all_chapters(bundle: Path, tmp_path: Path) -> None:
-    mine = shutil.copytree(bundle, tmp_path / "mine")
+def test_a_release_of_one_chapter_updates_a_release_of_all_chapters(release: Path, tmp_path: Path) -> None:
+    mine = shutil.copytree(release, tmp_path / "mine")
     later = tmp_path / "later"
     assert run("02_nodes", "--out", str(later), "--newest", str(later)).exit_code == 0
     answer = mine / "chapters" / "02_nodes" / "ws" / "src" / "mine.py"
@@ -117,12 +117,12 @@ def test_a_release_of_one_chapter_updates_a_release_of_all_chapters(bundle: Path
     assert "You had changed sim/world.py: your version is now sim/world.py.yours." in done.stdout
     assert answer.read_text() == "a student's"
     assert gone.read_bytes() == (later / "sim" / "world.py").read_bytes()
-    assert {path.name for path in (mine / "chapters").iterdir()} == {p.name for p in (bundle / "chapters").iterdir()}
+    assert {path.name for path in (mine / "chapters").iterdir()} == {p.name for p in (release / "chapters").iterdir()}
 
 
-def test_a_students_pytest_does_not_use_the_options_of_the_courses_tests(bundle: Path) -> None:
+def test_a_students_pytest_does_not_use_the_options_of_the_courses_tests(release: Path) -> None:
     """The students' lock has no pytest-timeout, and a warning in a student's test is no error."""
-    folder = bundle / "chapters" / "06_testing" / "ws"
+    folder = release / "chapters" / "06_testing" / "ws"
     test = folder / "test_warns.py"
     test.write_text("import warnings\n\n\ndef test_warns():\n    warnings.warn('an old way', DeprecationWarning)\n")
     pytest_here = [sys.executable, "-m", "pytest", "-p", "no:timeout", "-p", "no:cacheprovider", test.name]

@@ -117,18 +117,18 @@ def test_the_release_of_a_second_course_holds_no_answer_and_no_hidden_check_of_a
     course: Path, autograder: Run, tmp_path: Path
 ) -> None:
     assert autograder("release", "--out", "bundle").returncode == 0
-    bundle = tmp_path / "bundle"
-    kept = {path.name for path in (bundle / "checks").glob("ch*/*")}
+    release = tmp_path / "bundle"
+    kept = {path.name for path in (release / "checks").glob("ch*/*")}
     assert kept == {"__init__.py", "support", "visible"}
-    assert list((bundle / "autograder" / "checks").glob("ch*")) == []
-    texts = "\n".join(path.read_text(errors="replace") for path in bundle.rglob("*") if path.is_file())
+    assert list((release / "autograder" / "checks").glob("ch*")) == []
+    texts = "\n".join(path.read_text(errors="replace") for path in release.rglob("*") if path.is_file())
     for secret in ("Elektro", "{name.strip()}", "UInt32(data=self.count)"):
         assert secret not in texts
         assert any(secret in path.read_text() for path in course.rglob("*.py"))
-    assert "# A second course" in (bundle / "README.md").read_text()
+    assert "# A second course" in (release / "README.md").read_text()
 
-    here = bundle / "chapters" / "02_beat"
-    checked = run("autograder", "check", "02_beat", cwd=here, PYTHONPATH=str(bundle))
+    here = release / "chapters" / "02_beat"
+    checked = run("autograder", "check", "02_beat", cwd=here, PYTHONPATH=str(release))
     assert "Its first beat is 1." in checked.stdout, checked.stderr
     assert checked.returncode == 1
 

@@ -20,7 +20,7 @@ from nbformat import NotebookNode
 from autograder.author.course.cells import is_solution, metadata
 from autograder.author.course.execute import execute
 from autograder.author.course.forms import Form, in_form
-from autograder.author.course.release import write_bundle
+from autograder.author.course.release import write_release
 from autograder.author.course.sync import Chapter, chapters
 from autograder.author.verification.mutants import mutants
 from autograder.ros.domains import Domain
@@ -121,7 +121,7 @@ def student(chapter: Chapter) -> Iterator[Student]:
     """Somebody with the bundle of a chapter; the environment is this one, with the autograder in it."""
     with tempfile.TemporaryDirectory() as place:  # short: it holds the kernel's sockets
         bundle = Path(place) / "course"
-        write_bundle(bundle, (chapter.assignment,))
+        write_release(bundle, (chapter.assignment,))
         yield Student(bundle, chapter)
 
 

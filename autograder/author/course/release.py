@@ -15,9 +15,9 @@ from pathlib import Path
 import nbformat
 
 from autograder import layout
-from autograder.author.bundle import write_manifest
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import Chapter, chapters
+from autograder.author.student_release import write_manifest
 from autograder.exceptions import UsageError
 
 # Files and folders that are copied in addition to the course.
@@ -32,7 +32,7 @@ STUDENT_CLI = frozenset({"__init__.py", "options.py", "terminal.py", "check.py",
 WITHHELD = ("author/course", "author/verification", "checking/attacks.py", "grade/cluster", "lms", "report")
 
 
-def write_bundle(out: Path, names: tuple[str, ...] = (), newest: str = "") -> list[str]:
+def write_release(out: Path, names: tuple[str, ...] = (), newest: str = "") -> list[str]:
     """Write a student release of these chapters (all by default) to the new folder `out`, and return their names.
 
     Its version is the current time. `newest` is the folder where students' machines find the newest release. Raises
@@ -43,20 +43,20 @@ def write_bundle(out: Path, names: tuple[str, ...] = (), newest: str = "") -> li
     chosen = chapters(names)
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{out.name}-", dir=out.parent) as scratch:
-        bundle = Path(scratch) / out.name
-        copy_tool(COPIED, bundle)
-        _withhold(bundle)
-        copy_course((layout.COURSE_FILE, layout.course().worlds, *layout.course().released), bundle)
+        release = Path(scratch) / out.name
+        copy_tool(COPIED, release)
+        _withhold(release)
+        copy_course((layout.COURSE_FILE, layout.course().worlds, *layout.course().released), release)
         checks = [path for path in layout.CHECKS.glob("ch*/*") if path.name in STUDENT_CHECKS]
-        copy_course((str(path.relative_to(layout.course().root)) for path in checks), bundle)
+        copy_course((str(path.relative_to(layout.course().root)) for path in checks), release)
         for chapter in chosen:
-            write_released(chapter, bundle / layout.course().chapters / chapter.assignment)
-        shutil.copytree(STUDENT_FILES, bundle, dirs_exist_ok=True)
+            write_released(chapter, release / layout.course().chapters / chapter.assignment)
+        shutil.copytree(STUDENT_FILES, release, dirs_exist_ok=True)
         readme = (STUDENT_FILES / "README.md").read_text(encoding="utf-8")
         readme = readme.replace("TITLE", layout.course().title).replace("FIRST", chosen[0].assignment)
-        (bundle / "README.md").write_text(readme, encoding="utf-8")
-        write_manifest(bundle, datetime.now(timezone.utc).isoformat(timespec="seconds"), newest)
-        bundle.rename(out)
+        (release / "README.md").write_text(readme, encoding="utf-8")
+        write_manifest(release, datetime.now(timezone.utc).isoformat(timespec="seconds"), newest)
+        release.rename(out)
     return [chapter.assignment for chapter in chosen]
 
 
@@ -83,8 +83,8 @@ def _copy(root: Path, parts: Iterable[str], folder: Path) -> None:
             shutil.copy2(source, target)
 
 
-def _withhold(bundle: Path) -> None:
-    tool = bundle / "autograder"
+def _withhold(release: Path) -> None:
+    tool = release / "autograder"
     for path in (tool / name for name in WITHHELD):
         shutil.rmtree(path) if path.is_dir() else path.unlink()
     for module in (tool / "cli").iterdir():

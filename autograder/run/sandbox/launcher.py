@@ -57,7 +57,7 @@ def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = (),
         command: what is run.
         spec: the sandbox.
         pass_fds: descriptors that it inherits.
-        profile: for a Python script, what the interpreter from which it is forked has imported (`prefork.profiles`).
+        profile: for a Python script, what its interpreter has imported before (`fork_server.profiles`).
 
     Raises:
         StudentError: the grading has no time left for programs. What runs when the time is over is stopped.

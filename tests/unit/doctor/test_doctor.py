@@ -345,7 +345,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "no working Chromium",
         "sudo apt-get install chromium",
     ),
-    "a bundle that is older than the newest release": (
+    "a student release that is older than the newest one": (
         "release",
         {
             "read": {

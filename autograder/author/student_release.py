@@ -42,27 +42,27 @@ class Manifest:
     cells: dict[str, dict[str, str]]
 
 
-def write_manifest(bundle: Path, version: str, course: str) -> None:
+def write_manifest(release: Path, version: str, course: str) -> None:
     """Write the manifest of an otherwise complete student release."""
-    files = {str(path.relative_to(bundle)): _digest(path.read_bytes()) for path in _files(bundle)}
+    files = {str(path.relative_to(release)): _digest(path.read_bytes()) for path in _files(release)}
     cells = {
-        name: {cell.id: _digest(cell.source.encode()) for cell in nbformat.read(bundle / name, as_version=4).cells}
+        name: {cell.id: _digest(cell.source.encode()) for cell in nbformat.read(release / name, as_version=4).cells}
         for name in files
         if name.endswith(".ipynb")
     }
-    write_json(bundle / MANIFEST, asdict(Manifest(version, course, files, cells)))
+    write_json(release / MANIFEST, asdict(Manifest(version, course, files, cells)))
 
 
-def read_manifest(bundle: Path) -> Manifest:
+def read_manifest(release: Path) -> Manifest:
     """Read the manifest of a student release.
 
     Raises:
         UsageError: it does not exist or cannot be read.
     """
     try:
-        return Manifest(**json.loads((bundle / MANIFEST).read_text(encoding="utf-8")))
+        return Manifest(**json.loads((release / MANIFEST).read_text(encoding="utf-8")))
     except (OSError, ValueError, TypeError) as error:
-        raise UsageError(f"{bundle} is not a release of the course: {error}") from None
+        raise UsageError(f"{release} is not a release of the course: {error}") from None
 
 
 @dataclass(frozen=True)
@@ -80,20 +80,20 @@ class Update:
     set_aside: Mapping[str, str]
 
 
-def update_bundle(bundle: Path, newer: Path) -> Update:
+def update_release(release: Path, newer: Path) -> Update:
     """Update a student release to a later one, which may contain only some chapters.
 
     Raises:
         UsageError: one of the folders is not a student release, or `newer` is older.
     """
-    old, new = read_manifest(bundle), read_manifest(newer)
+    old, new = read_manifest(release), read_manifest(newer)
     if new.version < old.version:
         raise UsageError(f"{newer} has version {new.version}, but the release here is newer, {old.version}")
     written: list[str] = []
     kept: list[str] = []
     set_aside: dict[str, str] = {}
     for name, digest in new.files.items():
-        source, target = newer / name, bundle / name
+        source, target = newer / name, release / name
         current = _digest(target.read_bytes()) if target.is_file() else None
         changed = current not in (None, old.files.get(name))
         if current == digest:
@@ -107,7 +107,7 @@ def update_bundle(bundle: Path, newer: Path) -> Update:
                 kept.append(name)
             continue
         if changed:
-            set_aside[name] = str(_set_aside(target).relative_to(bundle))
+            set_aside[name] = str(_set_aside(target).relative_to(release))
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(source, target)
         written.append(name)
@@ -116,11 +116,11 @@ def update_bundle(bundle: Path, newer: Path) -> Update:
         name for name in old.files if name.startswith(f"{STUDENT_FOLDER}/") and name.split("/")[1] not in chapters
     }
     for name in old.files.keys() - new.files.keys() - others:
-        if (bundle / name).is_file() and _digest((bundle / name).read_bytes()) == old.files[name]:
-            (bundle / name).unlink()
+        if (release / name).is_file() and _digest((release / name).read_bytes()) == old.files[name]:
+            (release / name).unlink()
     files = {name: old.files[name] for name in others} | new.files
     cells = {name: old.cells[name] for name in others & old.cells.keys()} | new.cells
-    write_json(bundle / MANIFEST, asdict(Manifest(new.version, new.course or old.course, files, cells)))
+    write_json(release / MANIFEST, asdict(Manifest(new.version, new.course or old.course, files, cells)))
     return Update(written, kept, set_aside)
 
 
@@ -152,8 +152,8 @@ def _merged(students: NotebookNode, released: NotebookNode, old: dict[str, str])
     return students
 
 
-def _files(bundle: Path) -> Iterator[Path]:
-    return (path for path in sorted(bundle.rglob("*")) if path.is_file() and path.name != MANIFEST)
+def _files(release: Path) -> Iterator[Path]:
+    return (path for path in sorted(release.rglob("*")) if path.is_file() and path.name != MANIFEST)
 
 
 def _digest(data: bytes) -> str:

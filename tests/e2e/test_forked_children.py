@@ -17,7 +17,7 @@ from autograder.ros import environment
 from autograder.run.sandbox import Sandbox
 from autograder.run.sandbox.launcher import launch
 from tests.e2e.sandbox_support import in_worker_sandbox
-from tests.e2e.test_prefork import ENDS, LONG, REPORT, in_any_order, workplace
+from tests.e2e.test_fork_server import ENDS, LONG, REPORT, in_any_order, workplace
 
 pytestmark = pytest.mark.usefixtures("forks")
 

@@ -48,7 +48,7 @@ report = {
     "inheritable": [n for n in descriptors if os.path.exists(f"/proc/self/fd/{n}") and os.get_inheritable(n)],
     "cwd": os.getcwd(),
     "command line": read("/proc/self/cmdline").rstrip("\\0"),
-    "grader's modules": [name for name in sys.modules if name.startswith(("autograder", "prefork"))],
+    "grader's modules": [name for name in sys.modules if name.startswith(("autograder", "fork_server"))],
     "host": socket.gethostname(),
     "uid map": read("/proc/self/uid_map").split(),
     "own files": os.access("/proc/self/mem", os.R_OK),
