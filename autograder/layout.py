@@ -61,18 +61,18 @@ class Course:
         path = root / COURSE_FILE
         try:
             data: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
-            found = cls(root, **{**data, "released": tuple(data.get("released", ()))})
+            course = cls(root, **{**data, "released": tuple(data.get("released", ()))})
         except OSError:
             raise UsageError(f"{root} is no course: it has no {COURSE_FILE}; --course names another folder") from None
         except (yaml.YAMLError, AttributeError, TypeError) as error:
             lines = ", ".join(field.name for field in fields(cls)[1:])
             raise UsageError(f"{path}: {error}; the lines of this file are {lines}") from None
-        for part in found.parts:
+        for part in course.parts:
             if not isinstance(part, str) or not (root / part).resolve().is_relative_to(root):
                 raise UsageError(f"{path}: {part!r} is no path in the course's folder")
-        for part in filter(found.shows_answers, (found.worlds, *found.released)):
+        for part in filter(course.shows_answers, (course.worlds, *course.released)):
             raise UsageError(f"{path}: {part!r} goes to students, and would show them answers or hidden checks")
-        return found
+        return course
 
     def shows_answers(self, part: str) -> bool:
         """Return whether a path holds or lies in what students do not get. Files beside the chapters are no answers."""

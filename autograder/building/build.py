@@ -29,22 +29,22 @@ class BuildOutcome:
     @property
     def diagnosis(self) -> Diagnosis:
         """The diagnosis of the first package that was not built, or OK."""
-        return next((found for found in self.diagnoses.values() if found is not OK), OK)
+        return next((diagnosis for diagnosis in self.diagnoses.values() if diagnosis is not OK), OK)
 
 
-def require_packages(source: Path, wanted: tuple[str, ...], *, whole: bool = True) -> dict[str, Package]:
+def require_packages(source: Path, required: tuple[str, ...], *, whole: bool = True) -> dict[str, Package]:
     """Return the packages in `source`; a StudentError unless the wanted ones are there, and whole enough for colcon.
 
     `whole` says whether each needs the files that every Python package of ROS 2 has; if not, colcon is left to judge.
     """
-    found, broken = read_packages(source)
-    for name in wanted:
-        package = found.get(name)
+    packages, broken = read_packages(source)
+    for name in required:
+        package = packages.get(name)
         if package is None and broken:
             sentence = broken.get(source / name, next(iter(broken.values())))
             raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence))
         if package is None:
-            raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, _missing(source, name, found)))
+            raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, _missing(source, name, packages)))
         folder = package.folder
         if not whole or (folder / "CMakeLists.txt").is_file():
             continue
@@ -52,25 +52,25 @@ def require_packages(source: Path, wanted: tuple[str, ...], *, whole: bool = Tru
             if not (folder / part).exists():
                 sentence = f"src/{folder.name} has no {part}: the package is only half written, colcon needs that file."
                 raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence))
-    return found
+    return packages
 
 
-def build(workspace: Workspace, wanted: tuple[str, ...], *, whole: bool = False) -> Build:
+def build(workspace: Workspace, required: tuple[str, ...], *, whole: bool = False) -> Build:
     """Build the wanted packages of a workspace, and those that they depend on, with colcon.
 
     Its interface packages come from the cache of builds, where the very same ones were built before. The detail of the
     StudentError of a failed build holds the end of colcon's output. A package is required as `require_packages` says.
     """
     started = time.monotonic()
-    found = require_packages(workspace.root / "src", wanted, whole=whole)
-    bundle = interface_bundle(found, wanted)
+    packages = require_packages(workspace.root / "src", required, whole=whole)
+    bundle = interface_bundle(packages, required)
     if bundle:
         install_bundle(bundle, workspace)
-    if set(wanted) - set(bundle):
+    if set(required) - set(bundle):
         skipped = ["--packages-skip", *bundle] if bundle else []
-        folders = [package.folder for package in found.values()]
-        colcon_build(workspace, folders, "--packages-up-to", *wanted, *skipped)
-    return Build(True, round(time.monotonic() - started, 2), tuple(sorted(found)))
+        folders = [package.folder for package in packages.values()]
+        colcon_build(workspace, folders, "--packages-up-to", *required, *skipped)
+    return Build(True, round(time.monotonic() - started, 2), tuple(sorted(packages)))
 
 
 def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail: bool = False) -> BuildOutcome:
@@ -108,10 +108,10 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
     return BuildOutcome(Build(all(each.ok for each in builds), seconds, seen, log), diagnoses)
 
 
-def _missing(source: Path, name: str, found: Collection[str]) -> str:
+def _missing(source: Path, name: str, packages: Collection[str]) -> str:
     if not source.is_dir():
         return f"There is no ws/src folder: create the package {name} in it."
     if (source / name).is_dir():
         return f"src/{name} has no package.xml with <name>{name}</name>: without it colcon does not see a package."
-    others = ", ".join(sorted(found)) or "no package at all"
+    others = ", ".join(sorted(packages)) or "no package at all"
     return f"The package {name} is missing: src holds {others}."

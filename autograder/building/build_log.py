@@ -57,16 +57,16 @@ def readable(log: str) -> str:
 def first_error(log: str) -> str:
     """Return the first error of a failed build in a line, with the student's file where the log names it; or ""."""
     bounded = _bounded(log)
-    if found := _DEFINITION.search(bounded):
-        return f"{found['file']}, {' '.join(found['text'].split())}: {' '.join(found['why'].split())}"
-    if found := _DEPENDENCY.search(bounded):
-        return f"CMakeLists.txt: rosidl_generate_interfaces does not name {found['package']} behind DEPENDENCIES"
+    if match := _DEFINITION.search(bounded):
+        return f"{match['file']}, {' '.join(match['text'].split())}: {' '.join(match['why'].split())}"
+    if match := _DEPENDENCY.search(bounded):
+        return f"CMakeLists.txt: rosidl_generate_interfaces does not name {match['package']} behind DEPENDENCIES"
     text = readable(log)
-    if found := _CMAKE_ERROR.search(text):
-        own = _CMAKE_LINE.search(found["rest"])
-        return f"{own[1] if own else found['place']}: {' '.join(found['text'].split())}"[:300]
+    if match := _CMAKE_ERROR.search(text):
+        own = _CMAKE_LINE.search(match["rest"])
+        return f"{own[1] if own else match['place']}: {' '.join(match['text'].split())}"[:300]
     errors = [line.strip() for line in text.splitlines() if "Error" in line or "error:" in line]
-    place = f"setup.py, line {found['line']}: " if (found := _IN_SETUP.search(text)) else ""
+    place = f"setup.py, line {match['line']}: " if (match := _IN_SETUP.search(text)) else ""
     return f"{place}{errors[0][:300]}" if errors else ""
 
 
@@ -79,14 +79,14 @@ def _bounded(log: str) -> str:
 def _own(lines: Iterator[str]) -> tuple[list[str], str]:
     """Read a traceback behind its first line; return what is kept of it, and the line that follows it."""
     kept = [_BEGIN]
-    own = found = in_setup = False
+    own = has_own = in_setup = False
     for line in lines:
         if not line.startswith("  "):
-            return ([*kept, line], next(lines, "")) if found else ([], next(lines, ""))
+            return ([*kept, line], next(lines, "")) if has_own else ([], next(lines, ""))
         if match := _FRAME.match(line):
             own = match["file"].startswith("ws/src/") or (in_setup and match["file"] == "<string>")
-            found |= own
+            has_own |= own
             in_setup |= _RUNS_SETUP in line
         if own:
             kept.append(line.replace('"<string>"', '"setup.py"'))
-    return kept if found else [], ""
+    return kept if has_own else [], ""

@@ -102,8 +102,8 @@ def read_installed(install: Path) -> dict[Entry, bytes]:
         raise _left(str(error)) from None
 
 
-def _left(found: str) -> StudentError:
-    sentence = f"The build left {found}: setup.py and CMakeLists.txt must install plain files of the package alone."
+def _left(what: str) -> StudentError:
+    sentence = f"The build left {what}: setup.py and CMakeLists.txt must install plain files of the package alone."
     return StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
 
 

@@ -31,14 +31,14 @@ NOTE = "bundle.json"
 HOOKS = (".sh", ".bash", ".zsh", ".ps1", ".dsv", ".py")
 
 
-def interface_bundle(found: Mapping[str, Package], wanted: tuple[str, ...]) -> dict[str, Path]:
+def interface_bundle(packages: Mapping[str, Package], required: tuple[str, ...]) -> dict[str, Path]:
     """Return the folders of the interface packages among the wanted ones and those that they depend on, by name.
 
     A bundle that needs any other package of the submission is none: colcon then builds everything together.
     """
-    needed = _closure(found, wanted)
-    bundle = {name: found[name].folder for name in needed if _is_interface(found[name])}
-    return bundle if _closure(found, tuple(bundle)) == set(bundle) else {}
+    needed = _closure(packages, required)
+    bundle = {name: packages[name].folder for name in needed if _is_interface(packages[name])}
+    return bundle if _closure(packages, tuple(bundle)) == set(bundle) else {}
 
 
 def install_bundle(bundle: dict[str, Path], workspace: Workspace) -> None:
@@ -69,8 +69,8 @@ def _sources(bundle: dict[str, Path]) -> dict[Entry, bytes]:
     tree: dict[Entry, bytes] = {}
     try:
         for name, folder in bundle.items():
-            found = read_tree(folder, SOURCES)
-            tree |= {Entry(name, "folder"): b""} | {_below(name, entry): data for entry, data in found.items()}
+            files = read_tree(folder, SOURCES)
+            tree |= {Entry(name, "folder"): b""} | {_below(name, entry): data for entry, data in files.items()}
         if len(tree) > SOURCES.names or sum(map(len, tree.values())) > SOURCES.size:
             raise TreeError(f"more than {SOURCES.names} files and folders, or {SOURCES.size // MIB} MiB")
     except TreeError as error:
@@ -117,15 +117,15 @@ def relocate(prefix: Path, old: str, new: str) -> None:
                 path.write_bytes(text.replace(old.encode(), new.encode()))
 
 
-def _closure(found: Mapping[str, Package], wanted: tuple[str, ...]) -> set[str]:
+def _closure(packages: Mapping[str, Package], required: tuple[str, ...]) -> set[str]:
     """Return the wanted packages and all packages of the submission below them."""
     seen: set[str] = set()
-    pending = [name for name in wanted if name in found]
+    pending = [name for name in required if name in packages]
     while pending:
         name = pending.pop()
         if name not in seen:
             seen.add(name)
-            pending += [other for other in found[name].depends if other in found]
+            pending += [other for other in packages[name].depends if other in packages]
     return seen
 
 

@@ -148,8 +148,8 @@ def _assignments() -> set[str]:
 
 def _marks(stored: Sequence[Result], system: str, roster: Roster, lateness: Mapping[str, Lateness], out: Path) -> Plan:
     """Plan a table for a learning management system."""
-    unclear = {student: found.unclear for student, found in lateness.items() if found.unclear}
-    kept = {student: None if found.unclear else found.kept for student, found in lateness.items()}
+    unclear = {student: each.unclear for student, each in lateness.items() if each.unclear}
+    kept = {student: None if each.unclear else each.kept for student, each in lateness.items()}
     filled = mark_table(stored, system, roster, kept)
     missed = [(r.student, r.status.words) for r in stored if r.status is not Status.GRADED]
     missed += [*unclear.items(), *((student, f"not in {roster.path}") for student in filled.unknown)]
@@ -186,7 +186,7 @@ def _feedback(stored: Sequence[Result], name: str, roster: Roster, download: Pat
 def _results(stored: Sequence[Result], name: str, lateness: Mapping[str, Lateness], out: Path) -> Plan:
     """Plan an export of results. A CSV file gets additional columns for late submissions."""
     more = {result.student: _late_cells(result, lateness[result.student]) for result in stored if lateness}
-    missed = [(student, found.unclear) for student, found in lateness.items() if found.unclear]
+    missed = [(student, each.unclear) for student, each in lateness.items() if each.unclear]
     rows = [(r.student, "", str(more[r.student]["mark"] if more else _score(r))) for r in stored]
     options: dict[str, Any] = {"more": more} if more else {}
     return Plan(rows, missed, partial(exporters.write, stored, name, out, **options))

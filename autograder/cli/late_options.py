@@ -92,12 +92,12 @@ def judge_class(policy: LatePolicy, results: Path, students: Iterable[str]) -> d
     file = results / COLLECTION_REPORT
     told = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
     late, late_by, times = set(told.get("late", ())), told.get("late_by", {}), told.get("times", {})
-    found = {}
+    by_student = {}
     for student in students:
         delay = timedelta(seconds=late_by[student]) if student in late_by else None
         try:
             time = moment(times[student], policy.zone) if times.get(student) else None
         except UsageError as error:
             raise UsageError(f"{file}: {error}") from None
-        found[student] = policy.judge(student, Delivery(student in late, delay, time))
-    return found
+        by_student[student] = policy.judge(student, Delivery(student in late, delay, time))
+    return by_student

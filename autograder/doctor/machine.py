@@ -47,11 +47,11 @@ def python(system: System) -> Finding:
     version = ".".join(map(str, system.python))
     name, machine = system.platform
     if system.platform != ("Linux", "x86_64"):
-        found = f"{name} {machine}: the course runs on Linux x86-64; use a container or a JupyterHub"
-        return Finding("Python", Status.MISSING, found, "devcontainer up --workspace-folder .")
+        state = f"{name} {machine}: the course runs on Linux x86-64; use a container or a JupyterHub"
+        return Finding("Python", Status.MISSING, state, "devcontainer up --workspace-folder .")
     if "{}.{}".format(*system.python) not in DISTRIBUTION.pythons:
-        found = f"Python {version}: ROS 2 {DISTRIBUTION.title} supports Python {DISTRIBUTION.supported}"
-        return Finding("Python", Status.MISSING, found, f"make setup PYTHON=python{DISTRIBUTION.pythons[0]}")
+        state = f"Python {version}: ROS 2 {DISTRIBUTION.title} supports Python {DISTRIBUTION.supported}"
+        return Finding("Python", Status.MISSING, state, f"make setup PYTHON=python{DISTRIBUTION.pythons[0]}")
     return Finding("Python", Status.OK, f"Python {version} on {name} {machine}")
 
 
@@ -59,8 +59,8 @@ def environment(system: System) -> Finding:
     """Check that this is a virtual environment, because the system's Python does not have the pinned versions."""
     if system.in_venv:
         return Finding("environment", Status.OK, f"the virtual environment {system.prefix}")
-    found = f"not a virtual environment ({system.prefix}): packages may not have their pinned versions"
-    return Finding("environment", Status.WEAK, found, "make setup")
+    state = f"not a virtual environment ({system.prefix}): packages may not have their pinned versions"
+    return Finding("environment", Status.WEAK, state, "make setup")
 
 
 def other_users(system: System) -> tuple[Finding, ...]:
@@ -73,12 +73,12 @@ def compiler(system: System) -> Finding:
     """Check for the compilers and Python headers that are needed to build message definitions."""
     missing = [command for command in ("gcc", "g++") if system.run([command, "--version"], {}).status != 0]
     if missing:
-        found = f"{' and '.join(missing)} not found: message packages cannot be compiled"
-        return Finding("compiler", Status.MISSING, found, "sudo apt-get install g++")
+        state = f"{' and '.join(missing)} not found: message packages cannot be compiled"
+        return Finding("compiler", Status.MISSING, state, "sudo apt-get install g++")
     if system.read(system.headers / "Python.h") is None:
-        found = f"Python's headers are not in {system.headers}: message packages cannot be compiled"
+        state = f"Python's headers are not in {system.headers}: message packages cannot be compiled"
         package = "python{}.{}-dev".format(*system.python)
-        return Finding("compiler", Status.MISSING, found, f"sudo apt-get install {package}")
+        return Finding("compiler", Status.MISSING, state, f"sudo apt-get install {package}")
     return Finding("compiler", Status.OK, system.run(["g++", "--version"], {}).output.splitlines()[0])
 
 
@@ -97,13 +97,13 @@ def versions(system: System) -> Finding:
     if not others:
         all_of_them = ", ".join(f"{p.name} {p.version}" for p in packages)
         return Finding("versions", Status.OK, f"as on {platform}: {all_of_them}")
-    found = "; ".join(f"{p.name} {version or 'is not found'} for {p.version}" for p, version in others.items())
+    state = "; ".join(f"{p.name} {version or 'is not found'} for {p.version}" for p, version in others.items())
     if all(package.differs and version for package, version in others.items()):
-        return Finding("versions", Status.OK, f"as on {platform}, except {found}: the nearest for this Python")
+        return Finding("versions", Status.OK, f"as on {platform}, except {state}: the nearest for this Python")
     return Finding(
         "versions",
         Status.WEAK,
-        f"different from {platform}, the platform of {DISTRIBUTION.title}: {found}",
+        f"different from {platform}, the platform of {DISTRIBUTION.title}: {state}",
         "make setup",
     )
 
@@ -120,24 +120,24 @@ def notebooks(system: System) -> Finding:
 def isolation(system: System) -> Finding:
     """Try the two nested namespaces of grading: one around a submission, one around the student's code."""
     if system.which("bwrap") is None:
-        found = "bubblewrap is not installed: submissions cannot be graded in isolation"
-        return Finding("isolation", Status.MISSING, found, "sudo apt-get install bubblewrap")
+        state = "bubblewrap is not installed: submissions cannot be graded in isolation"
+        return Finding("isolation", Status.MISSING, state, "sudo apt-get install bubblewrap")
     failure, bounds = system.namespaces_failure(), system.bounds()
     if failure is not None:
         why, fix = _forbidden(system)
-        found = f"bubblewrap cannot create nested namespaces ({failure.splitlines()[-1]}): {why}"
-        return Finding("isolation", Status.WEAK, f"{found}; only the weaker isolation level is available", fix)
+        state = f"bubblewrap cannot create nested namespaces ({failure.splitlines()[-1]}): {why}"
+        return Finding("isolation", Status.WEAK, f"{state}; only the weaker isolation level is available", fix)
     if "pids" not in bounds:
-        found = "only control groups can limit root's processes, but none can be created: a fork bomb would succeed"
-        return Finding("isolation", Status.WEAK, found, "adduser grader && su grader")
+        state = "only control groups can limit root's processes, but none can be created: a fork bomb would succeed"
+        return Finding("isolation", Status.WEAK, state, "adduser grader && su grader")
     if "memory" not in bounds:
-        found = (
+        state = (
             "bubblewrap creates nested namespaces; no control group can be created, so only the memory of processes "
             "is limited, but not socket buffers and inodes"
         )
-        return Finding("isolation", Status.WEAK, found, "systemd-run --user --scope autograder doctor")
-    found = "bubblewrap creates nested namespaces; control groups limit memory and processes"
-    return Finding("isolation", Status.OK, found)
+        return Finding("isolation", Status.WEAK, state, "systemd-run --user --scope autograder doctor")
+    state = "bubblewrap creates nested namespaces; control groups limit memory and processes"
+    return Finding("isolation", Status.OK, state)
 
 
 def _forbidden(system: System) -> tuple[str, str]:
@@ -156,21 +156,21 @@ def release(system: System) -> tuple[Finding, ...]:
     if not own:
         return ()
     if newest and newest["version"] > own["version"]:
-        found = f"version {own['version']}; a newer one is available, {newest['version']}"
-        return (Finding("release", Status.WEAK, found, "autograder update"),)
+        state = f"version {own['version']}; a newer one is available, {newest['version']}"
+        return (Finding("release", Status.WEAK, state, "autograder update"),)
     return (Finding("release", Status.OK, f"version {own['version']}"),)
 
 
 def space(system: System) -> Finding:
     """Check that there is disk space for workspaces and builds."""
     if not system.writable(system.tmp):
-        found = f"{system.tmp} is not writable, but workspaces and builds go there"
-        return Finding("disk", Status.MISSING, found, 'export TMPDIR="$HOME/tmp" && mkdir -p "$TMPDIR"')
+        state = f"{system.tmp} is not writable, but workspaces and builds go there"
+        return Finding("disk", Status.MISSING, state, 'export TMPDIR="$HOME/tmp" && mkdir -p "$TMPDIR"')
     free = system.disk_usage(system.tmp).free
     free_text = f"{free / 1024**3:.1f} GB free in {system.tmp}"
     if free < ROOMY_BYTES:
-        found = f"{free_text}: building and grading may need {ROOMY_BYTES / 1024**3:.0f} GB"
-        return Finding("disk", Status.WEAK, found, f"df -h {system.tmp}")
+        state = f"{free_text}: building and grading may need {ROOMY_BYTES / 1024**3:.0f} GB"
+        return Finding("disk", Status.WEAK, state, f"df -h {system.tmp}")
     return Finding("disk", Status.OK, free_text)
 
 
@@ -181,5 +181,5 @@ def browser(system: System) -> Finding:
             result = system.run([command, "--version"], {})
             if result.status == 0:
                 return Finding("browser", Status.OK, result.last_line)
-    found = "no working Chromium; only the browser tests need it"
-    return Finding("browser", Status.WEAK, found, "sudo apt-get install chromium")
+    state = "no working Chromium; only the browser tests need it"
+    return Finding("browser", Status.WEAK, state, "sudo apt-get install chromium")

@@ -86,8 +86,8 @@ def cmake_files(system: System, ros: RosEnvironment) -> Finding:
     """Check that the wheels' CMake files were patched. Message packages do not compile otherwise."""
     count = len(system.unpatched_cmake_files(ros.prefixes[0]))
     if count:
-        found = f"{count} CMake files of the wheels point at another machine's folders: message packages do not compile"
-        return Finding("CMake files", Status.MISSING, found, f"{sys.executable} -m autograder.ros.patch_wheels")
+        state = f"{count} CMake files of the wheels point at another machine's folders: message packages do not compile"
+        return Finding("CMake files", Status.MISSING, state, f"{sys.executable} -m autograder.ros.patch_wheels")
     return Finding("CMake files", Status.OK, "the wheels' CMake files point at this environment")
 
 
@@ -97,9 +97,9 @@ def log_folder(system: System, ros: RosEnvironment | None) -> Finding:
     folder = Path(chosen or (ros.variables()["ROS_LOG_DIR"] if ros else system.tmp))
     if system.writable(folder):
         return Finding("ROS logs", Status.OK, f"written to {folder}")
-    found = f"the folder for ROS logs, {folder}, is not writable"
+    state = f"the folder for ROS logs, {folder}, is not writable"
     return Finding(
-        "ROS logs", Status.MISSING, found, "unset ROS_LOG_DIR" if chosen else "export ROS_LOG_DIR=~/.ros/log"
+        "ROS logs", Status.MISSING, state, "unset ROS_LOG_DIR" if chosen else "export ROS_LOG_DIR=~/.ros/log"
     )
 
 
@@ -132,5 +132,5 @@ def variables(system: System) -> Finding:
     if not stray:
         return Finding("ROS variables", Status.OK, "none that affects discovery")
     stops = {"RMW_IMPLEMENTATION", "ROS_DOMAIN_ID"} & set(stray)
-    found = "; ".join(f"{name} {effect}" for name, effect in stray.items())
-    return Finding("ROS variables", Status.MISSING if stops else Status.WEAK, found, f"unset {' '.join(stray)}")
+    state = "; ".join(f"{name} {effect}" for name, effect in stray.items())
+    return Finding("ROS variables", Status.MISSING if stops else Status.WEAK, state, f"unset {' '.join(stray)}")

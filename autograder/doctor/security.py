@@ -61,8 +61,8 @@ def examine() -> tuple[Finding, ...]:
     """Try every escape on this machine, both started and forked in a sandbox, and return the findings."""
     failure = namespaces_failure()
     if failure is not None:
-        found = f"not tried: {failure}; without namespaces, a student's code has the rights of the grader's user"
-        return (Finding("isolation", Status.MISSING, found, "autograder doctor"),)
+        state = f"not tried: {failure}; without namespaces, a student's code has the rights of the grader's user"
+        return (Finding("isolation", Status.MISSING, state, "autograder doctor"),)
     outs: dict[str, str] = {}
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = str(server.getsockname()[1])

@@ -53,16 +53,16 @@ class Preview:
 def read_digests(path: Path, assignment: str, isolation: Isolation) -> Digests | None:
     """Return the digests of a submission, None if it cannot be read."""
     try:
-        found: Digests = structure(Digests, _read("digests", path, assignment, isolation))
+        digests: Digests = structure(Digests, _read("digests", path, assignment, isolation))
     except (OSError, AutograderError):
         return None
-    return found
+    return digests
 
 
 def read_preview(path: Path, assignment: str, isolation: Isolation) -> Preview:
     """Return what counts of a submission. Raises StudentError if it cannot be read, or is unclear."""
-    found: Preview = structure(Preview, _read("preview", path, assignment, isolation))
-    return found
+    preview: Preview = structure(Preview, _read("preview", path, assignment, isolation))
+    return preview
 
 
 def read_code(path: Path, assignment: str, isolation: Isolation) -> str:

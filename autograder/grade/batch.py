@@ -51,29 +51,29 @@ def discover(paths: tuple[Path, ...], assignment: str) -> Discovered:
     Raises:
         UsageError: a path does not exist, a folder holds nothing, or two submissions have the same student's name.
     """
-    found: list[tuple[str, Path]] = []
+    submissions: list[tuple[str, Path]] = []
     others: list[tuple[str, str]] = []
     for path in paths:
         if not path.exists():
             raise UsageError(f"{path}: there is no such file or folder")
         if path.is_file():
-            found.append((student_of(path), path))
+            submissions.append((student_of(path), path))
         elif _is_submission(path, assignment):
-            found.append((path.resolve().name, path))
+            submissions.append((path.resolve().name, path))
         else:
             inside, beside = _of_folder(path, assignment)
-            found += inside
+            submissions += inside
             others += beside
-    refused = {student: why for student, _ in found if (why := why_not_a_folder(student))}
-    others += [(path.name, refused[student]) for student, path in found if student in refused]
-    found = [(student, path) for student, path in found if student not in refused]
-    names = [student for student, _ in found]
+    refused = {student: why for student, _ in submissions if (why := why_not_a_folder(student))}
+    others += [(path.name, refused[student]) for student, path in submissions if student in refused]
+    submissions = [(student, path) for student, path in submissions if student not in refused]
+    names = [student for student, _ in submissions]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise UsageError(
             f"two submissions are called {', '.join(twice)}: rename one, results would overwrite each other"
         )
-    return Discovered(dict(found), tuple(others))
+    return Discovered(dict(submissions), tuple(others))
 
 
 def student_of(path: Path) -> str:
@@ -157,8 +157,8 @@ def stored(job: Job) -> Result | None:
     except (OSError, ValueError, AutograderError):
         return None
     digest = job.digests and job.digests.sha256
-    found = (result.student, result.submission_sha256, result.suite_version, result.seed, result.isolation)
-    same = found == (job.student, digest, job.suite.version, job.seed, job.isolation.value)
+    actual = (result.student, result.submission_sha256, result.suite_version, result.seed, result.isolation)
+    same = actual == (job.student, digest, job.suite.version, job.seed, job.isolation.value)
     return result if same and result.status is Status.GRADED else None
 
 
@@ -186,5 +186,7 @@ def _of_folder(folder: Path, assignment: str) -> tuple[list[tuple[str, Path]], l
     students = [child for child in children if child.is_dir() or is_archive(child.name) or is_notebook(child.name)]
     if not students:
         raise UsageError(f"{folder}: neither a submission of {assignment} nor a folder of submissions")
-    found = [(student_of(child), submission_in(child, assignment) if child.is_dir() else child) for child in students]
-    return found, [(child.name, NO_SUBMISSION) for child in children if child not in students]
+    submissions = [
+        (student_of(child), submission_in(child, assignment) if child.is_dir() else child) for child in students
+    ]
+    return submissions, [(child.name, NO_SUBMISSION) for child in children if child not in students]

@@ -86,11 +86,11 @@ def _grade(job: Job, run_job: RunJob, budget: Budget) -> tuple[Result, Mapping[s
 
     A worker may have been taken over. Nothing of its answer is used before it was checked.
     """
-    said, why, tries = "", "", 0
+    log, why, tries = "", "", 0
     while tries < TRIES and budget.is_enough:
         tries += 1
         report = budget.spend(replace(job, last=tries == TRIES), run_job)
-        said = f"The worker ended: {report.exit_reason.value}, {report.returncode}.\n{report.output}"
+        log = f"The worker ended: {report.exit_reason.value}, {report.returncode}.\n{report.output}"
         why = f"The grader failed on this submission{f', {tries} times' if tries > 1 else ''}."
         if report.exit_reason is ExitReason.WALL_TIME:
             why = f"The grading did not end within {budget.seconds / 60:.0f} minutes."
@@ -98,8 +98,8 @@ def _grade(job: Job, run_job: RunJob, budget: Budget) -> tuple[Result, Mapping[s
             try:
                 return checked(report.files, job), report.files
             except ReplyError as error:
-                said += f"\n{error}"
-    return not_graded(job, why, said)
+                log += f"\n{error}"
+    return not_graded(job, why, log)
 
 
 def not_graded(job: Job, why: str, log: str) -> tuple[Result, Mapping[str, bytes]]:

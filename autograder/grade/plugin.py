@@ -154,8 +154,8 @@ class GradingPlugin:
         elif isinstance(error, StudentError) or (isinstance(error, DoubtfulError) and self._is_last):
             if self.diagnosis is OK:
                 self.diagnosis = error.diagnosis
-            said = error.diagnosis  # the hints of the check are about a program that runs
-            verdict = CheckResult.of(check, Outcome.FAILED, said.sentence, seconds=seconds, hints=said.hints)
+            diagnosis = error.diagnosis  # the hints of the check are about a program that runs
+            verdict = CheckResult.of(check, Outcome.FAILED, diagnosis.sentence, seconds=seconds, hints=diagnosis.hints)
         elif isinstance(error, pytest.skip.Exception):
             verdict = CheckResult.not_checked(check, str(error), seconds=seconds)
         elif self._is_over_data(error) and (data := self._in_hand(item)):

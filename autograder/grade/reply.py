@@ -55,10 +55,10 @@ def _result(data: bytes, job: Job, sha256: str) -> Result:
         raise ReplyError(f"a worker's reply contains no result: {str(error)[:1000]}") from None
     suite, graded = job.suite, result.status is Status.GRADED
     versions, theirs = (suite.version, suite.files_digest), (result.suite_version, result.files_digest)
-    found = (result.assignment, result.student, *theirs, result.seed, result.isolation, result.max_score)
-    wanted = (suite.assignment, job.student, *versions, job.seed, job.isolation.value, suite.max_score)
-    if found != wanted:
-        raise ReplyError(f"a worker graded {found} instead of {wanted}")
+    actual = (result.assignment, result.student, *theirs, result.seed, result.isolation, result.max_score)
+    expected = (suite.assignment, job.student, *versions, job.seed, job.isolation.value, suite.max_score)
+    if actual != expected:
+        raise ReplyError(f"a worker graded {actual} instead of {expected}")
     if graded and sha256 and result.submission_sha256 not in (sha256, _UNREAD):
         raise ReplyError(f"a worker graded {result.submission_sha256} instead of {sha256}")
     worth = [(check.id, check.group, check.points) for check in suite.checks]

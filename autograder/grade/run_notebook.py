@@ -104,21 +104,21 @@ def read_answer(data: bytes) -> Answer:
     begun, why, cells, left = False, "", dict[int, NotebookNode](), MAX_VALUES
     for line in data.split(b"\n", MAX_LINES)[:MAX_LINES]:
         with suppress(StudentError), reading("An output of your notebook"):
-            said = json.loads(line, parse_constant=lambda _: None)
-            if said["event"] == "begin":
+            message = json.loads(line, parse_constant=lambda _: None)
+            if message["event"] == "begin":
                 begun = True
-            elif said["event"] == "end":
-                why = str(said["why"])[:MAX_WHY]
-            elif said["event"] == "cell" and type(said["index"]) is int:
-                left -= _count_values(said["outputs"])
+            elif message["event"] == "end":
+                why = str(message["why"])[:MAX_WHY]
+            elif message["event"] == "cell" and type(message["index"]) is int:
+                left -= _count_values(message["outputs"])
                 if left < 0:
                     continue
                 cell = new_code_cell(
-                    outputs=nbformat.from_dict(said["outputs"]), execution_count=said["execution_count"]
+                    outputs=nbformat.from_dict(message["outputs"]), execution_count=message["execution_count"]
                 )
                 nbformat.validate(new_notebook(cells=[cell]))
                 nbformat.writes(new_notebook(cells=[cell]))
-                cells[said["index"]] = cell
+                cells[message["index"]] = cell
     return Answer(begun, why, cells)
 
 

@@ -162,8 +162,8 @@ class Grading:
         )
         with self._phase("checks"):
             run(self._suite.files, plugin)
-        wanted = self._job.options.only or [check.id for check in self._suite.checks]
-        missing = set(wanted) - set(plugin.results)
+        ids = self._job.options.only or [check.id for check in self._suite.checks]
+        missing = set(ids) - set(plugin.results)
         if missing and not plugin.failures and not plugin.is_finished:
             plugin.failures.append(f"no record of {', '.join(sorted(missing))}")
         if plugin.failures:

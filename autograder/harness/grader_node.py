@@ -188,8 +188,8 @@ class GraderNode:
 
     def other_nodes(self) -> list[str]:
         """Return the fully qualified names of the other nodes that are seen now."""
-        found = self.node.get_node_names_and_namespaces()
-        return sorted(f"{space.rstrip('/')}/{name}" for name, space in found if name != NAME)
+        nodes = self.node.get_node_names_and_namespaces()
+        return sorted(f"{space.rstrip('/')}/{name}" for name, space in nodes if name != NAME)
 
     def is_impersonated(self) -> bool:
         """Return whether another node has this node's name."""

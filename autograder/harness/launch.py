@@ -233,18 +233,18 @@ class LaunchHarness(contextlib.ExitStack):
 
         A child that a program has forked, and that still has its name, is no program of its own.
         """
-        found = self._processes()
-        known = {(program.pid, program.package, program.name) for program in found}
-        return [each for each in found if (procfs.parent(each.pid), each.package, each.name) not in known]
+        processes = self._processes()
+        known = {(program.pid, program.package, program.name) for program in processes}
+        return [each for each in processes if (procfs.parent(each.pid), each.package, each.name) not in known]
 
     def _processes(self) -> list[RunningProgram]:
         """Return the processes that run executables of packages, in the order of their process ids."""
-        found = []
+        programs = []
         for pid in sorted(procfs.measure(self.process.innermost()).pids):
             # A script is the second argument, behind its interpreter; a process that has ended has none.
             matches = (_PROGRAM.search(word) for word in _command_of(pid)[:2])
-            found += [RunningProgram(pid, match["package"], match["name"]) for match in matches if match is not None]
-        return found
+            programs += [RunningProgram(pid, match["package"], match["name"]) for match in matches if match is not None]
+        return programs
 
     def kill(self, name: str, number: signal.Signals = signal.SIGKILL) -> int:
         """Send a signal to every program called `name`, and to what it has forked; return to how many programs."""
@@ -275,7 +275,7 @@ def _keep_in(received: list[Any]) -> OnMessage:
 
 
 def _names_of(endpoints: list[Any]) -> list[str]:
-    return sorted(f"{found.node_namespace.rstrip('/')}/{found.node_name}" for found in endpoints)
+    return sorted(f"{endpoint.node_namespace.rstrip('/')}/{endpoint.node_name}" for endpoint in endpoints)
 
 
 def _command_of(pid: int) -> list[str]:

@@ -229,12 +229,12 @@ class SteppedHarness(Harness):
         return connected(self._describe(), self._grader_node)
 
     def _describe(self) -> list[Description]:
-        found = []
+        descriptions = []
         for stepped in self._stepped:
             with self._attributing(stepped):
                 stepped.description = stepped.stepper.describe()
-                found.append(stepped.description)
-        return found
+                descriptions.append(stepped.description)
+        return descriptions
 
     def _reach(self, client: Any, seconds: float) -> bool:
         channel = channels.request(client.srv_name, client.srv_type)

@@ -146,10 +146,10 @@ def moment(text: str, zone: tzinfo | None) -> datetime:
     Raises:
         UsageError: it is not such a time.
     """
-    found = _parsed(text)
-    if found.tzinfo is not None:
-        return found
-    return found.astimezone() if zone is None else found.replace(tzinfo=zone)
+    parsed = _parsed(text)
+    if parsed.tzinfo is not None:
+        return parsed
+    return parsed.astimezone() if zone is None else parsed.replace(tzinfo=zone)
 
 
 def zone_of(text: str) -> tzinfo | None:

@@ -42,7 +42,7 @@ def manual_cells(assignment: str) -> dict[str, float]:
     """Return the manually graded cells of an assignment's notebook, with their maximum points."""
     cells = Chapter(chapter(assignment)).read().cells
     graded = (cell.metadata.nbgrader for cell in cells if is_manually_graded(cell))
-    return {str(found["grade_id"]): float(found["points"]) for found in graded}
+    return {str(graded_cell["grade_id"]): float(graded_cell["points"]) for graded_cell in graded}
 
 
 def read_manual(path: Path, cells: Mapping[str, float], find: FindStudent) -> ManualMarks:

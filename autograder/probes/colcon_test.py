@@ -64,7 +64,7 @@ def _colcon_test(workspace: Workspace, package: str, *pytest_arguments: str) -> 
     run = secrets.token_hex(8)
     choice = ["--packages-select", package, "--return-code-on-test-failure"]
     choice += ["--pytest-args", "-o", f"junit_suite_name={run}", *pytest_arguments]
-    found, _ = find_packages(workspace.root / "src")
+    packages, _ = find_packages(workspace.root / "src")
     plain = sandboxed(workspace, RUNNER, limits=COLCON_TEST)
     environment = {**plain.environment, "COLCON_HOME": str(workspace.scratch)}
     del environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"]  # colcon is the student's own way to run them, plug-ins and all
@@ -72,7 +72,7 @@ def _colcon_test(workspace: Workspace, package: str, *pytest_arguments: str) -> 
     spec = replace(
         plain, workdir=workspace.root, environment=environment, mounts=(*mounts, Mount(workspace.root, writable=True))
     )
-    with launch(colcon_command(workspace, found.values(), "test", *choice), spec, profile="colcon") as process:
+    with launch(colcon_command(workspace, packages.values(), "test", *choice), spec, profile="colcon") as process:
         process.wait(COLCON_TEST.wall_seconds + 10)
         exit_reason, status, output = process.exit_reason, process.returncode, process.output
     written = read_below(workspace.root, Path("build", package, "pytest.xml"), MAX_BYTES) or b""

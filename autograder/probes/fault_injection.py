@@ -28,11 +28,11 @@ def expect_failures(workspace: Workspace, source: Source, tests: Collection[str]
     files = sorted(name for name in source.tests if Path(name).suffix == ".py" and Path(name).stem in modules)
     own = {name: data.decode(errors="replace") for name, data in source.files.items() if not name.startswith("test/")}
     # Nothing that the run says is quoted: it is only compared with the names in `tests`.
-    wanted = TestRun(tuple(files), Version({**own, **faults}, {}), shown=True)
-    (report,) = student_test_runs.run(workspace, source, [wanted])
-    said = [(name.partition("[")[0], verdict) for name, verdict in report.claims.verdicts.items()]
+    test_run = TestRun(tuple(files), Version({**own, **faults}, {}), shown=True)
+    (report,) = student_test_runs.run(workspace, source, [test_run])
+    pairs = [(name.partition("[")[0], verdict) for name, verdict in report.claims.verdicts.items()]
     for test in tests:
-        verdicts = {verdict for name, verdict in said if name == test}
+        verdicts = {verdict for name, verdict in pairs if name == test}
         how = "was skipped" if ClaimedOutcome.SKIPPED in verdicts else "passed" if verdicts else "did not run"
         saw = f"The checks put a fault into {' and '.join(faults)} of a copy of your package"
         expect(verdicts == {ClaimedOutcome.FAILED}, f"{saw}, and {test.partition('::')[2]} {how}.")

@@ -43,14 +43,14 @@ def plain_files(folder: Path, most: int, *, left_out: Collection[str] = (), suff
         left_out: names of folders that are passed over.
         suffix: the end of their names.
     """
-    found: list[Path] = []
+    files: list[Path] = []
     for where, folders, names in os.walk(folder) if not folder.is_symlink() else ():
         folders[:] = sorted(name for name in folders if name not in left_out)
         paths = [Path(where, name) for name in sorted(names) if name.endswith(suffix)]
-        found += [path.relative_to(folder) for path in paths if stat.S_ISREG(path.lstat().st_mode)]
-        if len(found) >= most:
+        files += [path.relative_to(folder) for path in paths if stat.S_ISREG(path.lstat().st_mode)]
+        if len(files) >= most:
             break
-    return found[:most]
+    return files[:most]
 
 
 def parse_python(source: str | bytes) -> ast.Module | None:

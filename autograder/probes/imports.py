@@ -64,7 +64,7 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
         without: no files below these.
     """
     own = {path.parent.name for path in package.glob("*/__init__.py")} | {package.name}
-    found: dict[str, list[str]] = {}
+    by_module: dict[str, list[str]] = {}
     for where in plain_files(package, MAX_FILES, left_out=LEFT_OUT, suffix=".py"):
         path = package / where
         top = where.parts[0]
@@ -73,19 +73,19 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
         # A test imports its neighbours, which pytest puts on the path.
         beside = {sibling.stem for sibling in path.parent.glob("*.py")} if top == "test" else set()
         for module in modules(_text(path)) - own - beside - sys.stdlib_module_names:
-            found.setdefault(module, []).append(str(where))
-    return tuple(Import(module, tuple(files)) for module, files in sorted(found.items()))
+            by_module.setdefault(module, []).append(str(where))
+    return tuple(Import(module, tuple(files)) for module, files in sorted(by_module.items()))
 
 
 def modules(text: str) -> frozenset[str]:
     """Return the top-level names that a module's text imports; none if it is no Python."""
-    found: set[str] = set()
+    names: set[str] = set()
     for node in ast.walk(parse_python(text) or ast.Module([], [])):
         if isinstance(node, ast.Import):
-            found.update(alias.name.split(".")[0] for alias in node.names)
+            names.update(alias.name.split(".")[0] for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
-            found.add(node.module.split(".")[0])
-    return frozenset(found)
+            names.add(node.module.split(".")[0])
+    return frozenset(names)
 
 
 def undeclared(imports: Collection[Import], declared: Collection[str]) -> tuple[Import, ...]:

@@ -84,7 +84,7 @@ def _recorded(install: Path, package: str) -> frozenset[str]:
     log = read_below(install.parent / "build", Path(package, "install.log"), MAX_BYTES) or b""
     text = log.decode(errors="replace")
     below = [line.partition(f"/{install.name}/{package}/") for line in text.splitlines()]
-    return frozenset(name for _, found, name in below if found)
+    return frozenset(name for _, separator, name in below if separator)
 
 
 def _joined(folders: list[Path], name: str) -> str:
@@ -116,11 +116,11 @@ def _programs(text: str) -> dict[str, str]:
 
 
 def _extras(text: str) -> dict[str, tuple[str, ...]]:
-    found: dict[str, list[str]] = {}
+    extras: dict[str, list[str]] = {}
     section = None
     for line in filter(None, map(str.strip, text.splitlines())):
         if line.startswith("[") and line.endswith("]"):
-            section = found.setdefault(line[1:-1].split(":")[0], [])
+            section = extras.setdefault(line[1:-1].split(":")[0], [])
         elif section is not None:
             section.append(line)
-    return {name: tuple(lines) for name, lines in found.items()}
+    return {name: tuple(lines) for name, lines in extras.items()}

@@ -109,18 +109,18 @@ def parse(package: str, path: str, text: str) -> Interface:
     return Interface(path, tuple(_part(package, getattr(whole, part) if part else whole) for part in PARTS[kind]))
 
 
-def compare(wanted: Interface, found: Interface) -> tuple[Difference, ...]:
+def compare(expected: Interface, actual: Interface) -> tuple[Difference, ...]:
     """Return how a definition differs from its contract; the empty tuple if it does not.
 
     Further constants, and a default that says what a field without one holds anyway, are no differences.
     """
-    parts = range(len(wanted.parts))
-    return tuple(difference for index in parts for difference in _Comparison(wanted, found, index).differences())
+    parts = range(len(expected.parts))
+    return tuple(difference for index in parts for difference in _Comparison(expected, actual, index).differences())
 
 
-def elements(wanted: Interface, aspect: Aspect) -> Iterator[Field | Constant]:
+def elements(expected: Interface, aspect: Aspect) -> Iterator[Field | Constant]:
     """Yield what a contract's constants, defaults or bounds are those of; the array without a bound has one, too."""
-    for part in wanted.parts:
+    for part in expected.parts:
         if aspect is Aspect.CONSTANTS:
             yield from part.constants
         elif aspect is Aspect.DEFAULTS:
@@ -129,9 +129,9 @@ def elements(wanted: Interface, aspect: Aspect) -> Iterator[Field | Constant]:
             yield from (field for field in part.fields if {"<", "["} & set(field.type))
 
 
-def share(wanted: Interface, differences: Sequence[Difference]) -> float:
+def share(expected: Interface, differences: Sequence[Difference]) -> float:
     """Return which share of a contract's elements is right, in [0, 1]."""
-    elements = sum(len(part.fields) + len(part.constants) for part in wanted.parts)
+    elements = sum(len(part.fields) + len(part.constants) for part in expected.parts)
     return max(0.0, 1.0 - len(differences) / elements) if elements else float(not differences)
 
 
@@ -145,30 +145,34 @@ def closest(path: str, present: Sequence[str]) -> str:
 class _Comparison:
     """One part of a definition against the same part of its contract."""
 
-    def __init__(self, wanted: Interface, found: Interface, index: int) -> None:
-        self._part = wanted.parts[index]
-        self._found = found.parts[index]
-        others = [other for other in range(len(wanted.parts)) if other != index]
-        names = PARTS[wanted.path.partition("/")[0]]
+    def __init__(self, expected: Interface, actual: Interface, index: int) -> None:
+        self._part = expected.parts[index]
+        self._actual = actual.parts[index]
+        others = [other for other in range(len(expected.parts)) if other != index]
+        names = PARTS[expected.path.partition("/")[0]]
         self._elsewhere = {
-            name: names[other] for other in others for name in _names(found.parts[other]) - _names(wanted.parts[other])
+            name: names[other]
+            for other in others
+            for name in _names(actual.parts[other]) - _names(expected.parts[other])
         }
-        self._strayed = {name for other in others for name in _names(wanted.parts[other]) - _names(found.parts[other])}
+        self._strayed = {
+            name for other in others for name in _names(expected.parts[other]) - _names(actual.parts[other])
+        }
         self._name = names[index]
-        self._where = f"{wanted.path}, {names[index]}" if names[index] else wanted.path
+        self._where = f"{expected.path}, {names[index]}" if names[index] else expected.path
 
     def differences(self) -> Iterator[Difference]:
-        wanted = {field.name: field for field in self._part.fields}
-        found = {field.name: field for field in self._found.fields}
-        yield from self._names(wanted, found)
-        for name in wanted.keys() & found.keys():
-            yield from self._field(wanted[name], found[name])
+        expected = {field.name: field for field in self._part.fields}
+        actual = {field.name: field for field in self._actual.fields}
+        yield from self._names(expected, actual)
+        for name in expected.keys() & actual.keys():
+            yield from self._field(expected[name], actual[name])
         yield from self._constants()
 
-    def _names(self, wanted: Mapping[str, Field], found: Mapping[str, Field]) -> Iterator[Difference]:
+    def _names(self, expected: Mapping[str, Field], actual: Mapping[str, Field]) -> Iterator[Difference]:
         constants = {constant.name.lower() for constant in self._part.constants}  # `_constants` speaks of those
-        extra = [name for name in found if name not in wanted and name not in constants]
-        for name in (name for name in wanted if name not in found):
+        extra = [name for name in actual if name not in expected and name not in constants]
+        for name in (name for name in expected if name not in actual):
             if name in self._elsewhere:
                 yield self._difference(Aspect.FIELDS, f"{name} stands in the {self._elsewhere[name]}, it belongs here")
             elif near := _near(name, [other for other in extra if other not in self._strayed]):
@@ -179,26 +183,26 @@ class _Comparison:
         for name in extra:
             if name not in self._strayed:
                 yield self._difference(Aspect.FIELDS, f"the contract has no field {name}")
-        if wanted.keys() == found.keys() and list(wanted) != list(found):
-            order, other = ", ".join(wanted), ", ".join(found)
+        if expected.keys() == actual.keys() and list(expected) != list(actual):
+            order, other = ", ".join(expected), ", ".join(actual)
             yield self._difference(Aspect.FIELDS, f"the order of the fields is {other}, it should be {order}")
 
-    def _field(self, wanted: Field, found: Field) -> Iterator[Difference]:
-        if wanted.element != found.element:
-            yield self._difference(Aspect.TYPES, f"{found.name} is {found.type}, it should be {wanted.type}")
-        elif wanted.type != found.type:
-            yield self._difference(Aspect.BOUNDS, f"{found.name} is {found.type}, it should be {wanted.type}")
-        if wanted.default != found.default and not (wanted.default is None and not found.default):
-            says = "no default" if found.default is None else f"the default {found.default!r}"
-            should = "none" if wanted.default is None else repr(wanted.default)
-            yield self._difference(Aspect.DEFAULTS, f"{found.name} has {says}, it should be {should}")
+    def _field(self, expected: Field, actual: Field) -> Iterator[Difference]:
+        if expected.element != actual.element:
+            yield self._difference(Aspect.TYPES, f"{actual.name} is {actual.type}, it should be {expected.type}")
+        elif expected.type != actual.type:
+            yield self._difference(Aspect.BOUNDS, f"{actual.name} is {actual.type}, it should be {expected.type}")
+        if expected.default != actual.default and not (expected.default is None and not actual.default):
+            says = "no default" if actual.default is None else f"the default {actual.default!r}"
+            should = "none" if expected.default is None else repr(expected.default)
+            yield self._difference(Aspect.DEFAULTS, f"{actual.name} has {says}, it should be {should}")
 
     def _constants(self) -> Iterator[Difference]:
-        found = {constant.name: constant for constant in self._found.constants}
-        fields = [field.name for field in self._found.fields]
-        extra = [name for name in found if name not in _names(self._part)]
+        constants = {constant.name: constant for constant in self._actual.constants}
+        fields = [field.name for field in self._actual.fields]
+        extra = [name for name in constants if name not in _names(self._part)]
         for constant in self._part.constants:
-            name, there = constant.name, found.get(constant.name)
+            name, there = constant.name, constants.get(constant.name)
             if there is not None:
                 if (there.type, there.value) != (constant.type, constant.value):
                     says, should = f"{there.type} {there.value!r}", f"{constant.type} {constant.value!r}"
@@ -248,5 +252,5 @@ def _reason(error: Exception) -> str:
         "InvalidServiceSpecification": "one line --- parts the request from the response",
         "InvalidActionSpecification": "two lines --- part goal, result and feedback",
     }.get(type(error).__name__, "a field is written `type name`, a constant `type NAME = value`")
-    said = str(error).strip()
-    return f"{said} ({about})" if said else about
+    text = str(error).strip()
+    return f"{text} ({about})" if text else about

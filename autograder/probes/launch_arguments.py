@@ -26,19 +26,19 @@ class Argument:
 
 def parse_arguments(text: str) -> dict[str, Argument]:
     """Read what `ros2 launch -s` prints; return arguments by name."""
-    found: dict[str, list[str]] = {}
+    lines_of: dict[str, list[str]] = {}
     lines: list[str] = []
     for line in text.splitlines():
         if match := _NAME.match(line):
-            lines = found[match["name"]] = []
+            lines = lines_of[match["name"]] = []
         elif line.startswith("        "):
             lines.append(line)
-    return {name: _argument(name, lines) for name, lines in found.items()}
+    return {name: _argument(name, lines) for name, lines in lines_of.items()}
 
 
 def _argument(name: str, lines: Sequence[str]) -> Argument:
     """Return an argument of the lines below its name."""
-    said: list[str] = []
+    description: list[str] = []
     default: str | None = None
     is_worked_out = False
     choices: tuple[str, ...] = ()
@@ -49,8 +49,8 @@ def _argument(name: str, lines: Sequence[str]) -> Argument:
             default = None if is_worked_out else "".join(_QUOTED.findall(match["default"]))
             continue
         for phrase in _CHOICES:
-            before, found, listed = words.rpartition(phrase)
-            if found and listed.startswith(("[", "(")) and listed.endswith(("]", ")")):
+            before, separator, listed = words.rpartition(phrase)
+            if separator and listed.startswith(("[", "(")) and listed.endswith(("]", ")")):
                 words, choices = before.strip(), tuple(_QUOTED.findall(listed))
-        said += [words] if words and words != "no description given" else []
-    return Argument(name, " ".join(said), default, choices, is_worked_out)
+        description += [words] if words and words != "no description given" else []
+    return Argument(name, " ".join(description), default, choices, is_worked_out)

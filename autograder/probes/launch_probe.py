@@ -61,18 +61,18 @@ def expect_argument(arguments: Mapping[str, Argument], name: str, default: str, 
     """
     there = ", ".join(arguments) or "none"
     expect(name in arguments, f"The launch file declares no argument {name}; it declares: {there}.")
-    found = arguments[name]
-    shown = "no default" if found.default is None else f"the default {found.default!r}"
-    right = found.default == default or found.is_worked_out
+    argument = arguments[name]
+    shown = "no default" if argument.default is None else f"the default {argument.default!r}"
+    right = argument.default == default or argument.is_worked_out
     expect(right, f"The argument {name} has {shown}, instead of {default!r}.", fraction=0.5)
     expect(
-        bool(found.description) or not described,
+        bool(argument.description) or not described,
         f"The argument {name} has no description: `ros2 launch -s` would not say what it is for.",
         fraction=0.5,
     )
 
 
-def settle(harness: LaunchHarness, wanted: Collection[str]) -> list[str]:
+def settle(harness: LaunchHarness, expected: Collection[str]) -> list[str]:
     """Wait for the nodes that a launch should start; return the nodes that are seen in the end.
 
     Returns early when nothing more is to be expected: the launch has ended, or each program that runs has been seen as
@@ -85,7 +85,7 @@ def settle(harness: LaunchHarness, wanted: Collection[str]) -> list[str]:
     def done() -> bool:
         nonlocal state, since
         nodes, running = harness.nodes(), len(harness.programs())
-        if nodes == sorted(wanted) and running == len(wanted):
+        if nodes == sorted(expected) and running == len(expected):
             return True
         if (nodes, running) != state or len(nodes) < running or not running:
             state, since = (nodes, running), time.monotonic()
@@ -96,14 +96,14 @@ def settle(harness: LaunchHarness, wanted: Collection[str]) -> list[str]:
     return harness.nodes()
 
 
-def expect_nodes(harness: LaunchHarness, wanted: Collection[str]) -> None:
+def expect_nodes(harness: LaunchHarness, expected: Collection[str]) -> None:
     """Fail the check unless exactly the wanted nodes run; waits for them. The message names near misses."""
-    nodes = settle(harness, wanted)
-    if nodes == sorted(wanted):
+    nodes = settle(harness, expected)
+    if nodes == sorted(expected):
         return
     seen = f"The graph holds {', '.join(nodes)}" if nodes else "No node is up"
-    missing = sorted((Counter(wanted) - Counter(nodes)).elements())
-    extra = sorted((Counter(nodes) - Counter(wanted)).elements())
+    missing = sorted((Counter(expected) - Counter(nodes)).elements())
+    extra = sorted((Counter(nodes) - Counter(expected)).elements())
     what = [f"{', '.join(missing)} missing"] if missing else []
     what += [f"{', '.join(extra)} not asked for"] if extra else []
     near = [f"{other} runs instead of {name}" for name in missing for other in extra if _base(name) == _base(other)]
@@ -112,19 +112,19 @@ def expect_nodes(harness: LaunchHarness, wanted: Collection[str]) -> None:
     raise CheckFailed(" ".join(filter(None, parts)))
 
 
-def expect_parameters(harness: LaunchHarness, node: str, wanted: Mapping[str, Value]) -> None:
+def expect_parameters(harness: LaunchHarness, node: str, expected: Mapping[str, Value]) -> None:
     """Fail the check unless a node, by its full name, has these values; numbers to nine digits, types exactly.
 
     A launch that an exception ends stops its nodes, and by chance one of them answers before it is gone. That is no
     answer.
     """
-    found = harness.parameters(node, list(wanted))
-    if found is None or _CAUGHT.search(harness.output):
+    actual = harness.parameters(node, list(expected))
+    if actual is None or _CAUGHT.search(harness.output):
         raise CheckFailed(
             f"{node} does not answer when it is asked for its parameters. {failure(harness.output)}".strip()
         )
-    for name, value in wanted.items():
-        given = found[name]
+    for name, value in expected.items():
+        given = actual[name]
         expect(same(given, value), f"{node} has {name} = {given!r}, instead of {value!r}.")
 
 
@@ -142,8 +142,8 @@ def expect_clean_stop(harness: LaunchHarness) -> None:
         with harness.another() as second:
             expect_nodes(second, nodes)
             died = _died_of_ctrl_c(second)
-    said = ", ".join(f"{name} with {code}" for name, code in died)
-    expect(not died, f"After Ctrl-C, not every process ended cleanly: {said}.", fraction=0.5)
+    statuses = ", ".join(f"{name} with {code}" for name, code in died)
+    expect(not died, f"After Ctrl-C, not every process ended cleanly: {statuses}.", fraction=0.5)
 
 
 def _died_of_ctrl_c(harness: LaunchHarness) -> list[tuple[str, str]]:
@@ -160,12 +160,12 @@ def _died_of_ctrl_c(harness: LaunchHarness) -> list[tuple[str, str]]:
 
 def _lost_a_race(output: str) -> bool:
     """Return whether by a launch's output one of the programs that died did so because rclpy lost a race."""
-    said: dict[str, list[str]] = {f"[{match['label']}": [] for match in _DEAD.finditer(output)}
+    lines_of: dict[str, list[str]] = {f"[{match['label']}": [] for match in _DEAD.finditer(output)}
     for line in output.splitlines():
         label, _, words = line.partition("] ")
-        if label in said:
-            said[label].append(words)
-    return any(lost_a_race("\n".join(lines)) for lines in said.values())
+        if label in lines_of:
+            lines_of[label].append(words)
+    return any(lost_a_race("\n".join(lines)) for lines in lines_of.values())
 
 
 def expect_stopped(stop: Stop) -> None:
@@ -187,12 +187,12 @@ def ended(output: str) -> list[str]:
 
 def node_names(output: str, program: str) -> set[str]:
     """Return the names that a launch gave to nodes of a program that has died, whose commands its output repeats."""
-    found = set()
+    names = set()
     for line in output.splitlines():
         if (died := _DEAD.search(line)) and died["name"] == program:
             _, given, rest = line[died.end() :].rpartition(_NODE)
-            found |= {match[0]} if given and (match := _WORD.match(rest)) else set()
-    return found
+            names |= {match[0]} if given and (match := _WORD.match(rest)) else set()
+    return names
 
 
 def failure(output: str) -> str:

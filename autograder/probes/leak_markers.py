@@ -20,5 +20,5 @@ def draw_marker(draw: random.Random) -> str:
 
 def markers_in(text: str) -> set[str]:
     """Return the words that a text holds."""
-    found: set[str] = set(_MARKER.findall(text))
-    return {word for word in found if len({word[at : at + 2] for at in range(0, len(word), 2)}) == LENGTH}
+    markers: set[str] = set(_MARKER.findall(text))
+    return {word for word in markers if len({word[at : at + 2] for at in range(0, len(word), 2)}) == LENGTH}

@@ -61,12 +61,12 @@ def objections(workspace: Workspace, source: Source) -> dict[str, str]:
     empty = replace(workspace, root=workspace.root.with_name(f"{workspace.root.name}-style"))
     empty.install.mkdir(parents=True, exist_ok=True)
     (report,) = student_test_runs.run(empty, replace(source, files=files), [TestRun(tuple(tests), conftest=False)])
-    said: dict[str, str] = {}
+    messages: dict[str, str] = {}
     for name, finding in _FINDINGS.items():
         test = f"{name}::{name}"
         if test not in report.executed or test in report.failed:
             match = finding.search(report.output)
-            said[name] = (
+            messages[name] = (
                 match[1].removeprefix(f"{BELOW}/") if match else report.claims.messages.get(test, "it did not run")
             )
-    return said
+    return messages

@@ -84,7 +84,7 @@ def parse(text: str, where: str = MANIFEST) -> Manifest:
     """Read a manifest's text; `where` names it in a CheckFailed, which says why ROS would refuse it."""
     _refuse_unsafe(text, where)
     try:
-        found = parse_package_string(text, where)
+        package = parse_package_string(text, where)
     except InvalidPackage as error:
         raise CheckFailed(f"ROS refuses {where}: {_reason(error)}") from None
     except Exception as error:  # expat's and catkin_pkg's own, such as TypeError for a file of bytes
@@ -92,23 +92,23 @@ def parse(text: str, where: str = MANIFEST) -> Manifest:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DeprecationWarning)  # of pyparsing, in catkin_pkg
-            found.evaluate_conditions(DISTRIBUTION.variables)
+            package.evaluate_conditions(DISTRIBUTION.variables)
     except (ValueError, RecursionError) as error:
         raise CheckFailed(f"A condition in {where} cannot be read: {error}") from None
-    exports = [each for each in found.exports if each.evaluated_condition]
+    exports = [each for each in package.exports if each.evaluated_condition]
     return Manifest(
-        name=found.name,
-        version=found.version,
-        description=found.description,
-        format=found.package_format,
-        licences=tuple(str(licence) for licence in found.licenses),
-        maintainers=tuple((person.name, person.email or "") for person in found.maintainers),
+        name=package.name,
+        version=package.version,
+        description=package.description,
+        format=package.package_format,
+        licences=tuple(str(licence) for licence in package.licenses),
+        maintainers=tuple((person.name, person.email or "") for person in package.maintainers),
         build_type=next((each.content or "" for each in exports if each.tagname == "build_type"), ""),
         depends={
-            kind: frozenset(each.name for each in getattr(found, f"{kind}_depends") if each.evaluated_condition)
+            kind: frozenset(each.name for each in getattr(package, f"{kind}_depends") if each.evaluated_condition)
             for kind in KINDS
         },
-        groups=frozenset(each.name for each in found.member_of_groups if each.evaluated_condition),
+        groups=frozenset(each.name for each in package.member_of_groups if each.evaluated_condition),
     )
 
 
@@ -147,5 +147,5 @@ def _of_tags(root: ElementTree.Element) -> Manifest:
 def _reason(error: InvalidPackage) -> str:
     """Return catkin_pkg's complaint without the headline that repeats the path."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    said = [line for line in lines if not line.startswith("Error(s) in ")] or lines
-    return "; ".join(said).replace(":; ", ": ")
+    messages = [line for line in lines if not line.startswith("Error(s) in ")] or lines
+    return "; ".join(messages).replace(":; ", ": ")

@@ -23,25 +23,25 @@ def mean_period(messages: Sequence[ReceivedMessage]) -> float:
     return (messages[-1].seconds - messages[0].seconds) / (len(messages) - 1) if len(messages) > 1 else math.inf
 
 
-def is_paced(messages: Sequence[ReceivedMessage], wanted: float, time: str) -> bool:
-    """Return whether messages come one by one, with a pause of `wanted` s between them.
+def is_paced(messages: Sequence[ReceivedMessage], period: float, time: str) -> bool:
+    """Return whether messages come one by one, with a pause of `period` s between them.
 
     Two at once, and then a pause that is twice as long, are not right, although their number is. In real time single
     pauses may be off by more, but the one in the middle may not: a program can choose to run in real time.
 
     Args:
         messages: in the order in which they came; two or more.
-        wanted: the period in s.
+        period: the period in s.
         time: the harness's, "lockstep" or "real".
     """
-    off = TOLERANCE * wanted + JITTER[time]
+    off = TOLERANCE * period + JITTER[time]
     pauses = [after.seconds - before.seconds for before, after in pairwise(messages)]
-    right = [abs(pause - wanted) <= off for pause in pauses]
-    if not right or abs(median(pauses) - wanted) > TOLERANCE * wanted:  # which few late messages do not move
+    right = [abs(pause - period) <= off for pause in pauses]
+    if not right or abs(median(pauses) - period) > TOLERANCE * period:  # which few late messages do not move
         return False
     mean = mean_period(messages)
-    longest = MOST * wanted if time == REAL else wanted + off
-    return sum(right) >= RIGHT[time] * len(right) and wanted - off <= mean <= longest
+    longest = MOST * period if time == REAL else period + off
+    return sum(right) >= RIGHT[time] * len(right) and period - off <= mean <= longest
 
 
 def describe_pace(messages: Sequence[ReceivedMessage]) -> str:

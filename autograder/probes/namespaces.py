@@ -19,17 +19,17 @@ def missing_in_namespace(
     The names are its topics and services. The sentence is empty if it has all of them there, and where `plain` asks for
     it, if the queues of its topics are plain, as `non_default_qos` says.
     """
-    wanted = [f"{SPACE}/{name}" for name in names]
+    full_names = [f"{SPACE}/{name}" for name in names]
     with AutoHarness(workspace, package, executable, arguments=("--ros-args", "-r", f"__ns:={SPACE}")) as harness:
 
         def missing() -> list[str]:
             graph = harness.node
             there = {name for name, _ in graph.get_topic_names_and_types() + graph.get_service_names_and_types()}
-            return [name for name in wanted if name not in there]
+            return [name for name in full_names if name not in there]
 
         harness.wait_for(lambda: not missing(), SEEN_SECONDS)
         left = missing()
-        differs = non_default_qos(harness.node, *wanted) if plain else ""
+        differs = non_default_qos(harness.node, *full_names) if plain else ""
     if not left:
         return differs
     return (

@@ -70,13 +70,13 @@ class NodeParameters:
         answers = {
             name: self._ask(GetParameters, "get_parameters", GetParameters.Request(names=[name])) for name in names
         }
-        return {name: value_of(found.values[0], name) for name, found in answers.items() if found.values}
+        return {name: value_of(answer.values[0], name) for name, answer in answers.items() if answer.values}
 
     def descriptors(self, *names: str) -> dict[str, ParameterDescriptor]:
         """Return descriptors by name; an undeclared name is left out."""
         requests = {name: DescribeParameters.Request(names=[name]) for name in names}
         answers = {name: self._ask(DescribeParameters, "describe_parameters", r) for name, r in requests.items()}
-        return {name: found.descriptors[0] for name, found in answers.items() if found.descriptors}
+        return {name: answer.descriptors[0] for name, answer in answers.items() if answer.descriptors}
 
     def change(self, values: Mapping[str, Value]) -> SetParametersReply:
         """Ask the node to set parameters, all in one request."""
@@ -103,9 +103,9 @@ def shortened(text: str) -> str:
     return line if len(line) <= SHOWN else f"{line[:SHOWN]}…"
 
 
-def near_misses(wanted: Collection[str], found: Collection[str]) -> dict[str, str]:
+def near_misses(expected: Collection[str], actual: Collection[str]) -> dict[str, str]:
     """Return the wanted names that are missing, each with the one name that seems to stand for it, or ''."""
-    missing, extra = sorted(set(wanted) - set(found)), sorted(set(found) - set(wanted))
+    missing, extra = sorted(set(expected) - set(actual)), sorted(set(actual) - set(expected))
     likeness = {(name, other): SequenceMatcher(None, name, other).ratio() for name in missing for other in extra}
     near: dict[str, str] = {}
     for name, other in sorted(likeness, key=lambda pair: -likeness[pair]):
@@ -114,21 +114,22 @@ def near_misses(wanted: Collection[str], found: Collection[str]) -> dict[str, st
     return {name: near.get(name, "") for name in missing}
 
 
-def missing_sentence(wanted: Collection[str], found: Collection[str]) -> str:
+def missing_sentence(expected: Collection[str], actual: Collection[str]) -> str:
     """Say which wanted parameters a node does not declare, near misses named; '' if it declares all of them."""
     parts = [
-        f"{name} (it declares {shortened(near)})" if near else name for name, near in near_misses(wanted, found).items()
+        f"{name} (it declares {shortened(near)})" if near else name
+        for name, near in near_misses(expected, actual).items()
     ]
     return f"The node does not declare {', '.join(parts)}." if parts else ""
 
 
-def same(value: Value, wanted: Value) -> bool:
+def same(value: Value, expected: Value) -> bool:
     """Return whether a parameter's value is the wanted one, of the same type; doubles may differ by rounding."""
-    if type(value) is not type(wanted):
+    if type(value) is not type(expected):
         return False
-    if isinstance(value, float) and isinstance(wanted, float):
-        return abs(value - wanted) <= 1e-9
-    return value == wanted
+    if isinstance(value, float) and isinstance(expected, float):
+        return abs(value - expected) <= 1e-9
+    return value == expected
 
 
 def as_declared(values: Mapping[str, Value], declared: Mapping[str, Value]) -> dict[str, Value]:
@@ -144,11 +145,11 @@ def _in_type_of(like: Value, value: Value) -> Value:
     return int(value) if type(like) is int and math.isfinite(value) else value
 
 
-def differences(values: Mapping[str, Value], wanted: Mapping[str, Value]) -> list[str]:
+def differences(values: Mapping[str, Value], expected: Mapping[str, Value]) -> list[str]:
     """Say for each wanted parameter that has another value what it is and what it should be."""
     return [
         f"{name} is {value_text(values.get(name))} instead of {value_text(value)}"
-        for name, value in wanted.items()
+        for name, value in expected.items()
         if not same(values.get(name), value)
     ]
 

@@ -143,14 +143,14 @@ class Source:
 
     def test_names(self, files: tuple[str, ...]) -> frozenset[str]:
         """Return the tests that stand in test files, as a report names them; the files are parsed and not run."""
-        found: set[str] = set()
+        names: set[str] = set()
         for name in files:
             data = self.tests.get(name, b"")
             tree = parse_python(data) if len(data) <= MAX_SOURCE else None
             for node in tree.body if tree else ():
                 stem = PurePosixPath(name).stem
-                found |= {f"{stem}::{test}" for test in _tests(node)}
-        return frozenset(found)
+                names |= {f"{stem}::{test}" for test in _tests(node)}
+        return frozenset(names)
 
 
 def _tests(node: ast.stmt) -> list[str]:
@@ -196,8 +196,8 @@ def _verdict(case: ET.Element) -> tuple[ClaimedOutcome, str]:
         ("error", ClaimedOutcome.ERROR),
         ("skipped", ClaimedOutcome.SKIPPED),
     ):
-        found = case.find(tag)
-        if found is not None:
-            lines = (found.get("message") or "").splitlines()
+        element = case.find(tag)
+        if element is not None:
+            lines = (element.get("message") or "").splitlines()
             return verdict, (lines[0] if lines else "")[:MAX_MESSAGE]
     return ClaimedOutcome.PASSED, ""

@@ -102,13 +102,13 @@ def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = TEST_RUN, 
     return replace(plain, mounts=mounts, environment=environment, network=network)
 
 
-def _run(workspace: Workspace, source: Source, wanted: TestRun) -> Report:
+def _run(workspace: Workspace, source: Source, test_run: TestRun) -> Report:
     try:
         with TemporaryDirectory(prefix="tests-", dir=workspace.root.parent, ignore_cleanup_errors=True) as place:
             if current_isolation() is Isolation.BUBBLEWRAP:
-                return _run_in(Path(place), workspace, source, wanted)
+                return _run_in(Path(place), workspace, source, test_run)
             with Domain() as domain:  # its runs are in one network
-                return _run_in(Path(place), replace(workspace, domain=domain.number), source, wanted)
+                return _run_in(Path(place), replace(workspace, domain=domain.number), source, test_run)
     except OSError as error:
         if error.errno not in (errno.ENOSPC, errno.EDQUOT):
             with reading(f"The package {source.package}", advice="A folder has the name of a file, or the reverse."):
@@ -117,44 +117,46 @@ def _run(workspace: Workspace, source: Source, wanted: TestRun) -> Report:
         raise StudentError(Diagnosis(Kind.OUT_OF_MEMORY, sentence)) from None
 
 
-def _run_in(place: Path, workspace: Workspace, source: Source, wanted: TestRun) -> Report:
-    if wanted.version is not None:
+def _run_in(place: Path, workspace: Workspace, source: Source, test_run: TestRun) -> Report:
+    if test_run.version is not None:
         there = replace(workspace, root=place / "ws")
-        folder = write_version(wanted.version, source.package, source.tests, there.root)
+        folder = write_version(test_run.version, source.package, source.tests, there.root)
     else:
         there, folder = workspace, place / "ws" / "src" / source.package
         for name, data in source.files.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
-    launches = _launches(source, wanted)
-    arguments = _arguments(source, folder, wanted, launches)
-    if not wanted.sniffed:
-        report = _host(_confined(there, folder, wanted, place / "home"), wanted, arguments, launches)
+    launches = _launches(source, test_run)
+    arguments = _arguments(source, folder, test_run, launches)
+    if not test_run.sniffed:
+        report = _start_pytest(_confined(there, folder, test_run, place / "home"), test_run, arguments, launches)
     else:
         with RtpsSniffer() as sniffer:
-            spec = _confined(replace(there, domain=sniffer.domain), folder, wanted, place / "home")
-            report = _host(spec, wanted, arguments, launches)
+            spec = _confined(replace(there, domain=sniffer.domain), folder, test_run, place / "home")
+            report = _start_pytest(spec, test_run, arguments, launches)
             report = replace(report, joined_domain=sniffer.take_announcements())
-    is_secret = wanted.version is not None and not wanted.shown
-    return report.closed(source.test_names(wanted.files)) if is_secret else report
+    is_secret = test_run.version is not None and not test_run.shown
+    return report.closed(source.test_names(test_run.files)) if is_secret else report
 
 
-def _confined(workspace: Workspace, folder: Path, wanted: TestRun, home: Path) -> Sandbox:
+def _confined(workspace: Workspace, folder: Path, test_run: TestRun, home: Path) -> Sandbox:
     """Describe the sandbox of one run: nothing in it can be written to but its own /tmp, where there is one."""
     if current_isolation() is Isolation.BUBBLEWRAP:
-        spec = sandboxed(replace(workspace, scratch=HOME), folder, RUNNER, network=wanted.sniffed)
+        spec = sandboxed(replace(workspace, scratch=HOME), folder, RUNNER, network=test_run.sniffed)
         return replace(spec, workdir=folder, mounts=tuple(mount for mount in spec.mounts if mount.path != HOME))
     home.mkdir(parents=True)
     return replace(sandboxed(replace(workspace, scratch=home), folder, RUNNER, network=True), workdir=folder)
 
 
-def _arguments(source: Source, folder: Path, wanted: TestRun, launches: bool) -> list[str]:
-    files = [str(folder / "test" / name) for name in wanted.files]
+def _arguments(source: Source, folder: Path, test_run: TestRun, launches: bool) -> list[str]:
+    files = [str(folder / "test" / name) for name in test_run.files]
     plain = ["-c", "/dev/null", "--rootdir", str(folder), "--confcutdir", str(folder)]
     plain += [word for plugin in _launch_plugins() for word in ("-p", plugin)] if launches else []
     quiet = ["-p", "no:cacheprovider", "-q", "--tb=short", "-o", "junit_family=xunit2"]
-    asked = [*(["-x"] if wanted.first_failure else []), *([] if wanted.conftest else ["--noconftest"])]
-    asked += [f"--deselect=test/{module}.py::{rest}" for module, _, rest in (n.partition("::") for n in wanted.without)]
+    asked = [*(["-x"] if test_run.first_failure else []), *([] if test_run.conftest else ["--noconftest"])]
+    asked += [
+        f"--deselect=test/{module}.py::{rest}" for module, _, rest in (n.partition("::") for n in test_run.without)
+    ]
     return [*plain, *quiet, *asked, *files]
 
 
@@ -165,18 +167,18 @@ def _launch_plugins() -> tuple[str, str]:
     return "launch_pytest.plugin", "launch_testing.pytest.hooks" if is_real else "launch_testing.plugin"
 
 
-def _launches(source: Source, wanted: TestRun) -> bool:
+def _launches(source: Source, test_run: TestRun) -> bool:
     """Return whether tests may launch something, for which there is more to import."""
-    read = [*wanted.files, *(name for name in source.tests if not Path(name).name.startswith("test_"))]
+    read = [*test_run.files, *(name for name in source.tests if not Path(name).name.startswith("test_"))]
     return any(b"launch" in source.tests.get(name, b"") for name in read)
 
 
-def _host(spec: Sandbox, wanted: TestRun, arguments: list[str], launches: bool) -> Report:
+def _start_pytest(spec: Sandbox, test_run: TestRun, arguments: list[str], launches: bool) -> Report:
     status_read, status_write = os.pipe()
     go_read, go_write = os.pipe()
     with os.fdopen(os.memfd_create("report"), "w+b") as report:
         theirs = (report.fileno(), status_write, go_read)
-        command = [sys.executable, str(RUNNER), *map(str, theirs), str(int(wanted.backwards)), *arguments]
+        command = [sys.executable, str(RUNNER), *map(str, theirs), str(int(test_run.backwards)), *arguments]
         try:
             process = launch(command, spec, pass_fds=theirs, profile="launch" if launches else "tests")
         finally:
@@ -201,8 +203,8 @@ def _status(descriptor: int, process: Process) -> int | None:
         while not select.select([descriptor], [], [], 0.1)[0]:
             if process.exit_reason is not None:
                 return None
-        said = os.read(descriptor, 64)
-        return int(said) if re.fullmatch(rb"[0-5]\n", said) else None
+        data = os.read(descriptor, 64)
+        return int(data) if re.fullmatch(rb"[0-5]\n", data) else None
     finally:
         os.close(descriptor)
 

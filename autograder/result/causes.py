@@ -87,9 +87,9 @@ def causes(checks: Sequence[CheckResult], diagnosis: str = "") -> tuple[Cause, .
     )
 
 
-def dearest(found: Sequence[Cause]) -> CheckResult | None:
+def dearest(all_causes: Sequence[Cause]) -> CheckResult | None:
     """Return the check that failed and costs most points, with all that came with it; None if none failed."""
-    failed = [cause for cause in found if cause.check.outcome is Outcome.FAILED]
+    failed = [cause for cause in all_causes if cause.check.outcome is Outcome.FAILED]
     return max(failed, key=lambda cause: cause.lost).check if failed else None
 
 

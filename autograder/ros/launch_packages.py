@@ -108,11 +108,11 @@ def python_packages(sources: Sequence[Source] = SOURCES) -> dict[str, str]:
 
 def installed_packages(names: Iterable[str]) -> dict[str, str]:
     """Return the versions of those of some Python packages that are installed here, by their names."""
-    found: dict[str, str] = {}
+    versions: dict[str, str] = {}
     for name in names:
         with suppress(PackageNotFoundError):
-            found[name] = version(name)
-    return found
+            versions[name] = version(name)
+    return versions
 
 
 def describe_launch() -> str:

@@ -33,9 +33,9 @@ def log_folder(environ: Mapping[str, str] | None = None) -> Path:
 
 
 def _is_ours(folder: Path) -> bool:
-    found = folder.stat()
+    status = folder.stat()
     # The group may be the user's own, as on Ubuntu.
-    return found.st_uid == os.geteuid() and not found.st_mode & stat.S_IWOTH and os.access(folder, os.W_OK | os.X_OK)
+    return status.st_uid == os.geteuid() and not status.st_mode & stat.S_IWOTH and os.access(folder, os.W_OK | os.X_OK)
 
 
 @cache

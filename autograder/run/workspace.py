@@ -61,11 +61,11 @@ class Workspace:
             )
             raise StudentError(Diagnosis(Kind.MISSING_EXECUTABLE, sentence))
         there = sorted(entry.name for entry in folder.iterdir() if entry.is_file()) if folder.is_dir() else []
-        found = f"what it installs is {', '.join(there)}" if there else "it installs none at all"
+        installed = f"what it installs is {', '.join(there)}" if there else "it installs none at all"
         raise StudentError(
             Diagnosis(
                 Kind.MISSING_EXECUTABLE,
-                f"The package {package} installs no program {name}; {found}. Is the name misspelt? The names stand "
+                f"The package {package} installs no program {name}; {installed}. Is the name misspelt? The names stand "
                 "in console_scripts in setup.py, and the programs' folder in setup.cfg.",
             )
         )

@@ -51,9 +51,9 @@ def _stubs(source: Path, packages: tuple[str, ...]) -> Iterator[tuple[str, str]]
         for pattern in _BUILT_FROM:
             for path in sorted((source / name).glob(pattern)):
                 lines = enumerate(_read(path).splitlines(), 1)
-                found = [f"line {number}: {line.strip()}" for number, line in lines if STILL_TO_BE_WRITTEN in line]
-                if found:
-                    yield f"src/{path.relative_to(source)}", found[0]
+                stub_lines = [f"line {number}: {line.strip()}" for number, line in lines if STILL_TO_BE_WRITTEN in line]
+                if stub_lines:
+                    yield f"src/{path.relative_to(source)}", stub_lines[0]
 
 
 def _read(path: Path) -> str:

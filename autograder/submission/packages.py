@@ -65,7 +65,7 @@ def read_packages(source: Path) -> tuple[dict[str, Package], dict[Path, str]]:
     Raises:
         StudentError: two packages have the same name, or there are too many.
     """
-    found: dict[str, Package] = {}
+    packages: dict[str, Package] = {}
     broken: dict[Path, str] = {}
     for folder in _package_folders(source):
         where = f"src/{(folder / MANIFEST).relative_to(source)}"
@@ -76,19 +76,19 @@ def read_packages(source: Path) -> tuple[dict[str, Package], dict[Path, str]]:
         except StudentError as error:
             broken[folder] = error.diagnosis.sentence
             continue
-        if (other := found.get(package.name)) is not None:
+        if (other := packages.get(package.name)) is not None:
             both = " and ".join(f"src/{path.relative_to(source)}" for path in (other.folder, folder))
             raise _wrong(f"{both} are two packages with the name {package.name}: colcon builds neither. Take one out.")
-        found[package.name] = package
-        if len(found) > MAX_PACKAGES:
+        packages[package.name] = package
+        if len(packages) > MAX_PACKAGES:
             raise _wrong(f"src holds more than {MAX_PACKAGES} packages: take out those that are not yours.")
-    return found, broken
+    return packages, broken
 
 
 def find_packages(source: Path) -> tuple[dict[str, Path], dict[Path, str]]:
     """Return the folders of the packages below a folder, and the errors, as `read_packages` does."""
-    found, broken = read_packages(source)
-    return {name: package.folder for name, package in found.items()}, broken
+    packages, broken = read_packages(source)
+    return {name: package.folder for name, package in packages.items()}, broken
 
 
 def _package_folders(source: Path) -> Iterator[Path]:

@@ -113,5 +113,5 @@ def beyond_bounds(value: object) -> str:
 def reason(error: BaseException) -> str:
     """Return an exception as one short line without control characters; without a text, the name of its class."""
     text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)  # without the path here
-    said = " ".join(clean(text).split())
-    return said[:MAX_REASON].rstrip(".") if said else type(error).__name__
+    words = " ".join(clean(text).split())
+    return words[:MAX_REASON].rstrip(".") if words else type(error).__name__

@@ -248,8 +248,8 @@ def expect(condition: bool, message: str, *, fraction: float = 0.0, hints: tuple
 
 def check_of(function: object) -> Check | None:
     """Return the check that a function declares, or None."""
-    found = getattr(function, "__check__", None)
-    return found if isinstance(found, Check) else None
+    declared = getattr(function, "__check__", None)
+    return declared if isinstance(declared, Check) else None
 
 
 def _with_row(body: Callable[..., None], row: CheckRow) -> Callable[..., None]:

@@ -67,11 +67,11 @@ def chapter_files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
 
 def _digest(paths: Iterable[Path]) -> str:
     """Return a digest of the names and contents of files, as 12 hexadecimal digits."""
-    found = hashlib.sha256()
+    sha256 = hashlib.sha256()
     for path in paths:
         name = path.relative_to(layout.course().root if path.is_relative_to(layout.course().root) else layout.ROOT)
-        found.update(f"{name}\0{path.stat().st_size}\0".encode() + path.read_bytes())
-    return found.hexdigest()[:12]
+        sha256.update(f"{name}\0{path.stat().st_size}\0".encode() + path.read_bytes())
+    return sha256.hexdigest()[:12]
 
 
 def places(assignment: str, reads: Iterable[str] = (), *, parts: Iterable[str] = ("visible", "hidden")) -> list[Path]:
@@ -105,15 +105,15 @@ def _below(root: Path, tops: Iterable[Path]) -> Iterator[Path]:
 
 def _imported(own: Iterable[Path], checks: Path) -> set[Path]:
     """Return the modules of other chapters' checks that some checks import, and those that these import."""
-    pending, found = [path for top in own for path in (top, *top.rglob("*")) if path.suffix == ".py"], set[Path]()
+    pending, modules = [path for top in own for path in (top, *top.rglob("*")) if path.suffix == ".py"], set[Path]()
     while pending:
         for name, names in CHECKS_IMPORT.findall(pending.pop().read_text(encoding="utf-8")):
             dotted = [name, *(f"{name}.{each}" for each in re.findall(r"\w+", names))]
             for path in (path for each in dotted for path in _modules(each, checks)):
-                if path not in found and not any(path == top or top in path.parents for top in own):
-                    found.add(path)
+                if path not in modules and not any(path == top or top in path.parents for top in own):
+                    modules.add(path)
                     pending.append(path)
-    return found
+    return modules
 
 
 def _modules(dotted: str, checks: Path) -> Iterator[Path]:

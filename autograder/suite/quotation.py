@@ -66,7 +66,7 @@ def quote(cell: Mapping[str, Any], text: str) -> str | None:
         return next((row.text for row in rows if [_unmarked(each) for each in row.cells] == columns), None)
     else:
         sought, pieces = _unmarked(_inline(text.removeprefix("- "))), _pieces(source)
-    return next((found for piece in pieces if (found := _quote_of(piece, sought)) is not None), None)
+    return next((quoted for piece in pieces if (quoted := _quote_of(piece, sought)) is not None), None)
 
 
 def _quote_of(piece: str | Row, sought: str) -> str | None:
@@ -78,7 +78,7 @@ def _quote_of(piece: str | Row, sought: str) -> str | None:
     if start < 0:
         return None
     end = start + len(sought)
-    borders = [0, *(len(_unmarked(piece[: found.end()])) for found in _NEXT.finditer(piece)), len(plain)]
+    borders = [0, *(len(_unmarked(piece[: match.end()])) for match in _NEXT.finditer(piece)), len(plain)]
     if not _ENDED.search(plain[:start].rstrip()):
         start = max(border for border in borders if border <= start)
     if not _ENDED.search(sought):

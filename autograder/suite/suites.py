@@ -88,9 +88,9 @@ class Suite:
             points[check.group] = points.get(check.group, 0.0) + check.points
         return points
 
-    def with_dependencies(self, *wanted: str) -> tuple[str, ...]:
+    def with_dependencies(self, *ids: str) -> tuple[str, ...]:
         """Return the ids of checks and of all that they need, in the order of the suite."""
-        needs, needed, pending = {check.id: check.needs for check in self.checks}, set[str](), list(wanted)
+        needs, needed, pending = {check.id: check.needs for check in self.checks}, set[str](), list(ids)
         while pending:
             if (name := pending.pop()) not in needed:
                 needed.add(name)
@@ -139,7 +139,7 @@ def read(home: str, assignment: str, kind: str) -> Suite:
         described = importlib.import_module(package)
         modules = [importlib.import_module(f"{package}.{name}") for name in described.MODULES]
     files = tuple(Path(inspect.getfile(module)) for module in modules)
-    checks = [found for module in modules for value in vars(module).values() if (found := check_of(value))]
+    checks = [declared for module in modules for value in vars(module).values() if (declared := check_of(value))]
     _require_order(assignment, checks)
     if groups := getattr(described, "GROUPS", ()):
         if unlisted := {check.group for check in checks}.difference(groups):

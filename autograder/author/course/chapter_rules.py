@@ -71,15 +71,15 @@ def read_chapter(chapter: Chapter) -> ReadChapter:
     graded = (folder / suites.HIDDEN).is_dir() or (notebook is not None and any(map(is_graded, notebook.cells)))
     read = read_checks(chapter.assignment) if graded else ReadChecks((), (), None, {})
     name, path = chapter.notebook_path.name, shown(chapter.notebook_path)
-    found = [*unreadable]
+    problems = [*unreadable]
     if notebook is not None:
         text = chapter.notebook_path.read_text(encoding="utf-8")
         usable = not (wrong := [*broken_metadata(name, notebook)])
         more = _broken_notebook(chapter, notebook, read) if usable else [*wrong, *broken_rules(name, notebook)]
-        found += [placed(each, text) if each.file == name else each for each in more]
+        problems += [placed(each, text) if each.file == name else each for each in more]
         notebook = notebook if usable else None
     hidden = None if read.checks is None else tuple(c for c in read.checks if c.visibility is Visibility.HIDDEN)
-    findings = [replace(each, file=path) if each.file == name else each for each in found]
+    findings = [replace(each, file=path) if each.file == name else each for each in problems]
     later = [] if not hidden else list(_outdated_titles(chapter.assignment))
     unproven = unproven_checks(folder, shown(folder), [check.id for check in hidden]) if hidden else ()
     return ReadChapter((*read.findings, *unproven, *later, *findings), notebook, hidden)
@@ -89,25 +89,25 @@ def read_checks(assignment: str) -> ReadChecks:
     """Read the checks of a chapter, the mutants and variants beside them, and the packages that they grade."""
     folder = layout.CHECKS / f"ch{assignment}"
     read = {kind: read_suite(assignment, kind) for kind in KINDS}
-    found = [finding for kind in KINDS for finding in read[kind].findings]
-    found += broken_python(folder)
+    findings = [finding for kind in KINDS for finding in read[kind].findings]
+    findings += broken_python(folder)
     places = {f"{kind} {id}": place for kind in KINDS for id, place in read[kind].places.items()}
     checks, points = None, None
     try:
         hidden, visible = suites.hidden(assignment), suites.visible(assignment)
         checks, points = (*visible.checks, *hidden.checks), hidden.groups
     except Exception as error:  # an author's module may raise anything
-        found += [] if found else [_import_error(error, folder)]  # earlier findings are more precise
+        findings += [] if findings else [_import_error(error, folder)]  # earlier findings are more precise
     written = read[suites.HIDDEN]
     sources = written.sources
     if not all((layout.SOLUTIONS / source).is_dir() for source in sources):
         sources = ()  # one of the names is wrong, which was already reported
     known = None if checks is None else [check.id for check in checks if check.visibility is Visibility.HIDDEN]
     ids = [*written.places] if known is None and written.is_complete else known
-    found += broken_packages(sources)
-    found += broken_mutants(folder, shown(folder), ids, sources)
-    found += broken_variants(folder / "variants", sources)
-    return ReadChecks(tuple(found), checks, points, places)
+    findings += broken_packages(sources)
+    findings += broken_mutants(folder, shown(folder), ids, sources)
+    findings += broken_variants(folder / "variants", sources)
+    return ReadChecks(tuple(findings), checks, points, places)
 
 
 def require_checks(assignments: Iterable[str]) -> None:
@@ -184,5 +184,5 @@ def placed(finding: Finding, text: str) -> Finding:
     return replace(finding, line=1 if inside is None else inside + 1)
 
 
-def _line(lines: Sequence[str], wanted: str, start: int) -> int | None:
-    return next((index for index in range(start, len(lines)) if wanted in lines[index]), None)
+def _line(lines: Sequence[str], text: str, start: int) -> int | None:
+    return next((index for index in range(start, len(lines)) if text in lines[index]), None)

@@ -31,8 +31,8 @@ def broken_course(read: Mapping[str, ReadChapter], *, whole: bool) -> list[Findi
         read: chapters by their names.
         whole: whether these are all chapters. Rules that need all of them are skipped otherwise.
     """
-    found = list(_coverage(read, whole))
-    return [*_folders(), *_worlds(), *found] if whole else found
+    findings = list(_coverage(read, whole))
+    return [*_folders(), *_worlds(), *findings] if whole else findings
 
 
 def _folders() -> Iterator[Finding]:

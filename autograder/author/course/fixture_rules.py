@@ -54,8 +54,8 @@ def _fixtures(file: PythonFile) -> list[str]:
 def _parameters(function: Function) -> list[str]:
     """Return the arguments that `pytest.mark.parametrize` provides."""
     calls = (each for each in decorators(function).items() if each[0] == "parametrize")
-    found: list[str] = []
+    arguments: list[str] = []
     for _, call in calls:
         names = literal(call.args[0]) if isinstance(call, ast.Call) and call.args else None
-        found += names.replace(",", " ").split() if isinstance(names, str) else names or []
-    return found
+        arguments += names.replace(",", " ").split() if isinstance(names, str) else names or []
+    return arguments

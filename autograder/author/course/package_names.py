@@ -55,7 +55,7 @@ def _ros_packages() -> frozenset[str]:
 @cache
 def _pip_packages() -> frozenset[str]:
     """Return the normalized names of the packages that pip installed."""
-    named = (str(found.metadata["Name"]) for found in metadata.distributions())
+    named = (str(distribution.metadata["Name"]) for distribution in metadata.distributions())
     return frozenset(re.sub(r"[-_.]+", "-", name).lower() for name in named)
 
 

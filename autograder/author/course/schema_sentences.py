@@ -56,26 +56,26 @@ def meant(name: str, known: Iterable[str]) -> str:
 
 def _sentences(error: Any, here: str) -> Iterator[tuple[Place, str]]:
     """Yield sentences for an error of jsonschema, which may concern several keys below the place `here`."""
-    schema, rule, wanted, instance = error.schema, error.validator, error.validator_value, error.instance
-    if rule == "additionalProperties" and wanted is False:
+    schema, rule, expected, instance = error.schema, error.validator, error.validator_value, error.instance
+    if rule == "additionalProperties" and expected is False:
         known = list(schema["properties"])
         for key in (str(each) for each in instance if each not in known):
             yield (key,), f"{here} has an unknown key `{key}`: {meant(key, known)}"
     elif rule == "required":
-        for key in wanted:
+        for key in expected:
             if key not in instance:
                 yield (), f"{here} has no `{key}`"
     elif rule == "dependentRequired":
-        for key, others in wanted.items():
+        for key, others in expected.items():
             for other in others if key in instance else ():
                 if other not in instance:
                     yield (), f"{here} has `{key}`, and no `{other}`"
     elif rule == "type":
-        names = [IN_WORDS[name] for name in ([wanted] if isinstance(wanted, str) else wanted)]
-        quoted = ": put it in quotes" if "string" in wanted and not isinstance(instance, (Mapping, list)) else ""
+        names = [IN_WORDS[name] for name in ([expected] if isinstance(expected, str) else expected)]
+        quoted = ": put it in quotes" if "string" in expected and not isinstance(instance, (Mapping, list)) else ""
         yield (), f"{here} must be {' or '.join(names)}, not {_kind(instance)}{'' if instance is None else quoted}"
     elif rule == "minItems":
-        yield (), f"{here} needs {wanted} entries, and has {len(instance)}"
+        yield (), f"{here} needs {expected} entries, and has {len(instance)}"
     else:
         yield (), f"{here}: {schema.get('description', error.message)}"
 
@@ -87,12 +87,12 @@ def _named(place: Place) -> str:
 
 def _id(data: Any, error: ValidationError) -> str:
     """Return the `id` of the innermost enclosing mapping that has one, in brackets, or an empty string."""
-    found, inside = "", data
+    innermost, inside = "", data
     for part in error.absolute_path:
         inside = inside[part]
         if isinstance(inside, Mapping) and isinstance(inside.get("id"), str):
-            found = f" ({inside['id']})"
-    return found
+            innermost = f" ({inside['id']})"
+    return innermost
 
 
 def _kind(value: object) -> str:

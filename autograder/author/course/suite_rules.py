@@ -65,36 +65,38 @@ def read_suite(assignment: str, kind: str) -> ReadSuite:
         missing = Finding(shown(top), None, f"there are no {kind} checks: the file has to name PACKAGES and MODULES")
         return ReadSuite((missing,), {}, ())
     described = read_python(top, shown(top))
-    said = {name: literal(value) for name, value in described.constants()}
+    constants = {name: literal(value) for name, value in described.constants()}
     files = {
         path.stem: read_python(path, shown(path)) for path in sorted(folder.glob("*.py")) if path.name not in HELPERS
     }
-    found = [*described.findings, *(finding for file in files.values() for finding in file.findings)]
+    findings = [*described.findings, *(finding for file in files.values() for finding in file.findings)]
     if not described.findings:
-        found += _described(described, folder, files)
-    listed = _texts(said.get("MODULES"))
+        findings += _described(described, folder, files)
+    listed = _texts(constants.get("MODULES"))
     ordered = [name for name in listed if name in files] or list(files)
     broken = [name for name in ordered if files[name].findings or _has_tables(files[name])]
     places: dict[str, tuple[str, int]] = {}
     for name in ordered:
-        found += _checks(files[name], places, any(map(_has_tables, files.values())))
-    found += unknown_fixtures(folder, [files[name] for name in ordered])
-    sources = _texts(said.get("PACKAGES")) + _texts(said.get("FOLDERS"))
-    return ReadSuite(tuple(found), places, sources, len(ordered) == len(listed) and not broken)
+        findings += _checks(files[name], places, any(map(_has_tables, files.values())))
+    findings += unknown_fixtures(folder, [files[name] for name in ordered])
+    sources = _texts(constants.get("PACKAGES")) + _texts(constants.get("FOLDERS"))
+    return ReadSuite(tuple(findings), places, sources, len(ordered) == len(listed) and not broken)
 
 
 def _described(file: PythonFile, folder: Path, modules: dict[str, PythonFile]) -> Iterator[Finding]:
     """Yield the problems in the `__init__.py` of a suite."""
     values = dict(file.constants())
     for name, value in values.items():
-        said = literal(value)
+        content = literal(value)
         if name not in KNOWN:
             yield file.finding(value, f"`{name}` is nothing that a suite says: {meant(name, list(KNOWN))}")
-        elif name in TEXTS and isinstance(said, str):
-            yield file.finding(value, f"`{name}` is a text, and not a tuple: write {name} = ({said!r},), with a comma")
-        elif name in TEXTS and said and not _texts(said):
+        elif name in TEXTS and isinstance(content, str):
+            yield file.finding(
+                value, f"`{name}` is a text, and not a tuple: write {name} = ({content!r},), with a comma"
+            )
+        elif name in TEXTS and content and not _texts(content):
             yield file.finding(value, f"`{name}` must be a tuple of texts, such as {name} = ('one', 'two')")
-        elif name == "BUILD_MAY_FAIL" and said not in (True, False):
+        elif name == "BUILD_MAY_FAIL" and content not in (True, False):
             yield file.finding(value, "`BUILD_MAY_FAIL` must be True or False")
     yield from (file.finding(None, f"has no `{name}`") for name in NEEDED if name not in values)
     listed, packages, folders, read = (
@@ -164,12 +166,12 @@ def _dependencies(
     """Yield a finding for each check that a declaration names but that is not declared before it."""
     whose = "the group" if id is None else f"the check `{id}`"
     for name in ("needs", "after"):
-        said = literal(argument(call, name))
-        if isinstance(said, str):
-            message = f"`{name}` of {whose} is a text, and not a tuple: write {name}=({said!r},), with a comma"
+        names = literal(argument(call, name))
+        if isinstance(names, str):
+            message = f"`{name}` of {whose} is a text, and not a tuple: write {name}=({names!r},), with a comma"
             yield file.finding(argument(call, name), message)
         elif id is not None:
-            for other in _texts(said):
+            for other in _texts(names):
                 if other not in places and not has_tables:
                     message = (
                         f"the check `{id}` names `{other}` in `{name}`, and no check of this name stands before it"

@@ -13,11 +13,11 @@ _FRAME = re.compile(r'^  File "(.+)", line (\d+), in ', re.MULTILINE)
 
 def errors_in_checks(log: str, folder: Path) -> list[str]:
     """Return each error in a log once, as FILE:LINE: ERROR, with the last line in `folder` that took part."""
-    found: dict[str, None] = {}
+    errors: dict[str, None] = {}
     for traceback in log.split(TRACEBACK)[1:]:
         own = [(Path(file), line) for file, line in _FRAME.findall(traceback) if Path(file).is_relative_to(folder)]
         error = next((line for line in traceback.splitlines() if line and not line.startswith(" ")), "")
         if own and error:
             file, line = own[-1]
-            found.setdefault(f"{shown(file)}:{line}: {error}")
-    return list(found)
+            errors.setdefault(f"{shown(file)}:{line}: {error}")
+    return list(errors)

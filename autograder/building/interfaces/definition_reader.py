@@ -144,9 +144,9 @@ class _Reader:
                 sections.append([])
             elif line:
                 sections[-1].append(line)
-        wanted = SECTIONS[self._kind]
-        if len(sections) != wanted:
-            problem = f"{len(sections) - 1} separator lines ---, {wanted - 1} are needed: {PARTS[self._kind]}"
+        section_count = SECTIONS[self._kind]
+        if len(sections) != section_count:
+            problem = f"{len(sections) - 1} separator lines ---, {section_count - 1} are needed: {PARTS[self._kind]}"
             raise self._error(problem)
         return sections
 

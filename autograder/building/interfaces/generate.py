@@ -49,16 +49,16 @@ class InterfaceBuildJob:
 
 def closure(prefixes: tuple[Path, ...], packages: list[str]) -> tuple[str, ...]:
     """Return the interface packages that these lead to, by their manifests."""
-    found: set[str] = set()
+    names: set[str] = set()
     pending = list(packages)
     while pending:
         name = pending.pop()
         share = next((p / "share" / name for p in prefixes if (p / "share" / name / "package.xml").is_file()), None)
-        if name in found or share is None or not any((share / kind).is_dir() for kind in ("msg", "srv", "action")):
+        if name in names or share is None or not any((share / kind).is_dir() for kind in ("msg", "srv", "action")):
             continue
-        found.add(name)
+        names.add(name)
         pending += read_package(share / "package.xml").depends
-    return tuple(sorted(found))
+    return tuple(sorted(names))
 
 
 def adapt(prefix: Path, package: str, texts: dict[str, str]) -> tuple[str, ...]:

@@ -56,12 +56,12 @@ class KnownTypes:
 
     def describe(self, models: Iterable[Any]) -> None:
         """Add the descriptions of a package's messages, services and actions, and of all that they hold."""
-        found: dict[str, Any] = {}
+        described: dict[str, Any] = {}
         for model in models:
-            _ADD[type(model)](model, found)
-        for name, each in found.items():
+            _ADD[type(model)](model, described)
+        for name, each in described.items():
             self._descriptions[name] = serialize_individual_type_description(each.namespaced_type, each.members)
-        for each in found.values():
+        for each in described.values():
             self._describe_below(member.type for member in each.members)
 
     def hash(self, kind: rosidl.NamespacedType) -> str:

@@ -60,8 +60,8 @@ class PlainMessage:
         try:
             cdr.Writer(self._known.members).write(kind, value)
         except ValueError:
-            said = f"is of the type {structures.describe(kind)}, and cannot be {value!r:.80}"
-            raise FieldError(f"{self._type.name}.{name}", said) from None
+            problem = f"is of the type {structures.describe(kind)}, and cannot be {value!r:.80}"
+            raise FieldError(f"{self._type.name}.{name}", problem) from None
         vars(self)[name] = value
 
     def __getattr__(self, name: str) -> Any:

@@ -81,8 +81,8 @@ def identity(ros: RosEnvironment) -> dict[str, object]:
 def _versions(ros: RosEnvironment) -> list[str]:
     """Name the installed ROS: each wheel's version, or each sourced package's manifest by its size and time."""
     if ros.kind == "wheels":  # by the folders' names: to read what is in them takes half a second
-        found = [path.stem for path in ros.rclpy.parent.glob("*.dist-info")]
-        return sorted(name for name in found if name.lower().startswith(("ros-", "ros_", "numpy")))
+        versions = [path.stem for path in ros.rclpy.parent.glob("*.dist-info")]
+        return sorted(name for name in versions if name.lower().startswith(("ros-", "ros_", "numpy")))
     manifests = [path for prefix in ros.prefixes for path in sorted(prefix.glob("share/*/package.xml"))]
     return [f"{path} {path.stat().st_size} {path.stat().st_mtime_ns}" for path in manifests]
 

@@ -25,8 +25,8 @@ INSTALLED = ("share", "lib", "include")
 
 def packages() -> dict[str, dict[str, str]]:
     """Return each package's definitions, text by path, as `build` takes them."""
-    found: dict[str, dict[str, str]] = yaml.safe_load(DEFINITIONS.read_text(encoding="utf-8"))
-    return found
+    definitions: dict[str, dict[str, str]] = yaml.safe_load(DEFINITIONS.read_text(encoding="utf-8"))
+    return definitions
 
 
 def missing(prefix: Path) -> dict[str, dict[str, str]]:

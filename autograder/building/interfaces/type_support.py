@@ -222,15 +222,15 @@ def _borrowed() -> Mapping[str, Any]:
         ctypes.CDLL("librosidl_typesupport_fastrtps_c.so"), "rosidl_typesupport_fastrtps_c__identifier"
     )
     library = ctypes.CDLL("librosidl_runtime_c.so")
-    found = {}
+    supports = {}
     for kind, of, structure in (("message", EmptyMessage, MessageSupport), ("service", EmptyService, _Service)):
         meta: Any = type(of)
         meta.__import_type_support__()
         support = structure.from_buffer_copy(structure.from_address(_pointer(meta._TYPE_SUPPORT)))
         support.identifier = identifier.value
         support.handle = _address(library[f"get_{kind}_typesupport_handle_function"])
-        found[kind] = support
-    return found
+        supports[kind] = support
+    return supports
 
 
 def _hash(text: str) -> int:

@@ -86,9 +86,9 @@ class Grader:
             while True:
                 waiting = (each for each in self._store.waiting() if each.number not in self._set_aside)
                 turn = next_turn(waiting, self._store.turns(), self._busy)
-                if turn is not None and (found := self._store.with_number(turn.number)) is not None:
-                    self._busy[found.student] = found.number
-                    return found
+                if turn is not None and (hand_in := self._store.with_number(turn.number)) is not None:
+                    self._busy[hand_in.student] = hand_in.number
+                    return hand_in
                 await self._came.wait()
 
     def _grade(self, handed_in: HandIn, answer: bytes, out: Path) -> Mark:

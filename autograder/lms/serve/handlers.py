@@ -115,10 +115,10 @@ class Known(HubOAuthenticated, RequestHandler):
 
     def assignment(self, name: str) -> AssignmentSettings:
         """Return the settings of an assignment that a request names."""
-        found = self.service.settings.assignments.get(name)
-        if found is None:
+        settings = self.service.settings.assignments.get(name)
+        if settings is None:
             raise Refused(404, "There is no such assignment here.")
-        return found
+        return settings
 
     def require_instructor(self) -> None:
         """Refuse all others."""
@@ -149,9 +149,9 @@ class Home(Known):
     def get(self) -> None:
         """Show them."""
         service, own = self.service, self.service.store.of_student(self.student)
-        found = pages.sections(service.settings, own, self.places(own), self.student, service.now())
+        sections = pages.sections(service.settings, own, self.places(own), self.student, service.now())
         zone = str(service.settings.zone)
-        self.finish(pages.home(self.student, found, teaches=self.teaches, prefix=service.prefix, zone=zone))
+        self.finish(pages.home(self.student, sections, teaches=self.teaches, prefix=service.prefix, zone=zone))
 
 
 class Feedback(Known):
@@ -159,17 +159,17 @@ class Feedback(Known):
 
     def get(self, number: str) -> None:
         """Show it to its student, as far as the settings say, and to instructors."""
-        found = self.service.store.with_number(int(number))
-        if found is None:
+        hand_in = self.service.store.with_number(int(number))
+        if hand_in is None:
             raise Refused(404, "There is no such hand-in.")
-        if found.student != self.student and not self.teaches:
+        if hand_in.student != self.student and not self.teaches:
             raise Refused(403, "This is another student's feedback.")
-        if found.mark is None:
-            self.finish(pages.state(found, self.places([found])[found.number].words))
+        if hand_in.mark is None:
+            self.finish(pages.state(hand_in, self.places([hand_in])[hand_in.number].words))
             return
-        each = self.service.settings.assignments.get(found.assignment, AssignmentSettings())
+        each = self.service.settings.assignments.get(hand_in.assignment, AssignmentSettings())
         shown = Shown.EVERYTHING if self.teaches else each.shown_to(self.student, self.service.now())
-        self.finish(pages.feedback(found, self.service.store.folder(found.number), shown))
+        self.finish(pages.feedback(hand_in, self.service.store.folder(hand_in.number), shown))
 
 
 class Class(Known):

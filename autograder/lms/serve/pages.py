@@ -62,11 +62,11 @@ def sections(
     settings: Settings, own: Sequence[HandIn], places: dict[int, Place], student: str, now: datetime
 ) -> list[Section]:
     """Return the assignments of a student, with what was handed in."""
-    found = []
+    listed = []
     for name, each in settings.assignments.items():
         hand_ins = [one for one in own if one.assignment == name]
         due = each.due_of(student)
-        found.append(
+        listed.append(
             Section(
                 name,
                 "" if due is None else due.astimezone(settings.zone).strftime(TIME),
@@ -76,7 +76,7 @@ def sections(
                 rows(settings, each, hand_ins, places, each.shown_to(student, now)),
             )
         )
-    return found
+    return listed
 
 
 def rows(
@@ -85,15 +85,15 @@ def rows(
     """Return a student's hand-ins of an assignment, the newest first, as far as they are shown."""
     sees_points = shown in (Shown.EVERYTHING, Shown.POINTS)
     counts = counting(own, best=each.best_counts) if sees_points else None
-    found = []
+    listed = []
     for one in reversed(own):
         at = one.at.astimezone(settings.zone).strftime(TIME)
         if one.mark is None:
-            found.append(Row(one, at, places[one.number].words if one.number in places else "waits"))
+            listed.append(Row(one, at, places[one.number].words if one.number in places else "waits"))
         else:
             points = points_text(one) if sees_points else ""
-            found.append(Row(one, at, one.mark.status.words, points, one == counts))
-    return tuple(found)
+            listed.append(Row(one, at, one.mark.status.words, points, one == counts))
+    return tuple(listed)
 
 
 def points_text(one: HandIn) -> str:
@@ -103,22 +103,22 @@ def points_text(one: HandIn) -> str:
     return f"{one.mark.points:g} of {one.mark.max_points:g}"
 
 
-def home(student: str, found: Sequence[Section], *, teaches: bool, prefix: str, zone: str) -> str:
+def home(student: str, listed: Sequence[Section], *, teaches: bool, prefix: str, zone: str) -> str:
     """Return a student's page. Instructors have links to the pages of the class, too."""
-    return _render("serve_home.html.j2", student=student, sections=found, teaches=teaches, prefix=prefix, zone=zone)
+    return _render("serve_home.html.j2", student=student, sections=listed, teaches=teaches, prefix=prefix, zone=zone)
 
 
 def class_page(settings: Settings, assignment: str, hand_ins: Sequence[HandIn], waiting: int, prefix: str) -> str:
     """Return the page of a class for its instructors: a row for each student, with the mark that counts."""
     best = settings.assignments[assignment].best_counts
-    found = []
+    listed = []
     for student in sorted({one.student for one in hand_ins}):
         own = [one for one in hand_ins if one.student == student]
         counted = counting(own, best=best) or own[-1]
         state = "waits" if counted.mark is None else counted.mark.status.words
         at = counted.at.astimezone(settings.zone).strftime(TIME)
-        found.append((student, len(own), Row(counted, at, state, points_text(counted))))
-    return _render("serve_class.html.j2", assignment=assignment, rows=found, waiting=waiting, prefix=prefix)
+        listed.append((student, len(own), Row(counted, at, state, points_text(counted))))
+    return _render("serve_class.html.j2", assignment=assignment, rows=listed, waiting=waiting, prefix=prefix)
 
 
 def feedback(hand_in: HandIn, folder: Path, shown: Shown) -> bytes:

@@ -86,9 +86,9 @@ class Store:
             )
             if cursor.rowcount:
                 self._base.execute("INSERT INTO answer VALUES (?, ?)", (cursor.lastrowid, answer))
-        found = self.with_key(student, key)
-        assert found is not None
-        return found
+        hand_in = self.with_key(student, key)
+        assert hand_in is not None
+        return hand_in
 
     def begin(self, number: int) -> bytes:
         """Note that the turn of a hand-in has come, and return the answer."""

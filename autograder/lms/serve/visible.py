@@ -33,8 +33,8 @@ def run_visible(answer: Path, assignment: str, isolation: Isolation) -> VisibleR
     """Run the visible checks on an answer in a worker sandbox. If the checks raise an error, it is in the log."""
     try:
         whole: dict[str, Any] = {"exercises": (), "part": "", "first": ()}
-        with run_on(answer.resolve(), isolation, "check", assignment=assignment, **whole) as (said, _):
-            diagnosis, checks = said["diagnosis"], said["checks"]
+        with run_on(answer.resolve(), isolation, "check", assignment=assignment, **whole) as (reply, _):
+            diagnosis, checks = reply["diagnosis"], reply["checks"]
     except GraderError as error:
         LOG.error("The visible checks of %s: %s", assignment, visible(str(error)))
         return VisibleReport(FAILED)

@@ -149,19 +149,21 @@ def homes(controller: str, mountinfo: str, own: str) -> list[Path]:
     `mountinfo` and `own` are what `/proc/self/mountinfo` and `/proc/self/cgroup` say, see proc_pid_mountinfo(5) and
     cgroups(7).
     """
-    found = []
+    folders = []
     for line in mountinfo.splitlines():
         before, _, after = line.partition(" - ")
         root, mount = map(Path, before.split()[3:5])  # a worker sandbox sees its own group alone, at its usual place
         kind, _, options = after.split(maxsplit=2)
         if kind == "cgroup" and controller in options.split(","):
             place = _below(mount, root, _own(own, controller))
-            found += [folder for folder in _upwards(place, mount) if folder.is_dir()]
+            folders += [folder for folder in _upwards(place, mount) if folder.is_dir()]
         elif kind == "cgroup2":
             place = _below(mount, root, _own(own, ""))
             handed_down = "cgroup.subtree_control"
-            found += [folder for folder in _upwards(place, mount) if controller in _read(folder / handed_down).split()]
-    return found
+            folders += [
+                folder for folder in _upwards(place, mount) if controller in _read(folder / handed_down).split()
+            ]
+    return folders
 
 
 def _own(cgroups: str, controller: str) -> str:

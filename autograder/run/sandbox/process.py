@@ -183,12 +183,12 @@ class Process:
 
     def _files(self) -> int:
         """Return the number of files on the file systems that it can write to; 0 once it is gone."""
-        root, found = f"/proc/{self.innermost()}/root", 0
+        root, count = f"/proc/{self.innermost()}/root", 0
         for folder in self._writable:
             with suppress(OSError):
                 statistics = os.statvfs(f"{root}{folder}")
-                found += statistics.f_files - statistics.f_ffree
-        return found
+                count += statistics.f_files - statistics.f_ffree
+        return count
 
     def _end(self, why: ExitReason) -> None:
         if self._exit_reason is None and self._popen.poll() is None:

@@ -42,11 +42,11 @@ def survey(root: Path, limits: TreeLimits) -> tuple[Entry, ...]:
         TreeError: it is larger than `limits`, nested deeper, or holds a device, a FIFO, a socket, or a link that leads
             out of it or goes round in circles.
     """
-    found, total, text = [], 0, 0
+    entries, total, text = [], 0, 0
     for entry in _walk(root, "", limits.depth):
-        found.append(entry)
+        entries.append(entry)
         total += entry.size
-        if len(found) > limits.names:
+        if len(entries) > limits.names:
             raise TreeError(f"more than {limits.names} files and folders")
         if total > limits.size:
             raise TreeError(f"files of more than {limits.size // MIB} MiB in all, holes in them counted")
@@ -57,7 +57,7 @@ def survey(root: Path, limits: TreeLimits) -> tuple[Entry, ...]:
             raise TreeError(f"{root.name}/{entry.path[:200]}, whose path has more than {most}")
         if entry.kind == "link" and not _leads_inside(root, root / entry.path):
             raise TreeError(f"{root.name}/{entry.path[:200]}, which leads out of the install space")
-    return tuple(found)
+    return tuple(entries)
 
 
 def read_tree(root: Path, limits: TreeLimits) -> dict[Entry, bytes]:

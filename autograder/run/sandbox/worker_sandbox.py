@@ -151,8 +151,8 @@ def copy_submission(path: Path, copy: Path) -> None:
 
 
 def _own(scratch: Path, isolation: Isolation) -> dict[str, str]:
-    found = [str(layout.ROOT), os.environ.get("PYTHONPATH", "")]  # this grader, from whatever folder it was started
-    path = {} if layout.ROOT.is_relative_to(sys.prefix) else {"PYTHONPATH": os.pathsep.join(filter(None, found))}
+    folders = [str(layout.ROOT), os.environ.get("PYTHONPATH", "")]  # this grader, from whatever folder it was started
+    path = {} if layout.ROOT.is_relative_to(sys.prefix) else {"PYTHONPATH": os.pathsep.join(filter(None, folders))}
     return {ISOLATION_VARIABLE: isolation.value, "ROS_LOG_DIR": str(scratch / "ros-log"), **path}
 
 

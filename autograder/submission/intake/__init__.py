@@ -165,7 +165,7 @@ def _extra(files: Sequence[SubmittedFile], answer: Answer) -> tuple[SubmittedFil
         root = answer.notebook.root
     elif answer.tree is not None:
         root = answer.tree.root
-    found = []
+    extra = []
     for file in files:
         if file.path == root or not file.path.is_relative_to(root):
             continue
@@ -173,18 +173,18 @@ def _extra(files: Sequence[SubmittedFile], answer: Answer) -> tuple[SubmittedFil
         is_source = answer.tree is not None and answer.tree.holds(file.path)
         is_notebook = answer.notebook is not None and file.path == answer.notebook.file.path
         if not (is_source or is_notebook or path.parts[0] in ("ws", "src")):
-            found.append(SubmittedFile(path, file.data, file.executable))
-    return tuple(found)
+            extra.append(SubmittedFile(path, file.data, file.executable))
+    return tuple(extra)
 
 
 def _graded(
     notebook: bytes | None, source: Sequence[SubmittedFile], extra: Sequence[SubmittedFile], assignment: str
 ) -> list[SubmittedFile]:
     """Return what a grading reads whose notebook runs, in one layout for all submissions."""
-    found = [*extra, *(replace(file, path=SOURCE / file.path) for file in source)]
+    graded = [*extra, *(replace(file, path=SOURCE / file.path) for file in source)]
     if notebook is not None:
-        found.append(SubmittedFile(PurePosixPath(f"{assignment}.ipynb"), notebook))
-    return found
+        graded.append(SubmittedFile(PurePosixPath(f"{assignment}.ipynb"), notebook))
+    return graded
 
 
 def _unused(

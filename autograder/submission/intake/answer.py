@@ -75,8 +75,8 @@ def find_answer(
         StudentError: there is none, it cannot be read, or two candidates answer differently.
     """
     trees = _trees(files, assignment, exercises)
-    found = _notebooks(files, trees, assignment, exercises)
-    readable, broken = [n for n in found if not n.broken], [n for n in found if n.broken]
+    notebooks = _notebooks(files, trees, assignment, exercises)
+    readable, broken = [n for n in notebooks if not n.broken], [n for n in notebooks if n.broken]
     roots = {notebook.root for notebook in readable}
     tree = _only(trees, lambda tree: (tree.root not in roots, len(tree.home.parts), str(tree.home)), "source trees")
     for each in left_out:
@@ -198,8 +198,8 @@ def _home(parts: tuple[str, ...]) -> PurePosixPath | None:
 
 
 def _package_name(manifest: bytes) -> PurePosixPath:
-    found = _NAME.search(manifest[:65536])
-    return PurePosixPath(found[1].decode()) if found else PurePosixPath()
+    match = _NAME.search(manifest[:65536])
+    return PurePosixPath(match[1].decode()) if match else PurePosixPath()
 
 
 def _tree_answers(files: Mapping[PurePosixPath, SubmittedFile], exercises: Exercises | None) -> Answers:

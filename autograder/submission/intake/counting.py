@@ -99,10 +99,10 @@ def merge(source: Files, written: Sequence[SubmittedFile], exercises: Exercises)
     counting = {path: file for path, file in source.items() if not exercises.is_as_released(path, file.data)}
     files = dict(counting)
     _add_what_fits(files, (file for path, file in ran.items() if path not in counting))
-    wanted = exercises.targets.keys() | exercises.makes
+    expected = exercises.targets.keys() | exercises.makes
     notices = [
         differs(path)
-        for path in sorted(wanted & counting.keys() & ran.keys())
+        for path in sorted(expected & counting.keys() & ran.keys())
         if not same_text(text_of(ran[path].data), text_of(counting[path].data))
     ]
     return Counted(tuple(files[path] for path in sorted(files)), tuple(notices))

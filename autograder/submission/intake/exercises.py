@@ -66,8 +66,8 @@ class Exercises:
 
     def is_whole(self, source: Mapping[PurePosixPath, bytes]) -> bool:
         """Return whether each file that students write is in a source tree, and none as it was released."""
-        wanted = self.targets.keys() | self.makes
-        return not self.unknown and all(p in source and not self.is_as_released(p, source[p]) for p in wanted)
+        expected = self.targets.keys() | self.makes
+        return not self.unknown and all(p in source and not self.is_as_released(p, source[p]) for p in expected)
 
 
 @cache

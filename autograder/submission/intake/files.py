@@ -121,11 +121,11 @@ def unsafe(why: str) -> StudentError:
 
 def digest(files: Iterable[SubmittedFile]) -> str:
     """Return a digest of paths and contents, in hexadecimal digits."""
-    found = hashlib.sha256()
+    sha256 = hashlib.sha256()
     for file in sorted(files, key=lambda file: str(file.path)):
-        found.update(f"{file.path}\0{len(file.data)}\0{file.executable:d}".encode(errors="surrogatepass"))
-        found.update(file.data)
-    return found.hexdigest()
+        sha256.update(f"{file.path}\0{len(file.data)}\0{file.executable:d}".encode(errors="surrogatepass"))
+        sha256.update(file.data)
+    return sha256.hexdigest()
 
 
 def write_tree(files: Iterable[SubmittedFile], folder: Path) -> None:

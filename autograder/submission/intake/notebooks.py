@@ -107,9 +107,9 @@ def _cell(cell: object, number: int, ids: set[str]) -> Cell:
     }
 
 
-def _metadata(found: object) -> dict[str, Any]:
+def _metadata(metadata: object) -> dict[str, Any]:
     """Return what counts of a cell's metadata: other tools' would be kept in memory for nothing."""
-    if not isinstance(found, dict):
+    if not isinstance(metadata, dict):
         return {}
-    counts = {name: found[name] for name in _COUNTING if name in found}
+    counts = {name: metadata[name] for name in _COUNTING if name in metadata}
     return counts if len(json.dumps(counts)) <= MAX_METADATA else {}

@@ -68,7 +68,7 @@ def _read_file(path: Path, contents: Contents) -> None:
 
 def _read_folder(root: Path, contents: Contents, *, unpack: bool = False) -> None:
     """Read the files below a folder; with `unpack`, put the files of archives in the place of these."""
-    pending, found = [root], []
+    pending, files = [root], []
     while pending:
         folder = pending.pop()
         children = sorted(folder.iterdir())
@@ -81,14 +81,14 @@ def _read_folder(root: Path, contents: Contents, *, unpack: bool = False) -> Non
             if info is None:
                 contents.omit(path, "", f"the path {str(path)[:60]!r}... is longer than this system can open")
             elif stat.S_ISREG(info.st_mode):
-                found.append((path, child, info))
+                files.append((path, child, info))
             elif not stat.S_ISDIR(info.st_mode):
                 contents.omit(path, "is a symbolic link" if stat.S_ISLNK(info.st_mode) else "is not a regular file")
             elif len(path.parts) > MAX_DEPTH:
                 contents.omit(path, "", f"folders are nested more than {MAX_DEPTH} deep")
             else:
                 pending.append(child)
-    for path, child, info in sorted(found, key=lambda item: (reading_rank(item[0]), item[0])):
+    for path, child, info in sorted(files, key=lambda item: (reading_rank(item[0]), item[0])):
         if unpack and _is_wrapping(path):
             with child.open("rb") as file:
                 _unpack(file, path, contents)

@@ -16,10 +16,10 @@ def written_file(source: str) -> tuple[PurePosixPath, str] | None:
 
     The path is relative to the notebook's folder and stays below it.
     """
-    found = _HEAD.match(text := source.lstrip("\n"))
-    if found is None:
+    match = _HEAD.match(text := source.lstrip("\n"))
+    if match is None:
         return None
-    name, body = found[1].strip("'\""), text[found.end() :]
+    name, body = match[1].strip("'\""), text[match.end() :]
     path = PurePosixPath(name)
     if path.is_absolute() or ".." in path.parts or not body or _EXPANDED.intersection(name) or name.startswith("-"):
         return None
