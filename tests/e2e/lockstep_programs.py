@@ -103,7 +103,8 @@ from lockstep_interfaces.action import Count
 class Counter(Speaker):
     def __init__(self):
         super().__init__('counter')
-        self.action = ActionServer(self, Count, 'count', self.execute, goal_callback=self.judge,
+        self.action = ActionServer(node=self, action_type=Count, action_name='count',
+                                   execute_callback=self.execute, goal_callback=self.judge,
                                    cancel_callback=lambda goal: CancelResponse.ACCEPT, callback_group={group}())
 
     def judge(self, goal):
@@ -324,8 +325,8 @@ class Sleeper(Speaker):
         self.once.cancel()
         for kind in ClockType.ROS_TIME, ClockType.STEADY_TIME:
             clock = self.get_clock() if kind == ClockType.ROS_TIME else Clock(clock_type=kind)
-            self.say(clock.sleep_for(Duration(seconds=0.25)))
-            self.say(clock.sleep_until(clock.now() + Duration(seconds=0.25)))
+            self.say(clock.sleep_for(rel_time=Duration(seconds=0.25)))
+            self.say(clock.sleep_until(until=clock.now() + Duration(seconds=0.25), context=None))
         try:
             self.get_clock().sleep_until(clock.now())
         except ValueError as error:

@@ -51,6 +51,7 @@ class Clocks:
             if not self._sleep(round(seconds * 1e9 / self._rate)):
                 machine_sleep(seconds)
 
+        # The parameters have rclpy's names, since a program may pass them by name.
         def sleep_until(clock: Any, until: Time, context: Any = None) -> bool:
             context = context or get_default_context()
             if not context.ok() or until.clock_type != clock.clock_type:
@@ -59,8 +60,8 @@ class Clocks:
             sleep(left / 1e9 * (self._rate if clock.clock_type == ClockType.ROS_TIME else 1.0))
             return bool(context.ok())
 
-        def sleep_for(clock: Any, duration: Any, context: Any = None) -> bool:
-            end = self._shown(clock) + duration.nanoseconds
+        def sleep_for(clock: Any, rel_time: Any, context: Any = None) -> bool:
+            end = self._shown(clock) + rel_time.nanoseconds
             return sleep_until(clock, Time(nanoseconds=end, clock_type=clock.clock_type), context)
 
         setattr(time, "sleep", sleep)  # noqa: B010 - the name has a type that no stand-in has

@@ -99,30 +99,35 @@ class Hooks:
     def _made_service(self, service: Any, *_: Any, **__: Any) -> None:
         self._serves(service, service.handle, "", 0, service.service_name, service.srv_type)
 
-    def _made_action_server(self, server: Any, node: Any, kind: Any, name: str, *_: Any, **options: Any) -> None:
+    # The parameters have rclpy's names, since a program may pass them by name.
+    def _made_action_server(
+        self, server: Any, node: Any, action_type: Any, action_name: str, *_: Any, **options: Any
+    ) -> None:
         for index, (part, (service, of)) in enumerate(_PARTS.items()):
-            resolved = node.resolve_service_name(f"{name}/_action/{service}")
-            self._serves(server, server._handle, part, index, resolved, getattr(kind.Impl, of))
+            resolved = node.resolve_service_name(f"{action_name}/_action/{service}")
+            self._serves(server, server._handle, part, index, resolved, getattr(action_type.Impl, of))
         for part, of, qos in (
-            ("feedback", kind.Impl.FeedbackMessage, options.get("feedback_pub_qos_profile", _FEEDBACK)),
+            ("feedback", action_type.Impl.FeedbackMessage, options.get("feedback_pub_qos_profile", _FEEDBACK)),
             (
                 "status",
-                kind.Impl.GoalStatusMessage,
+                action_type.Impl.GoalStatusMessage,
                 options.get("status_pub_qos_profile", qos_profile_action_status_default),
             ),
         ):
-            topic = node.resolve_topic_name(f"{name}/_action/{part}")
+            topic = node.resolve_topic_name(f"{action_name}/_action/{part}")
             self._written[(server._handle.pointer, part)] = channels.publisher_channel(topic, of, qos), 0
         server.lockstep_requests = self._requests(server._handle)
         server.lockstep_feedback = self._written[(server._handle.pointer, "feedback")][0]
 
-    def _made_action_client(self, client: Any, node: Any, kind: Any, name: str, *_: Any, **options: Any) -> None:
+    def _made_action_client(
+        self, client: Any, node: Any, action_type: Any, action_name: str, *_: Any, **options: Any
+    ) -> None:
         for index, (part, (service, of)) in enumerate(_PARTS.items()):
-            resolved = node.resolve_service_name(f"{name}/_action/{service}")
-            self._calls(client, client._client_handle, part, 2 + index, resolved, getattr(kind.Impl, of))
-        topic = node.resolve_topic_name(f"{name}/_action/feedback")
+            resolved = node.resolve_service_name(f"{action_name}/_action/{service}")
+            self._calls(client, client._client_handle, part, 2 + index, resolved, getattr(action_type.Impl, of))
+        topic = node.resolve_topic_name(f"{action_name}/_action/feedback")
         qos = options.get("feedback_sub_qos_profile", _FEEDBACK)
-        read = channels.subscription_channels(topic, kind.Impl.FeedbackMessage, qos)
+        read = channels.subscription_channels(topic, action_type.Impl.FeedbackMessage, qos)
         self.counts.add(client._client_handle, Reader(client, read, part=("feedback", 0), depth=qos.depth or 1))
         client.lockstep_requests = self._requests(client._client_handle)
         client.lockstep_feedback = read
