@@ -6,14 +6,14 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
 from typing import Any
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import DoubtfulError, StudentError
-from autograder.harness.base import Harness, Program
+from autograder.harness.base import Harness
 from autograder.harness.matching import connected
 from autograder.harness.steps import next_instant, tick_of
+from autograder.harness.turns import Place, SteppedProgram, Turn, batches, flow, turns_of
 from autograder.run.lockstep import Description, Stepper, UnsteppableError
 from autograder.run.lockstep.lockstep_host import channels
 from autograder.run.lockstep.protocol import START_NS
@@ -24,17 +24,6 @@ SETTLE_SECONDS = 5.0  # real time for the names of the programs' nodes to be see
 ROUNDS = 1000  # in one step; programs that still answer each other then will never stop
 
 
-@dataclass(eq=False)
-class SteppedProgram:
-    """One program of a harness in lockstep."""
-
-    program: Program
-    stepper: Stepper
-    description: Description = field(default_factory=Description)  # of its nodes, as last asked
-    pending: Counter[str] = field(default_factory=Counter)  # messages sent to it that it does not know of, by channel
-    wake: int | None = None  # as in `Reply`
-
-
 class _OptionalProgramLost(Exception):
     """An optional program failed, and the harness has dropped it."""
 
@@ -42,23 +31,26 @@ class _OptionalProgramLost(Exception):
 class SteppedHarness(Harness):
     """Programs that are stepped through ROS time: faster than real time, and the same every time.
 
-    They start at ROS time `START_NS`. `tick_ns` hits every firing of their timers, between 10 ms and 100 ms. A step has
-    rounds, in which the programs run in the order in which they were named. First all take what was sent before. Then
-    their timers fire. Then they take what they sent each other, until no message is left.
+    They start at ROS time `START_NS`. `tick_ns` hits every firing of their timers, between 10 ms and 100 ms. In a step
+    they take what was sent before, then their timers fire, and then they take what they sent each other; `turns` has
+    the order.
 
     Attributes:
         notes: by executable, one of the protocol's `REASONS` why steps are not all that moves a program, if so.
+        activations: by executable, how often the program was run, which is what a run in lockstep costs.
     """
 
     _stepped: Sequence[SteppedProgram] = ()
+    _flow: Sequence[SteppedProgram] | None = None
 
     def _start(self) -> None:
         self._now_ns = START_NS
         self.notes: dict[str, str] = {}
+        self.activations: Counter[str] = Counter()
         self._delivery_seconds_left = DELIVERY_SECONDS
-        for program, path in zip(self.programs, self._paths, strict=True):
+        for number, (program, path) in enumerate(zip(self.programs, self._paths, strict=True)):
             stepper = self.enter_context(Stepper(self._sandbox, path, program.arguments, self._clock_rate))
-            self._stepped = [*self._stepped, SteppedProgram(program, stepper)]
+            self._stepped = [*self._stepped, SteppedProgram(number, program, stepper)]
         for stepped in self._stepped:
             with suppress(_OptionalProgramLost), self._attributing(stepped):
                 stepped.stepper.wait_ready()
@@ -92,12 +84,20 @@ class SteppedHarness(Harness):
 
     def _advance(self, dt_ns: int) -> None:
         self._now_ns += dt_ns
-        if dt_ns and len(self._stepped) == 1:
-            self._step_program(self._stepped[0], [self._now_ns - 1, self._now_ns])
-        elif dt_ns:
-            self._settle(self._now_ns - 1)
-            for stepped in self._stepped:
-                self._step_program(stepped, [self._now_ns])
+        self._add_sent()
+        instants = (self._now_ns - 1, self._now_ns) if dt_ns else ()
+        alone = len(self._stepped) == 1
+        # The grader may answer what comes of a request, and the answer has its place in the same phase.
+        asked = any(not channels.is_topic(name) for s in self._stepped for _, sent in s.inbox for name in sent)
+        if self._flow is not None and (alone or not asked):
+            for stepped in self._flow if instants else ():
+                for batch in batches(turns_of(stepped, instants, alone=alone)):
+                    self._run(stepped, batch)
+        else:
+            for instant in instants:
+                for stepped in self._stepped:
+                    self._give_turn(stepped, instant, by_itself=instant == self._now_ns and stepped.is_due(instant))
+                self._settle(instant)
         self._settle(self._now_ns)
 
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
@@ -109,59 +109,73 @@ class SteppedHarness(Harness):
             self.step(min(self.tick_ns, end - self._now_ns))
         return True
 
-    # Rounds.
+    # Turns.
 
     def _settle(self, instant: int) -> None:
-        """Run rounds at one instant until no program has pending messages."""
+        """Run rounds at one instant until no message is left."""
         for _ in range(ROUNDS):
-            self._add_pending(self._grader_node.sent)
-            if not any(stepped.pending for stepped in self._stepped):
+            self._add_sent()
+            if not any(stepped.inbox for stepped in self._stepped):
                 return
             for stepped in self._stepped:
-                if stepped.pending:
-                    self._step_program(stepped, [instant])
+                self._give_turn(stepped, instant)
         sentence = (
             f"Your nodes answered each other {ROUNDS} times without any time going by, and would go on for ever: a "
             "callback must not publish what makes it run again."
         )
         raise StudentError(Diagnosis(Kind.STUCK, sentence))
 
-    def _step_program(self, stepped: SteppedProgram, instants: list[int]) -> None:
-        """Run one program at instants, and deliver what it sends."""
-        if stepped not in self._stepped:
-            return
-        self._add_pending(self._grader_node.sent)
-        pending, stepped.pending = stepped.pending, Counter()
-        try:
-            with self._attributing(stepped):
-                reply = stepped.stepper.step(instants, pending)
-        except _OptionalProgramLost:
-            return
-        stepped.wake = reply.wake
-        for reason in reply.notes:
-            self.notes.setdefault(stepped.program.executable, reason)
-        for channel in reply.lost:
+    def _give_turn(self, stepped: SteppedProgram, instant: int, *, by_itself: bool = False) -> None:
+        """Run a program if it has been sent messages, or has something to do by itself."""
+        self._add_sent()
+        if stepped.inbox or by_itself:
+            self._run(stepped, [Turn(Place(), instant, stepped.take())])
+
+    def _run(self, stepped: SteppedProgram, turns: list[Turn]) -> None:
+        """Run a program for its turns, and deliver what it sends."""
+        while turns and stepped in self._stepped:
+            try:
+                with self._attributing(stepped):
+                    reply = stepped.stepper.step([(turn.instant, turn.messages) for turn in turns])
+            except _OptionalProgramLost:
+                return
+            self.activations[stepped.program.executable] += 1
+            stepped.wake, stepped.due = reply.wake, reply.due
+            for reason in reply.notes:
+                self.notes.setdefault(stepped.program.executable, reason)
+            done = turns[: len(reply.sent)]
+            self._require_arrival(reply.lost, {channel for turn in done for channel in turn.messages})
+            for turn, sent in zip(done, reply.sent, strict=True):
+                self._deliver(turn.place, sent, but=stepped)
+                self._expect(sent)
+            self._collect()
+            turns = turns[len(done) :]
+            if reply.changed:
+                self._match()
+
+    def _require_arrival(self, lost: tuple[str, ...], told: set[str]) -> None:
+        """Raise a DoubtfulError if what the grader sent is among what was announced, on these channels, and lost."""
+        for channel in lost:
             # What others of the student's programs claim to have sent may be forged; what the grader sent is not.
-            if pending[channel] and channel in self._grader_node.written.values():
+            if channel in told and channel in self._grader_node.written.values():
                 sentence = (
                     f"A message that was sent to your node on {channel.split()[0]} did not arrive: do not replace "
                     "functions of rclpy, and take each message that comes."
                 )
                 raise DoubtfulError(Diagnosis(Kind.STUCK, sentence))
-        self._add_pending(reply.sent, but=stepped)
-        self._expect(reply.sent)
-        self._collect()
-        if reply.changed:
-            self._match()
 
-    def _add_pending(self, sent: dict[str, int], but: SteppedProgram | None = None) -> None:
-        """Add sent messages to the pending ones of every program but `but` that reads their channels."""
-        for channel, count in sent.items():
-            for stepped in self._stepped:
-                if stepped is not but and channel in stepped.description.reads:
-                    stepped.pending[channel] += count
-        if sent is self._grader_node.sent:
+    def _add_sent(self) -> None:
+        """Deliver what the grader has sent."""
+        if self._grader_node.sent:
+            self._deliver(Place(), self._grader_node.sent)
             self._grader_node.sent.clear()
+
+    def _deliver(self, place: Place, sent: dict[str, int], but: SteppedProgram | None = None) -> None:
+        """Put messages, sent in a turn, into the inbox of every program but `but` that reads their channels."""
+        for stepped in self._stepped:
+            read = {name: count for name, count in sent.items() if name in stepped.description.reads}
+            if stepped is not but and read:
+                stepped.inbox.append((place, Counter(read)))
 
     def _expect(self, sent: dict[str, int]) -> None:
         for channel, count in sent.items():
@@ -201,6 +215,7 @@ class SteppedHarness(Harness):
                     _sum(description.kept for description in others),
                     {channel: count for channel, count in early.items() if not channels.is_topic(channel)},
                 )
+            stepped.due = 0  # what it reads for the first time may be there
         for reader in self._grader_node.readers:
             if reader.new:
                 reader.new = False
@@ -234,6 +249,7 @@ class SteppedHarness(Harness):
             with self._attributing(stepped):
                 stepped.description = stepped.stepper.describe()
                 descriptions.append(stepped.description)
+        self._flow = flow(self._stepped)
         return descriptions
 
     def _reach(self, client: Any, seconds: float) -> bool:

@@ -178,8 +178,8 @@ def impatient(scratch: Path, program: str) -> list[Any]:
 
 FORGER = """
 import os, threading
-FORGED = (b'{"event": "done", "sent": {"/said std_msgs/msg/String reliable volatile": 999999}, '
-          b'"lost": [], "changed": false, "wake": null, "notes": []}\\n')
+FORGED = (b'{"event": "done", "sent": [{"/said std_msgs/msg/String reliable volatile": 999999}, {}], '
+          b'"lost": [], "changed": false, "wake": null, "due": 0, "notes": []}\\n')
 def forge():
     for name in os.listdir('/proc/self/fd'):
         try:

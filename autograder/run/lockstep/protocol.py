@@ -2,18 +2,20 @@
 
     stepper -> host   {"op": "describe"}
                       {"op": "match", "kept": {CHANNEL: COUNT}, "early": {CHANNEL: COUNT}}
-                      {"op": "step", "instants": [NANOSECONDS, ...], "pending": {CHANNEL: NEW MESSAGES}}
+                      {"op": "step", "events": [[NANOSECONDS, {CHANNEL: NEW MESSAGES}], ...]}
     host -> stepper   {"event": "ready"}                  once, when the node first waits for work
                       {"event": "description", ...}
                       {"event": "matched"}
-                      {"event": "done", "sent": {CHANNEL: NEW MESSAGES}, "lost": [CHANNEL, ...], "changed": BOOL,
-                       "wake": NANOSECONDS, "notes": [REASON, ...]}
+                      {"event": "done", "sent": [{CHANNEL: NEW MESSAGES}, ...], "lost": [CHANNEL, ...],
+                       "changed": BOOL, "wake": NANOSECONDS, "due": NANOSECONDS, "notes": [REASON, ...]}
                       {"event": "unsteppable", "reason": ...}
                       {"event": "deadlock", "what": ..., "name": ..., "reason": ...}
                       {"event": "crash", "phase": ..., "type": ..., "message": ..., "traceback": ...}
 
-`lockstep_host/channels.py` names channels. "pending" counts what the grader and other programs have sent on the
-channels that the program reads. The stepper starts the host with the ROS time at which the program starts.
+`lockstep_host/channels.py` names channels. An event is an instant of ROS time, and counts what the grader and other
+programs have sent on the channels that the program reads; no topic is in two events of one command. The reply says what
+was sent in each event. It has fewer events than the command if the program has made an endpoint or a timer: the others
+are to be sent again. The stepper starts the host with the ROS time at which the program starts.
 
 The host shares a process with the student's code, which may forge any event. So every event is bounded in size and
 parsed into these records, or refused. They serve only to wait less and to explain; no point depends on them.
@@ -22,7 +24,7 @@ parsed into these records, or refused. They serve only to wait less and to expla
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -34,6 +36,9 @@ MAX_COUNT = 2**63 - 1  # of messages, and of nanoseconds of ROS time
 REASONS = ("thread", "clock", "sleep")  # why a program cannot be stepped
 WAITS = ("thread", "group", "spin")  # why a wait never ends
 PHASES = ("import", "start", "spin")
+
+Event = tuple[int, Mapping[str, int]]
+"""An instant of ROS time in ns, and the messages that were sent to the program since its last event, by channel."""
 
 
 class ProtocolError(Exception):
@@ -66,10 +71,11 @@ class Description:
 class Reply:
     """A finished step."""
 
-    sent: dict[str, int] = field(default_factory=dict)  # how many messages the nodes have sent in it, by channel
+    sent: tuple[dict[str, int], ...]  # how many messages the nodes have sent in each event that is over, by channel
     lost: tuple[str, ...] = ()  # channels on which messages that were announced did not arrive in time
     changed: bool = False  # whether there are endpoints or timers that the last description did not name
     wake: int | None = None  # the next instant at which something in the program continues, besides its timers
+    due: int | None = None  # from when on the program has something to do by itself; 0 if it may at any time
     notes: tuple[str, ...] = ()  # why steps are not all that moves the program; one of `REASONS`
 
 
@@ -130,12 +136,13 @@ def _description(**data: Any) -> Description:
     )
 
 
-def _reply(sent: Any, lost: Any, changed: Any, wake: Any, notes: Any) -> Reply:
+def _reply(sent: Any, lost: Any, changed: Any, wake: Any, due: Any, notes: Any) -> Reply:
     return Reply(
-        _counts(sent),
+        tuple(map(_counts, sent)),
         _texts(lost),
         changed is True,
         None if wake is None else _count(wake),
+        None if due is None else _count(due),
         tuple(_one_of(REASONS, reason) for reason in notes),
     )
 

@@ -24,7 +24,7 @@ from autograder.run.lockstep.failures import (
     diagnose_too_much,
     diagnose_unsteppable,
 )
-from autograder.run.lockstep.protocol import START_NS, Description, ProtocolError, Reply
+from autograder.run.lockstep.protocol import START_NS, Description, Event, ProtocolError, Reply
 from autograder.run.sandbox import Process
 from autograder.run.sandbox.launcher import launch
 from autograder.run.sandbox.procfs import waited_ns
@@ -111,13 +111,12 @@ class Stepper:
         self._send({"op": "match", "kept": dict(kept), "early": dict(early)})
         self._expect("matched", STEP_TIMEOUT, Kind.STUCK)
 
-    def step(self, instants: Sequence[int], pending: Mapping[str, int]) -> Reply:
-        """Run the program at instants of ROS time in ns, ascending, at least one.
-
-        `pending` are the messages that were sent to it since the last step, by channel.
-        """
-        self._send({"op": "step", "instants": list(instants), "pending": dict(pending)})
+    def step(self, events: Sequence[Event]) -> Reply:
+        """Run the program for events, at least one, in the order of their instants, or for the first of them."""
+        self._send({"op": "step", "events": events})
         reply: Reply = self._expect("done", STEP_TIMEOUT, Kind.STUCK)
+        if not 0 < len(reply.sent) <= len(events):
+            raise StudentError(self._exit_reason())
         return reply
 
     def __enter__(self) -> Stepper:

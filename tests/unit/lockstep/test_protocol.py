@@ -15,7 +15,9 @@ from autograder.run.lockstep import protocol
 from autograder.run.lockstep.protocol import MAX_LINE, MAX_TEXT, ProtocolError
 from autograder.run.lockstep.stepper import HOST
 
-DONE: dict[str, Any] = {"event": "done", "sent": {}, "lost": [], "changed": False, "wake": None, "notes": []}
+DONE: dict[str, Any] = {
+    **{"event": "done", "sent": [{}], "lost": [], "changed": False, "wake": None, "due": None, "notes": []}
+}
 CRASH: dict[str, Any] = {"event": "crash", "phase": "spin", "type": "E", "message": "m", "traceback": "t"}
 DEADLOCK: dict[str, Any] = {"event": "deadlock", "what": "wait()", "name": "", "reason": "group"}
 DESCRIPTION: dict[str, Any] = {
@@ -68,8 +70,9 @@ def test_any_bytes_are_an_event_or_refused(noise: bytes) -> None:
 @pytest.mark.parametrize(
     ("event", "forged"),
     [
-        *((DONE, {"sent": counts}) for counts in ({"/a": True}, {"/a": -1}, {"/a": 1.0}, ["/a"], None)),
-        *((DONE, {"wake": wake}) for wake in (True, 5.0, "5")),
+        *((DONE, {"sent": [counts]}) for counts in ({"/a": True}, {"/a": -1}, {"/a": 1.0}, ["/a"], None)),
+        *((DONE, {"sent": sent}) for sent in ({"/a": 1}, 7, None)),
+        *((DONE, {name: time}) for name in ("wake", "due") for time in (True, 5.0, "5")),
         *((DONE, {"notes": notes}) for notes in (["give me points"], [["thread"]], 7)),
         *((DONE, {"lost": lost}) for lost in ([7], 7)),
         (DONE, {"points": 100}),

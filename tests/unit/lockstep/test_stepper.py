@@ -17,7 +17,10 @@ from autograder.run.lockstep.stepper import Timeout
 from autograder.run.sandbox import ExitReason, Sandbox, launcher
 
 START = "import os, sys, signal\nread, write = int(sys.argv[1]), int(sys.argv[2])\n"
-DONE = '{"event": "done", "sent": {"/cmd_vel": 3}, "lost": [], "changed": false, "wake": null, "notes": []}\\n'
+DONE = (
+    '{"event": "done", "sent": [{"/cmd_vel": 3}], "lost": [], "changed": false, "wake": null, "due": null, '
+    '"notes": []}\\n'
+)
 Open = Callable[[str], Stepper]
 
 
@@ -52,7 +55,13 @@ signal.pause()
 """
     program = host(answers)
     program.wait_ready()
-    assert program.step([10**9], {"/scan": 1}).sent == {"/cmd_vel": 3}
+    assert program.step([(10**9, {"/scan": 1})]).sent == ({"/cmd_vel": 3},)
+
+
+@pytest.mark.parametrize("sent", ["[]", "[{}, {}]"], ids=["no event", "more events than it was given"])
+def test_a_reply_that_tells_of_other_events_than_were_given_is_refused(host: Open, sent: str) -> None:
+    program = host(f"os.write(write, b'{DONE}'.replace(b'[{{\"/cmd_vel\": 3}}]', b'{sent}'))\nsignal.pause()")
+    assert _kind(lambda: program.step([(1, {})])) is Kind.STUCK
 
 
 def test_a_program_that_delays_each_step_a_little_uses_up_the_time_budget(
@@ -70,7 +79,7 @@ while os.read(read, 999):
 
     def steps() -> None:
         for _ in range(20):
-            program.step([10**9], {})
+            program.step([(10**9, {})])
 
     assert _kind(steps) is Kind.TIMED_OUT
 
@@ -99,7 +108,7 @@ def test_a_step_without_a_reply_is_reported_as_stuck(host: Open, monkeypatch: py
     monkeypatch.setattr(stepper, "STEP_TIMEOUT", Timeout(0.5, 10.0))
     program = host('os.write(write, b\'{"event": "ready"}\\n\')\nsignal.pause()')
     program.wait_ready()
-    assert _kind(lambda: program.step([1], {})) is Kind.STUCK
+    assert _kind(lambda: program.step([(1, {})])) is Kind.STUCK
 
 
 def test_a_program_that_computes_without_end_is_not_waited_for(host: Open, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -153,7 +162,7 @@ while True:
 
     def step_until_the_pipe_is_full() -> None:
         for step in range(10_000):
-            program.step([step], {"/scan": step})
+            program.step([(step, {"/scan": step})])
 
     assert _kind(step_until_the_pipe_is_full) is Kind.STUCK
 

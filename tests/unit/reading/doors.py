@@ -94,7 +94,7 @@ def _use(event: str, record: Any) -> object:
         grader: Any = SimpleNamespace(readers=[], written={}, publishers={}, clients=list)
         return connected([record, record], grader), tick_of(10**8, record.timers)
     if isinstance(record, protocol.Reply):
-        counts = _sum([record.sent, record.sent])
+        counts = _sum([*record.sent, *record.sent])
         return json.dumps(dict(counts)), next_instant(100, 10**9, [record.wake]), f"{record.notes} {counts}"
     return event, record
 
@@ -226,7 +226,7 @@ DOORS: dict[str, Door] = {
         altered_json(*EVENTS) | JSON,
         (
             *({**event, "event": ["done"]} for event in EVENTS),
-            {**EVENTS[1], "sent": {"/cmd_vel T": int("9" * 4300)}},
+            {**EVENTS[1], "sent": [{"/cmd_vel T": int("9" * 4300)}]},
             {**EVENTS[1], "wake": int("9" * 4300)},
             {**EVENTS[-1], "early": {"/add S request": int("9" * 4300)}},
             {**EVENTS[-1], "kept": {"/said T": int("9" * 4300)}},

@@ -24,7 +24,15 @@ CALLS: tuple[Any, ...] = (
 )
 EVENTS: tuple[dict[str, Any], ...] = (
     {"event": "ready"},
-    {"event": "done", "sent": {"/cmd_vel T": 3}, "lost": ["/scan T"], "changed": True, "wake": 5, "notes": ["thread"]},
+    {
+        "event": "done",
+        "sent": [{"/cmd_vel T": 3}],
+        "lost": ["/scan T"],
+        "changed": True,
+        "wake": 5,
+        "due": 7,
+        "notes": ["thread"],
+    },
     {"event": "unsteppable", "reason": "sleep"},
     {"event": "deadlock", "what": "wait()", "name": "/add", "reason": "group"},
     {"event": "crash", "phase": "spin", "type": "E", "message": "m", "traceback": "t"},

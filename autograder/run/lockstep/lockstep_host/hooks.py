@@ -12,8 +12,9 @@ from typing import Any
 
 from rclpy.action import ActionClient, ActionServer
 from rclpy.client import Client
-from rclpy.clock import ClockType
+from rclpy.clock import Clock, ClockType
 from rclpy.impl.implementation_singleton import rclpy_implementation as c
+from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, qos_profile_action_status_default
 from rclpy.service import Service
@@ -22,6 +23,7 @@ from rclpy.timer import Timer
 
 from . import channels
 from .callback_threads import Worker
+from .due import is_seen_coming
 from .message_counts import NOT_COUNTED, MessageCounts, Reader
 
 _take_message = c.Subscription.take_message
@@ -38,13 +40,14 @@ class Hooks:
     """The hooks that keep one `MessageCounts`.
 
     `note` gets the reason why steps are not all that moves the program. `changed` is True when there are endpoints or
-    timers that the grader does not know yet.
+    timers that the grader does not know yet, `unpredictable` when the program has what no count and no timer announces.
     """
 
     def __init__(self, counts: MessageCounts, note: Callable[[str], None]) -> None:
         self.counts = counts
         self._note = note
         self.changed = True
+        self.unpredictable = False
         self._written: dict[tuple[int, str], tuple[str, int]] = {}  # a C object's channel and kept depth
         self._served: dict[tuple[int, str], tuple[str, Any]] = {}  # what a C object serves or calls: name, type
 
@@ -57,6 +60,8 @@ class Hooks:
         _after(ActionServer, "__init__", self._made_action_server)
         _after(ActionClient, "__init__", self._made_action_client)
         _after(Timer, "__init__", self._made_timer)
+        _after(Clock, "create_jump_callback", self._made_jump_callback)
+        _after(Node, "add_waitable", self._added_waitable)
         for method in ("publish", "publish_raw"):
             _after(c.Publisher, method, partial(self._wrote, ""))
         _after(c.Client, "send_request", partial(self._asked, ""))
@@ -84,7 +89,9 @@ class Hooks:
             self.changed = True
 
     def _made_subscription(self, subscription: Any, *_: Any, **__: Any) -> None:
-        if subscription.topic_name not in NOT_COUNTED:
+        if subscription.topic_name in NOT_COUNTED:
+            self.unpredictable = True
+        else:
             qos = subscription.qos_profile
             read = channels.subscription_channels(subscription.topic_name, subscription.msg_type, qos)
             transient_local = qos.durability.name == "TRANSIENT_LOCAL"
@@ -136,6 +143,12 @@ class Hooks:
         self.changed = True
         if timer.clock.clock_type != ClockType.ROS_TIME:
             self._note("clock")
+
+    def _made_jump_callback(self, *_: Any, **__: Any) -> None:
+        self.unpredictable = True  # it is told by how much each setting of the time moves a clock
+
+    def _added_waitable(self, node: Any, waitable: Any, **_: Any) -> None:
+        self.unpredictable |= not is_seen_coming(waitable)
 
     def _requests(self, handle: Any) -> list[str]:
         return [channels.request(*self._served[(handle.pointer, part)]) for part in _PARTS]

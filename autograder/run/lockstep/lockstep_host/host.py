@@ -1,15 +1,14 @@
 """The host: ROS time and its steps, as the program in this process sees them.
 
 The host replaces `Executor.wait_for_ready_callbacks`, which every kind of spin of rclpy calls. When the program waits
-for work and there is none, the host waits for the grader's next command instead. The command `step` names instants of
-ROS time. At each of them the program takes all messages that were sent to it and runs the timers that are due.
+for work and there is none, the host waits for the grader's next command instead. The command `step` holds events: an
+instant of ROS time, and how many messages were sent. In each the program takes these and runs the timers that are due.
 """
 
 from __future__ import annotations
 
 import sys
 import threading
-import time
 import weakref
 from pathlib import Path
 from typing import Any
@@ -29,20 +28,21 @@ from rclpy.executors import (
 from rclpy.impl.rcutils_logger import Throttle
 from rclpy.time import Time
 
-from . import channels, message_counts
+from . import channels
+from .arrivals import Arrivals
 from .blocking import Blocking
 from .callback_threads import Worker
 from .clocks import Clocks
 from .description import describe
+from .due import EVERY_INSTANT, next_due
 from .executors import CallbackThreadsExecutor, spin_until_future_complete
 from .hooks import Hooks
+from .message_counts import MessageCounts, is_alive
 from .pipes import Pipes
 from .tasks import TaskPositions
 
-LOSS_SECONDS = 5.0  # s of real time without any progress, after which messages that were announced count as lost
-OVERFLOW_SECONDS = 0.3  # s of real time to wait for more messages than a queue holds, of which some are lost by design
-
 _wait_for_work = Executor.wait_for_ready_callbacks
+_can_execute = Executor.can_execute
 _init = Context.init
 _init_time_source = rclpy.time_source.TimeSource.__init__
 
@@ -53,14 +53,16 @@ class Host:
     Attributes:
         time: ROS time in nanoseconds.
         phase: how far the program has come: import, start or spin.
-        wakes: instants at which something wants to go on; None for what waits without a time-out.
+        wakes: instants at which something wants to go on; None for what waits without a time-out, `EVERY_INSTANT`
+            for what never waits.
     """
 
     def __init__(self, pipes: Pipes, start_ns: int, clock_rate: float = 1.0) -> None:
         self.pipes = pipes
         self.time = start_ns
         self.phase = "import"
-        self.counts = message_counts.MessageCounts()
+        self.counts = MessageCounts()
+        self.arrivals = Arrivals(self.counts)
         self.wakes: list[int | None] = []
         self.hooks = Hooks(self.counts, self.note)
         self.blocking = Blocking(self)
@@ -70,13 +72,13 @@ class Host:
         self._log_clock = ROSClock()  # rclpy throttles logs by the wall clock, which steps leave far behind
         self._log_clock._set_ros_time_is_active(True)
         self._log_clock.set_ros_time_override(_ros_time(start_ns))
-        self._instants: list[int] = []  # of the present step, still to come
+        self._events: list[tuple[int, dict[str, int]]] = []  # of the present step, still to come
+        self._sent: list[dict[str, int]] = []  # in each event of the present step that is over
+        self._executors: weakref.WeakSet[Executor] = weakref.WeakSet()
         self._positions = TaskPositions()
         self._worked = self._stale = self._stepping = self._quit = False
-        self._lost: list[str] = []
         self._notes: list[str] = []
         self._main = threading.current_thread()
-        self._progress = 0.0
 
     def install(self) -> None:
         """Put the host between rclpy and the program of this process."""
@@ -86,6 +88,9 @@ class Host:
         time_source = rclpy.time_source.TimeSource
         Context.init = lambda context, args=None, **options: self.init(context, args, **options)
         Executor.wait_for_ready_callbacks = lambda executor, *args, **kwargs: self.wait(executor, *args, **kwargs)
+        Executor.can_execute = lambda executor, entity: (
+            _can_execute(executor, entity) and not self.counts.holds_back(entity)
+        )
         time_source.__init__ = lambda source, *, node=None: self.init_time_source(source, node=node)
         time_source._subscribe_to_clock_topic = lambda source: None  # the grader steps the clock, nobody else
         Executor.spin_until_future_complete = lambda executor, future, timeout_sec=None: spin_until_future_complete(
@@ -126,32 +131,28 @@ class Host:
             self.stop(event="unsteppable", reason="thread") if self.phase != "spin" else threading.Event().wait()
         end = None if timeout is None or timeout < 0 else self.time + max(1, round(timeout * 1e9))
         threads = getattr(executor, "threads", None)
+        self._executors.add(executor)
         while True:
             if condition():
                 raise ConditionReachedException
             if threads is not None and threads.resume():
-                self._progress = time.monotonic()
+                self.arrivals.advance()
                 self._positions.clear()
                 continue
             idle = threads is not None and threads.full
-            behind = self._readers_behind(executor) if self.counts.behind and not idle else []
-            for reader, entity in behind:
-                # Callbacks run in the order of their creation once all messages are there. Otherwise they would run in
-                # the order in which messages happen to arrive.
-                seconds = OVERFLOW_SECONDS if 0 < reader.depth < reader.unread else LOSS_SECONDS
-                message_counts.wait_for(reader, entity, executor.context, self._progress + seconds - time.monotonic())
+            behind = self.arrivals.wait(executor) if self.counts.behind and not idle else []
             work = None if idle else self._ready(executor, nodes, condition)
             if work is not None:
                 return work
             if behind:
-                self._drop_overdue(behind)
+                self.arrivals.drop_overdue(behind)
                 continue
-            # Nothing is left to do now. A finite time-out is ROS time; one of 0 waits for the next step, too, since a
+            # Nothing is left to do now. A finite time-out is ROS time; one of 0 waits for the next event, too, since a
             # polling loop would never let a step end.
             if end is not None and self.time >= end:
                 raise TimeoutException
             self.blocking.check(executor, end)
-            wake = end if timeout else None
+            wake = EVERY_INSTANT if timeout == 0 else end
             self.wakes.append(wake)
             try:
                 self.pass_time()
@@ -168,7 +169,7 @@ class Host:
 
     def nodes(self) -> list[Any]:
         """Return the nodes that the program has made and not destroyed."""
-        return [node for ref in self._nodes if (node := ref()) is not None and message_counts.is_alive(node)]
+        return [node for ref in self._nodes if (node := ref()) is not None and is_alive(node)]
 
     def has_sent(self) -> bool:
         """Return whether a node has sent anything but parameter events."""
@@ -188,12 +189,16 @@ class Host:
         raise KeyboardInterrupt
 
     def pass_time(self) -> None:
-        """Go on to the next instant of the present step, or wait for the next step."""
+        """Go on to the next event of the present step, or wait for the next step."""
         self._stale = True
-        if self._instants:
-            self._set_time(self._instants.pop(0))
-        else:
-            self._next_step()
+        if self._stepping:
+            self._sent.append(self.counts.flush())
+        while self._events and not self.hooks.changed:  # the grader has to match what is new before anything is sent
+            event = self._events.pop(0)
+            if event[1] or self._is_due(event[0]):
+                return self._begin(*event)
+            self._sent.append({})
+        return self._next_step()
 
     # The steps.
 
@@ -212,31 +217,13 @@ class Host:
                 return None
             if self._positions.advances(work[0]):
                 self._worked = True
-                self._progress = time.monotonic()
+                self.arrivals.advance()
                 return work
 
     def _in_order(self, executor: Executor) -> list[Any]:
         """Return the executor's nodes in the order of their creation; the executor keeps them in a set."""
         there = executor.get_nodes()
         return [node for node in self.nodes() if node in there]
-
-    def _readers_behind(self, executor: Executor) -> list[tuple[message_counts.Reader, Any]]:
-        """Return an executor's readers with unread messages whose callbacks can run now, each with its entity."""
-        nodes = executor.get_nodes()
-        behind = []
-        for reader in list(self.counts.behind):
-            entity = reader.entity
-            if entity is None:
-                self.counts.behind.discard(reader)
-            elif any(message_counts.belongs_to(entity, node) for node in nodes) and executor.can_execute(entity):
-                behind.append((reader, entity))
-        return behind
-
-    def _drop_overdue(self, behind: list[tuple[message_counts.Reader, Any]]) -> None:
-        waited = time.monotonic() - self._progress
-        lost = [r for r, _ in behind if waited > (OVERFLOW_SECONDS if 0 < r.depth < r.unread else LOSS_SECONDS)]
-        self._lost += [reader.channels[0] for reader in lost if not 0 < reader.depth < reader.unread]
-        self.counts.drop(lost)
 
     def _next_step(self) -> None:
         if self.phase != "spin":
@@ -246,9 +233,9 @@ class Host:
             self._stepping = False
             if not all(map(self._is_stepped, threading.enumerate())):
                 self.note("thread")  # whatever it waits for now, it may go on when this program is idle
-            wake = min((wake for wake in self.wakes if wake is not None), default=None)
-            state = {"lost": self._lost, "changed": self.hooks.changed, "wake": wake, "notes": self._notes}
-            self.pipes.send(event="done", sent=self.counts.flush(), **state)
+            state = {"sent": self._sent, "lost": self.arrivals.lost, "changed": self.hooks.changed}
+            state |= {"wake": min(filter(None, self.wakes), default=None), "due": self._due(), "notes": self._notes}
+            self.pipes.send(event="done", **state)
         while True:
             command: dict[str, Any] = {"op": "quit"} if self._quit else self.pipes.receive()
             if command["op"] == "quit":
@@ -262,13 +249,26 @@ class Host:
                 self.pipes.send(event="matched")
             else:
                 break
-        self._instants = command["instants"]
+        self._events = command["events"]
         self._stepping = True
-        self._lost = []
-        self._positions.clear()
-        self._progress = time.monotonic()
-        self._set_time(self._instants.pop(0))
-        self.counts.received(command["pending"])
+        self._sent, self.arrivals.lost = [], []
+        self._begin(*self._events.pop(0))
+
+    def _begin(self, instant: int, pending: dict[str, int]) -> None:
+        """Begin an event. What was sent for a later one is held back, as if it had not come yet."""
+        self.arrivals.advance()
+        self._set_time(instant)
+        self.counts.hold_back(channel for _, later in self._events for channel in later)
+        self.counts.received(pending)
+
+    def _due(self) -> int | None:
+        if self._notes or self.hooks.unpredictable or self.counts.behind or self.arrivals.may_come_late:
+            return EVERY_INSTANT
+        return next_due(self.nodes(), self._executors, self.wakes)
+
+    def _is_due(self, instant: int) -> bool:
+        due = self._due()
+        return due is not None and due <= instant
 
     def _describe(self) -> dict[str, Any]:
         self.hooks.changed = False

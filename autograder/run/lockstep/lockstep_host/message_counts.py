@@ -73,6 +73,7 @@ class MessageCounts:
         self.kept: Counter[str] = Counter()
         self.behind: set[Reader] = set()
         self._by_channel: dict[str, list[Reader]] = {}
+        self._held_back: dict[int, Reader] = {}  # by the id of the subscription
 
     def add(self, handle: Any, reader: Reader) -> None:
         """Add a new reader, which belongs to a C object."""
@@ -89,6 +90,16 @@ class MessageCounts:
         """Count messages that the grader and other programs have sent."""
         for channel, count in pending.items():
             self._add_unread(channel, count)
+
+    def hold_back(self, channels: Iterable[str]) -> None:
+        """From now on hold back messages on these channels, and on no others, that are not counted yet."""
+        readers = [reader for channel in channels for reader in self._by_channel.get(channel, ())]
+        self._held_back = {id(reader.entity): reader for reader in readers if reader.depth and not reader.part[0]}
+
+    def holds_back(self, entity: Any) -> bool:
+        """Return whether what has come for an entity is not counted yet, and held back until it is."""
+        reader = self._held_back.get(id(entity))
+        return reader is not None and reader.unread <= 0
 
     def took(self, handle: Any, part: str) -> None:
         """Count a message that one part of a C object has taken."""
@@ -147,40 +158,6 @@ class MessageCounts:
             reader.unread += count
             if reader.unread > 0:
                 self.behind.add(reader)
-
-
-def wait_for(reader: Reader, entity: Any, context: Any, seconds: float) -> bool:
-    """Wait at most `seconds` of real time until a message has arrived for a reader; return whether one has."""
-    try:
-        with entity.handle if hasattr(entity, "handle") else entity, context.handle:
-            return _wait_for(reader, entity, context, int(max(0.0, seconds) * 1e9))
-    except InvalidHandle:
-        return False
-
-
-def _wait_for(reader: Reader, entity: Any, context: Any, nanoseconds: int) -> bool:
-    name, index = reader.part
-    if name:
-        counts = entity.get_num_entities()
-        numbers = [counts.num_subscriptions, counts.num_guard_conditions, counts.num_timers]
-        numbers += [counts.num_clients, counts.num_services, counts.num_events]
-        deadline = time.monotonic_ns() + nanoseconds
-        while True:
-            wait_set = rclpy_implementation.WaitSet(*numbers, context.handle)
-            wait_set.clear_entities()
-            entity.add_to_wait_set(wait_set)
-            wait_set.wait(max(0, deadline - time.monotonic_ns()))
-            ready = (entity._handle if hasattr(entity, "_handle") else entity._client_handle).is_ready(wait_set)
-            if ready[index] or time.monotonic_ns() >= deadline:
-                return bool(ready[index])
-    kind = type(entity).__name__
-    subscriptions, clients, services = kind == "Subscription", kind == "Client", kind == "Service"
-    wait_set = rclpy_implementation.WaitSet(int(subscriptions), 0, 0, int(clients), int(services), 0, context.handle)
-    wait_set.clear_entities()
-    add = {"Subscription": wait_set.add_subscription, "Client": wait_set.add_client, "Service": wait_set.add_service}
-    add[kind](entity.handle)
-    wait_set.wait(nanoseconds)
-    return bool(wait_set.get_ready_entities(kind.lower()))
 
 
 def _empty(subscription: Any) -> None:

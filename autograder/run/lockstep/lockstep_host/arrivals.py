@@ -1,0 +1,110 @@
+"""Arrivals: waiting in real time for messages that were announced and have not come yet.
+
+Callbacks run in the order of their creation once all messages are there. Otherwise they would run in the order in which
+messages happen to arrive.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from rclpy.exceptions import InvalidHandle
+from rclpy.executors import Executor
+from rclpy.impl.implementation_singleton import rclpy_implementation
+
+from .message_counts import MessageCounts, Reader, belongs_to
+
+LOSS_SECONDS = 5.0  # s of real time without any progress, after which messages that were announced count as lost
+OVERFLOW_SECONDS = 0.3  # s of real time to wait for more messages than a queue holds, of which some are lost by design
+
+Behind = list[tuple[Reader, Any]]
+"""Readers with unread messages, each with its entity."""
+
+
+class Arrivals:
+    """The waits for the unread messages of one `MessageCounts`.
+
+    Attributes:
+        lost: channels on which messages that were announced did not come; whoever reports them starts a new list.
+        may_come_late: whether anything was ever lost, which a busy machine may still deliver.
+    """
+
+    def __init__(self, counts: MessageCounts) -> None:
+        self.lost: list[str] = []
+        self.may_come_late = False
+        self._counts = counts
+        self._progress = 0.0
+
+    def advance(self) -> None:
+        """Note that the program has advanced: what it waits for may have been sent only now."""
+        self._progress = time.monotonic()
+
+    def wait(self, executor: Executor) -> Behind:
+        """Wait for the unread messages whose callbacks can run now in an executor; return their readers."""
+        behind = self._behind(executor)
+        for reader, entity in behind:
+            left = self._progress + _patience(reader) - time.monotonic()
+            wait_for(reader, entity, executor.context, left)
+        return behind
+
+    def drop_overdue(self, behind: Behind) -> None:
+        """Count as lost what was waited for long enough."""
+        waited = time.monotonic() - self._progress
+        lost = [reader for reader, _ in behind if waited > _patience(reader)]
+        self.lost += [reader.channels[0] for reader in lost if not _overflows(reader)]
+        self.may_come_late |= bool(lost)
+        self._counts.drop(lost)
+
+    def _behind(self, executor: Executor) -> Behind:
+        nodes = executor.get_nodes()
+        behind = []
+        for reader in list(self._counts.behind):
+            entity = reader.entity
+            if entity is None:
+                self._counts.behind.discard(reader)
+            elif any(belongs_to(entity, node) for node in nodes) and executor.can_execute(entity):
+                behind.append((reader, entity))
+        return behind
+
+
+def _overflows(reader: Reader) -> bool:
+    return 0 < reader.depth < reader.unread
+
+
+def _patience(reader: Reader) -> float:
+    return OVERFLOW_SECONDS if _overflows(reader) else LOSS_SECONDS
+
+
+def wait_for(reader: Reader, entity: Any, context: Any, seconds: float) -> bool:
+    """Wait at most `seconds` of real time until a message has arrived for a reader; return whether one has."""
+    try:
+        with entity.handle if hasattr(entity, "handle") else entity, context.handle:
+            return _wait_for(reader, entity, context, int(max(0.0, seconds) * 1e9))
+    except InvalidHandle:
+        return False
+
+
+def _wait_for(reader: Reader, entity: Any, context: Any, nanoseconds: int) -> bool:
+    name, index = reader.part
+    if name:
+        counts = entity.get_num_entities()
+        numbers = [counts.num_subscriptions, counts.num_guard_conditions, counts.num_timers]
+        numbers += [counts.num_clients, counts.num_services, counts.num_events]
+        deadline = time.monotonic_ns() + nanoseconds
+        while True:
+            wait_set = rclpy_implementation.WaitSet(*numbers, context.handle)
+            wait_set.clear_entities()
+            entity.add_to_wait_set(wait_set)
+            wait_set.wait(max(0, deadline - time.monotonic_ns()))
+            ready = (entity._handle if hasattr(entity, "_handle") else entity._client_handle).is_ready(wait_set)
+            if ready[index] or time.monotonic_ns() >= deadline:
+                return bool(ready[index])
+    kind = type(entity).__name__
+    subscriptions, clients, services = kind == "Subscription", kind == "Client", kind == "Service"
+    wait_set = rclpy_implementation.WaitSet(int(subscriptions), 0, 0, int(clients), int(services), 0, context.handle)
+    wait_set.clear_entities()
+    add = {"Subscription": wait_set.add_subscription, "Client": wait_set.add_client, "Service": wait_set.add_service}
+    add[kind](entity.handle)
+    wait_set.wait(nanoseconds)
+    return bool(wait_set.get_ready_entities(kind.lower()))
