@@ -1,4 +1,4 @@
-"""Names and sentences for what can be wrong with a submission before its behaviour is checked."""
+"""Names and sentences for the problems of a submission that are found before its behaviour is checked."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Kind(str, Enum):
     NOT_GRADED = "not_graded"
 
 
-# What helps with a program that crashed, whatever was looked at when it did.
+# Hints for a program that crashed, independent of the check that ran at that time.
 HINTS = {
     kind: ("Read the traceback from its last line upwards. The first line that names a file of yours says where.",)
     for kind in (Kind.SYNTAX_ERROR, Kind.CRASHED_AT_IMPORT, Kind.CRASHED_AT_START, Kind.CRASHED_LATER)
@@ -55,7 +55,7 @@ class Diagnosis:
 
     @property
     def hints(self) -> tuple[str, ...]:
-        """Hints for the student, one after the other. Most sentences say themselves what to do."""
+        """Hints for the student, one after the other. Most sentences already say what to do."""
         return HINTS.get(self.kind, ())
 
 

@@ -37,9 +37,9 @@ class GraderError(AutograderError):
 
 
 class DoubtfulError(GraderError):
-    """A program or the machine failed, and nobody can tell which. The grading is tried again.
+    """A program or the machine failed, and it is unclear which. The grading is repeated.
 
-    In the last try it is the program's fault, with this diagnosis: a machine does not fail so twice.
+    In the last try it counts as the program's fault, with this diagnosis: the machine is unlikely to fail again.
     """
 
     def __init__(self, diagnosis: Diagnosis) -> None:

@@ -1,6 +1,6 @@
-"""What the course is, and the paths of its folders and files.
+"""The course, and the paths of its folders and files.
 
-A course is a folder with a `course.yaml`. Its lines, of which only the first two are needed, with their defaults:
+A course is a folder with a `course.yaml`. These are its keys with their defaults; only the first two are required:
 
     name: my-course           its name for nbgrader
     title: My course          its name for people
@@ -8,9 +8,9 @@ A course is a folder with a `course.yaml`. Its lines, of which only the first tw
     solutions: solutions      the reference, a source tree of packages
     checks: checks            a package for each assignment, `chID`, with its checks
     worlds: worlds            worlds, besides those that come with the simulator
-    syllabus: syllabus.yaml   what the course has to cover
+    syllabus: syllabus.yaml   the topics and objectives that the course has to cover
     guide: checks.md          the page about hidden checks, which `autograder course tables` writes
-    released: []              what students get besides the released chapters, worlds and visible checks
+    released: []              files that students get besides the released chapters, worlds and visible checks
     demo: ID                  the assignment that `autograder demo` shows; the first one by default
 
 A process works on one course: the one around the autograder, or the one that the environment variable
@@ -57,7 +57,7 @@ class Course:
 
     @classmethod
     def read(cls, root: Path) -> Course:
-        """Read the course in a folder. Raises UsageError if there is none, or its file is wrong."""
+        """Read the course in a folder. Raises UsageError if the folder has no valid course.yaml."""
         path = root / COURSE_FILE
         try:
             data: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
@@ -75,7 +75,7 @@ class Course:
         return course
 
     def shows_answers(self, part: str) -> bool:
-        """Return whether a path holds or lies in what students do not get. Files beside the chapters are no answers."""
+        """Return whether a path overlaps with files that students do not get. Files beside the chapters do not."""
         shown, chapters = (self.root / part).resolve(), (self.root / self.chapters).resolve()
         secrets = (chapters, *((self.root / name).resolve() for name in (self.solutions, self.checks, self.guide)))
         beside = shown.parent == chapters and shown.suffix != ""
@@ -83,7 +83,7 @@ class Course:
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """The paths of what the course is made of, whether it has all of it or not."""
+        """The paths of all parts of the course, including those that do not exist."""
         named = (self.chapters, self.solutions, self.checks, self.worlds, self.syllabus, self.guide)
         return (COURSE_FILE, *named, *self.released)
 
@@ -96,10 +96,10 @@ def _chosen() -> Path:
 
 @cache
 def course() -> Course:
-    """Return the course of this process. Raises UsageError if there is none, or its file is wrong."""
+    """Return the course of this process. Raises UsageError if none exists, or its file is invalid."""
     chosen = Course.read(_chosen())
     if chosen.root != ROOT:
-        os.environ[COURSE_VARIABLE] = str(chosen.root)  # what is started from here may have another working folder
+        os.environ[COURSE_VARIABLE] = str(chosen.root)  # child processes may have another working folder
     return chosen
 
 

@@ -23,7 +23,7 @@ _UNSEEN = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
 
 
 def visible(text: str, *, line: bool = False) -> str:
-    r"""Return `text` for a terminal: what steers one, or is not seen, stands there as an escape such as `\x1b`.
+    r"""Return `text` for a terminal, with control and invisible characters as escapes such as `\x1b`.
 
     Newlines and tabs stay as they are, unless the text is a `line`, such as a name.
     """

@@ -1,4 +1,4 @@
-"""Builds the packages of a suite. A build that fails ends the grading, or is what the checks examine."""
+"""Builds the packages of a suite. A failed build ends the grading, or the checks examine it."""
 
 from __future__ import annotations
 

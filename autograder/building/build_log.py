@@ -26,7 +26,7 @@ _DEFINITION = re.compile(
 _DEPENDENCY = re.compile(
     r"/rosidl_generator_type_description/__init__\.py\"(?s:.{1,2000}?)\nKeyError: '(?P<package>\w{1,100})'\n"
 )
-# What CMake says breaks lines, too, and names a file of ROS; the student's line is at the end of the call stack.
+# CMake wraps its messages, too, and names a file of ROS; the student's line is at the end of the call stack.
 _CMAKE_ERROR = re.compile(
     r"^CMake Error at (?P<place>\S{1,300}?)(?: \(\w{1,80}\))?:\n(?P<text>(?:  .*\n){1,12})(?P<rest>(?s:.{0,3000}))",
     re.MULTILINE,
@@ -35,7 +35,7 @@ _CMAKE_LINE = re.compile(r"^  (CMakeLists\.txt:\d+) \(", re.MULTILINE)
 _CMAKE_TRACEBACK = re.compile(r"^  Traceback \(most recent call last\):\n(?:[ ]*\n|    .*\n)*", re.MULTILINE)
 _RUNS_SETUP = "in run_setup"  # of setuptools: the frames called "<string>" below it are those of setup.py
 _EMPTY_BLOCK = re.compile(r"^--- (?:stderr|output): .*\n(?:[ \t]*\n)*---\n", re.MULTILINE)
-# colcon's own error, told again, and its word about what this machine's ROS is made of.
+# colcon's own error, repeated, and its statement about this machine's ROS.
 _OTHERS = re.compile(r"^(?:Command '\[|\[[\d.]+s\] WARNING:colcon\.colcon_ros\.prefix_path\.).*\n?", re.MULTILINE)
 _TOOK = r"(?:\d+h )?(?:\d+min )?[\d.]+s"
 _TIME = re.compile(rf"^\[{_TOOK}\] | \[{_TOOK}\]$|(?<= \[){_TOOK}, (?=[^\[\]\n]+\]$)", re.MULTILINE)
@@ -71,13 +71,13 @@ def first_error(log: str) -> str:
 
 
 def _bounded(log: str) -> str:
-    """Return the log's begin and end, and no longer line than `LINE`: students' builds write what they like."""
+    """Return the start and the end of the log, with lines of at most `LINE` characters: students' builds write it."""
     ends = log if len(log) <= 2 * END else f"{log[:END]}\n{log[-END:]}"
     return "\n".join(line[:LINE] for line in ends.splitlines()) + "\n"
 
 
 def _own(lines: Iterator[str]) -> tuple[list[str], str]:
-    """Read a traceback behind its first line; return what is kept of it, and the line that follows it."""
+    """Read a traceback after its first line; return the lines to keep, and the line after the traceback."""
     kept = [_BEGIN]
     own = has_own = in_setup = False
     for line in lines:

@@ -1,4 +1,4 @@
-"""The worker that builds interface packages for who keeps them: it sees their sources, and no submission.
+"""The worker that builds interface packages for the cache. It sees their sources, and no submission.
 
 python -m autograder.building.bundle_worker SCRATCH DESCRIPTOR
 """
@@ -21,7 +21,7 @@ from autograder.submission.reading import reading
 
 
 def main() -> None:
-    """Build the packages that come over the line, and send what was installed back."""
+    """Build the packages that arrive over the line, and send the installed files back."""
     scratch = Path(sys.argv[1])
     restore_sigint()
     ros = activate()

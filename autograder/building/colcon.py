@@ -1,4 +1,4 @@
-"""One `colcon build` in the sandbox, and what its failure means."""
+"""One `colcon build` in the sandbox, and the diagnosis if it fails."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ class StoppedBuildError(StudentError):
 def colcon_command(workspace: Workspace, folders: Iterable[Path], verb: str, *words: str) -> list[str]:
     """Return the command line of `colcon VERB WORDS...` in a sandbox, on the packages in some folders of the workspace.
 
-    What colcon would find by itself may be other packages than those that are judged.
+    Without this, colcon might find other packages than the judged ones.
     """
     command = [sys.executable, str(RUNNER), "--log-base", str(workspace.scratch / "colcon-log"), verb]
-    # colcon hears a build's two streams apart: what it prints of both together has another order each time.
+    # colcon reads a build's two streams separately, so their combined output has a different order each time.
     together = "console_cohesion-" if verb == "build" else "console_cohesion+"
     paths = sorted(glob.escape(str(folder.relative_to(workspace.root))) for folder in folders)
     return [*command, "--paths", *paths, "--event-handlers", together, "desktop_notification-", *words]
@@ -80,7 +80,7 @@ def _run(workspace: Workspace, overlay: Path, command: list[str]) -> tuple[str, 
 
 
 def require_contained(install: Path) -> None:
-    """Raise a StudentError if an install space is too large, or holds what is no file, folder or link inside it.
+    """Raise a StudentError if an install space is too large, or contains more than files, folders and inner links.
 
     It is mounted for nodes, and a mount would follow a link. It is copied, and a copy fills the holes of a file.
     """
@@ -116,7 +116,7 @@ def _build_failure(output: str, exit_reason: ExitReason | None) -> str:
             "colcon does not see the package, because its package.xml breaks a rule of ROS: run colcon build and read "
             "what follows “Failed to parse ROS package manifest”."
         )
-    # Before that, colcon only looks at what lies in src, and complains of packages that this build does not need.
+    # Before that, colcon only reads src, and complains about packages that this build does not need.
     output = output[max(output.find("Starting >>> "), 0) :]
     first = first_error(output)
     return f"colcon build failed. The first error: {first}" if first else "colcon build failed."

@@ -44,7 +44,7 @@ def interface_bundle(packages: Mapping[str, Package], required: tuple[str, ...])
 def install_bundle(bundle: dict[str, Path], workspace: Workspace) -> None:
     """Put a bundle's built packages into a workspace's install space.
 
-    A build that failed has run programs of the submission, and the space may be what they made of it.
+    A failed build has run programs of the submission, which may have written to the space.
     """
     require_contained(workspace.install)
     tree = _sources(bundle)
@@ -90,10 +90,10 @@ def _make(tree: Mapping[Entry, bytes], workspace: Workspace, folder: Path, entry
 
 
 def build_alone(workspace: Workspace) -> dict[Entry, bytes]:
-    """Build all packages of a workspace that holds a bundle's sources alone; return what they install, and the note.
+    """Build all packages of a workspace that contains only a bundle's sources; return the installed files and the note.
 
     Raises:
-        StudentError: they do not build, or install nothing, or what may not be installed.
+        StudentError: they do not build, or install nothing, or install something that is not allowed.
     """
     folders = sorted((workspace.root / "src").iterdir())
     names = [folder.name for folder in folders]

@@ -55,7 +55,7 @@ def attend(
     a word has an empty last message.
 
     Raises:
-        MessageError: it says what no worker would.
+        MessageError: the message does not come from an unmodified worker.
     """
     files: dict[str, bytes] = {}
     while True:
@@ -78,7 +78,7 @@ def attend(
 
 
 def ask(line: Connection, sources: Mapping[Entry, bytes], target: Path) -> None:
-    """Have a tree of interface packages built by who started this worker, and write what was installed to `target`.
+    """Let the process that started this worker build interface packages, and write the installed files to `target`.
 
     Raises:
         StudentError: they do not build; the diagnosis says why.
@@ -105,7 +105,7 @@ def _refusal(reply: Mapping[str, Any]) -> StudentError:
 
 
 def key(sources: Mapping[Entry, bytes]) -> str:
-    """Return the key of built packages: all that they are made of, and what makes them."""
+    """Return the key of built packages: a digest of their sources and of the tools that build them."""
     digest = hashlib.sha256(json.dumps([VERSION, identity(find())], sort_keys=True).encode())
     for entry in sorted(sources, key=lambda entry: entry.path):
         head = json.dumps(astuple(entry)).encode()
@@ -127,9 +127,9 @@ def _answer(line: Connection, sources: Mapping[Entry, bytes], isolation: Isolati
 
 
 def _make_once(asked: float, sources: Mapping[Entry, bytes], isolation: Isolation, entry: Path) -> None:
-    """Fill a new entry, unless a limit has ended a build of it since somebody asked, at a time of the system's clock.
+    """Fill a new entry, unless a limit has ended a build of it since `asked`, a time of the system's clock.
 
-    Who brings the same sources meanwhile has waited for that build; to wait for another one would use up their time.
+    Other requests for the same sources have waited for that build. Waiting for another one would use up their time.
     """
     note = entry.parent / f"{key(sources)}.stopped"
     with suppress(FileNotFoundError):
@@ -145,7 +145,7 @@ def _make_once(asked: float, sources: Mapping[Entry, bytes], isolation: Isolatio
 
 
 def _make(sources: Mapping[Entry, bytes], isolation: Isolation, entry: Path) -> None:
-    """Fill a new entry with what a worker in its own sandbox makes of some sources."""
+    """Fill a new entry with the packages that a worker in its own sandbox builds from the sources."""
     ours, theirs = Pipe()
 
     def command(scratch: Path) -> list[str]:

@@ -1,4 +1,4 @@
-"""Grades a submission: a `Job` says what is asked for, and a `Result` what came of it.
+"""Grades a submission. A `Job` describes the task, and a `Result` its outcome.
 
     submission -> intake -> notebook (restored, then executed) -> build -> checks -> result
 

@@ -33,7 +33,7 @@ MAX_CODE = 200_000  # characters of Python that leave the worker sandbox
 
 @dataclass(frozen=True)
 class Digests:
-    """The digests of a submission, in hexadecimal digits, and what a result says of its files."""
+    """The digests of a submission, in hexadecimal digits, and the statements about its files for the result."""
 
     sha256: str  # of all its files
     graded_sha256: str  # of what a grading reads of them
@@ -43,7 +43,7 @@ class Digests:
 
 @dataclass(frozen=True)
 class Preview:
-    """What counts of a submission."""
+    """The part of a submission that counts."""
 
     files: int | None  # of packages, None if its notebook has to run
     notices: tuple[str, ...]  # about what counts
@@ -60,7 +60,7 @@ def read_digests(path: Path, assignment: str, isolation: Isolation) -> Digests |
 
 
 def read_preview(path: Path, assignment: str, isolation: Isolation) -> Preview:
-    """Return what counts of a submission. Raises StudentError if it cannot be read, or is unclear."""
+    """Return the part of a submission that counts. Raises StudentError if it cannot be read, or is unclear."""
     preview: Preview = structure(Preview, _read("preview", path, assignment, isolation))
     return preview
 
@@ -122,7 +122,7 @@ def _in_worker_sandbox(reader: str, path: Path, assignment: str) -> Any:
 
 
 def main() -> None:
-    """Print what a reader makes of the submission that the command line names."""
+    """Print the output of a reader for the submission on the command line."""
     reader, path, assignment = sys.argv[1:]
     answer: dict[str, Any]
     try:

@@ -20,7 +20,7 @@ from autograder.submission.intake.exercises import exercises_of
 from autograder.submission.intake.ignored import is_ignored
 from autograder.submission.intake.names import is_archive, is_notebook, stem
 
-TIMESTAMP = "timestamp.txt"  # of nbgrader, beside what was handed in
+TIMESTAMP = "timestamp.txt"  # a file of nbgrader beside the submission
 NO_SUBMISSION = "it is not a folder, an archive or a notebook"
 
 OnResult = Callable[[Result], None]
@@ -28,7 +28,7 @@ OnResult = Callable[[Result], None]
 
 @dataclass(frozen=True)
 class Discovered:
-    """Submissions by their students, and what else lies beside them, as pairs of a name and the reason."""
+    """Submissions by student, and the other files beside them, as pairs of a name and the reason."""
 
     submissions: Mapping[str, Path]
     others: tuple[tuple[str, str], ...]
@@ -84,7 +84,7 @@ def student_of(path: Path) -> str:
 
 
 def submission_in(folder: Path, assignment: str) -> Path:
-    """Return what a student's folder means: in nbgrader's layout, the folder of the assignment in it."""
+    """Return the submission in a student's folder: in nbgrader's layout, the folder of the assignment."""
     inner = folder / assignment
     if not inner.is_dir():
         return folder
@@ -120,7 +120,7 @@ def grade_all(
         grade_each: grades them in place of `jobs` workers of this machine.
 
     Returns:
-        The results, in the order of `submissions`. Ctrl-C lets end what has begun, and leaves the rest to `resume`.
+        The results, in the order of `submissions`. After Ctrl-C, running gradings finish, and `resume` continues later.
     """
     equal: dict[str, list[Job]] = {}
     for student, path in submissions.items():
@@ -164,7 +164,7 @@ def stored(job: Job) -> Result | None:
 
 def _copy(result: Result, graded: Job, job: Job) -> Result:
     """Store the result of a graded submission as that of an equal one."""
-    if (digests := job.digests) is not None:  # what counts is equal; what lies around it may differ
+    if (digests := job.digests) is not None:  # the same answer; the files around it may differ
         digest = digests.sha256 if result.status is Status.GRADED else result.submission_sha256
         notices = result.notices if digests.notices is None else digests.notices
         result = replace(result, submission_sha256=digest, notices=notices, unused=digests.unused)

@@ -15,15 +15,15 @@ _MAX_DIGITS = 100  # of an int: a longer one can be neither compared with a floa
 
 
 def read_json(data: bytes, most: int, *, is_strict: bool = True) -> Any:
-    """Return what JSON in UTF-8 stands for.
+    """Parse JSON in UTF-8.
 
     Args:
         data: the JSON.
-        most: of commas and brackets outside of its strings. There are at least as many of them as values, but for one.
+        most: maximum of commas and brackets outside strings; there are at most one fewer of these than values.
         is_strict: whether a number that cannot be computed with or shown is an error: NaN, infinity, endless digits.
 
     Raises:
-        ValueError: it is no JSON, or breaks a bound.
+        ValueError: it is not JSON, or exceeds a bound.
         RecursionError: it is nested too deep.
     """
     text = data.decode()

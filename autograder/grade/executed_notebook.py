@@ -30,7 +30,7 @@ def decode(data: bytes) -> list[NotebookNode]:
     More is not looked at: to validate the notebook's format can take a minute.
 
     Raises:
-        ValueError: it is no notebook, or breaks a bound.
+        ValueError: it is not a notebook, or exceeds a bound.
         RecursionError: it is nested too deep.
     """
     notebook = read_json(data, NOTEBOOK_VALUES, is_strict=False)

@@ -41,10 +41,8 @@ class Job:
     out: Path
     isolation: Isolation = Isolation.BUBBLEWRAP  # how the submission is isolated
     options: Options = WHOLE_SUITE  # how the suite is run
-    seconds: float = (
-        GRADING_WORKER.wall_seconds
-    )  # real time for all of it: a second grading has what the first has left
-    # Who starts the worker sets the rest.
+    seconds: float = GRADING_WORKER.wall_seconds  # real time for all tries; a second try gets the rest
+    # The process that starts the worker sets the rest.
     scratch: Path = Path()  # a file system of the worker sandbox, which ends with it
     # Whether no other try follows: an error that may be a program's or the machine's is then the program's.
     last: bool = False
@@ -56,7 +54,7 @@ class Job:
 
     @cached_property
     def digests(self) -> Digests | None:
-        """The digests of what was handed in, None if it cannot be read. What they are of is not kept."""
+        """The digests of the submission, or None if it cannot be read. Its content is not kept."""
         return read_digests(self.path, self.assignment, self.isolation)
 
     def to_json(self) -> str:

@@ -11,7 +11,7 @@ class MachineLock:
     """A caller of `exclusive` waits until all others are done; callers that come after it wait for it."""
 
     def __init__(self) -> None:
-        self._turn = threading.Lock()  # of those who come; one who waits for the machine alone holds it
+        self._turn = threading.Lock()  # orders the waiting threads: one that waits for the whole machine holds it
         self._changed = threading.Condition()
         self._sharing = 0
 

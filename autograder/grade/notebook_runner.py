@@ -1,4 +1,4 @@
-"""Runs inside the sandbox: executes a notebook's cells in a kernel, and says cell by cell what came of them.
+"""Runs inside the sandbox: executes the cells of a notebook in a kernel, and reports the outcome of each cell.
 
     python notebook_runner.py ORDER_FD ANSWER_FD
 
@@ -47,7 +47,7 @@ def _execute(order: dict[str, Any], tell: Any) -> None:
     received = 0
 
     class Client(NotebookClient):
-        """Tells what came of each cell, and ends a kernel that sends too much."""
+        """Reports the outcome of each cell, and stops a kernel that sends too much."""
 
         async def async_execute_cell(self, cell: Any, cell_index: int, *args: Any, **kwargs: Any) -> Any:
             if cell_index in order["skipped"] or cell.cell_type != "code":
@@ -68,7 +68,7 @@ def _execute(order: dict[str, Any], tell: Any) -> None:
     sockets = f"{os.environ['JUPYTER_RUNTIME_DIR']}/k"
     kernel = AsyncKernelManager(kernel_name="python3", transport="ipc", ip=sockets)
     client = Client(notebook, km=kernel, timeout=order["cell_seconds"], allow_errors=True, shutdown_kernel="immediate")
-    with contextlib.suppress(DeadKernelError, CellTimeoutError):  # what the cells before it have done counts
+    with contextlib.suppress(DeadKernelError, CellTimeoutError):  # the effects of earlier cells still count
         client.execute()
 
 

@@ -17,7 +17,7 @@ from autograder.run.sandbox.spec import View
 from autograder.run.sandbox.worker_sandbox import WorkerReport, ended, in_worker_sandbox, place_of
 from autograder.suite import fingerprint
 
-GRACE = 30.0  # s in which a worker that knows that its time is over ends what runs, and says what it knows
+GRACE = 30.0  # s for a worker to stop its programs and report, after its time is over
 
 
 def in_own_sandbox(job: Job) -> WorkerReport:
@@ -43,7 +43,7 @@ def in_own_sandbox(job: Job) -> WorkerReport:
 
 
 def view(job: Job) -> View:
-    """Return what the worker of a job sees: its submission, its chapter, and what its suite reads."""
+    """Return the view of a job's worker: the submission, its chapter, and the files that its suite reads."""
     chapter = layout.chapter(job.assignment)
     own = fingerprint.places(job.assignment, job.suite.reads)
     built = (Path(job.options.built),) if job.options.built else ()

@@ -40,8 +40,8 @@ def grade_submission(job: Job, run_job: RunJob = in_own_sandbox) -> Result:
     """Grade one submission; `run_job` runs its worker. An old result stays until the new one is complete.
 
     Returns:
-        The result. Its `status` is `not_graded` when the grader failed twice, or did not end in time; that is no zero.
-        It is in doubt when the machine held up, twice, what ran in real time.
+        The result. Its `status` is `not_graded` if the grader failed twice, or did not end in time. This is not a zero.
+        It is in doubt if the machine delayed real-time programs in both tries.
 
     Raises:
         UsageError: there is no such path or assignment.
@@ -73,7 +73,7 @@ class Budget:
         return self.left >= LEAST * self.seconds
 
     def spend(self, job: Job, run_job: RunJob) -> WorkerReport:
-        """Run a job in the time that is left; what waits for its turn on the machine costs nothing."""
+        """Run a job in the remaining time. Waiting for a turn on the machine does not count."""
         began = time.monotonic()
         try:
             return run_job(replace(job, seconds=self.left))
@@ -82,7 +82,7 @@ class Budget:
 
 
 def _grade(job: Job, run_job: RunJob, budget: Budget) -> tuple[Result, Mapping[str, bytes]]:
-    """Return a worker's result with its files; if there is none, the result that says so, with the log.
+    """Return a worker's result with its files. If it has none, return a result without marks, with the log.
 
     A worker may have been taken over. Nothing of its answer is used before it was checked.
     """
@@ -103,9 +103,9 @@ def _grade(job: Job, run_job: RunJob, budget: Budget) -> tuple[Result, Mapping[s
 
 
 def not_graded(job: Job, why: str, log: str) -> tuple[Result, Mapping[str, bytes]]:
-    """Return the result of a submission on which the grader failed, and its files. It is no zero.
+    """Return the result of a submission on which the grader failed, and its files. It is not a zero.
 
-    `why` is a sentence that says what failed. The log is never part of the result: its traceback may quote a hidden
+    `why` is a sentence about the failure. The log is never part of the result: its traceback may quote a hidden
     check, and results become feedback.
     """
     sentence = (

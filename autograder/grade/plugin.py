@@ -39,7 +39,7 @@ class GradingPlugin:
         workspace: the student's built workspace.
         seed: every hidden input of the run is drawn from it.
         artifacts: saves the pictures; each check gets its own.
-        builds: what became of each package, for checks of a build that may fail.
+        builds: the outcome of each package's build, for checks of a build that may fail.
         options: how the suite is run.
         last: whether no other try of this grading follows.
 
@@ -69,7 +69,7 @@ class GradingPlugin:
         self.diagnosis: Diagnosis = OK
         self.failures: list[str] = []
         self.unjudged: dict[str, str] = {}
-        self._held_by: dict[str, tuple[str, ...]] = {}  # what was in hand once a fixture was made, by its name
+        self._held_by: dict[str, tuple[str, ...]] = {}  # data read by each fixture
         self._seconds: dict[str, float] = {}
 
     @property
@@ -84,7 +84,7 @@ class GradingPlugin:
 
     @pytest.fixture(scope="session")
     def builds(self) -> Mapping[str, Diagnosis]:
-        """What became of each package that the suite wants: OK, or why it was not built."""
+        """The outcome of each required package: OK, or why it was not built."""
         return self._builds
 
     @pytest.fixture(scope="session")
@@ -107,11 +107,11 @@ class GradingPlugin:
         check = _declared_by(item)
         if check is not None:
             self._record(check, call, item)
-        if self.is_finished or self.failures:  # a grading that failed is made again, or has no result
+        if self.is_finished or self.failures:  # a failed grading is repeated, or ends without a result
             item.session.shouldstop = "no other check is needed"
 
     def pytest_configure(self, config: pytest.Config) -> None:
-        config.option.tbstyle = "native"  # nobody reads the other, for which whole files are parsed at every failure
+        config.option.tbstyle = "native"  # the default parses whole files, and its output is never shown
 
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         if only := self._options.only:
@@ -177,7 +177,7 @@ class GradingPlugin:
         return self._last or patience.is_late()
 
     def _is_over_data(self, error: BaseException) -> bool:
-        """Return whether an exception can come of data that a check has in hand; in the last try, any can."""
+        """Return whether the student's data may have caused an exception. In the last try, any exception counts."""
         any_can = self._is_last and isinstance(error, Exception) and not isinstance(error, AutograderError)
         return is_of_data(error) or (any_can and not is_of_the_machine(error))
 
@@ -196,7 +196,7 @@ def run(files: tuple[Path, ...], plugin: GradingPlugin) -> int:
     os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
     for variable in ("PYTEST_ADDOPTS", "PYTEST_PLUGINS"):
         os.environ.pop(variable, None)
-    # The last one collects garbage twice, at a fifth of a second.
+    # The end of pytest's session collects garbage twice, which takes a fifth of a second.
     unwanted = ("cacheprovider", "terminal", "faulthandler", "unraisableexception")
     chapter = files[0].parents[1]  # its conftest.py serves the visible and the hidden checks
     arguments = [word for name in unwanted for word in ("-p", f"no:{name}")]

@@ -38,7 +38,7 @@ RUNNER = Path(__file__).with_name("notebook_runner.py")
 CELL_SECONDS = 60  # wall time of a cell; one that takes longer ends the run
 MAX_OUTPUT = 4 * 1024 * 1024  # characters
 MAX_WHY = 2000  # characters
-MAX_ANSWER = 32 * 1024 * 1024  # bytes of all outputs; what comes after them is left out
+MAX_ANSWER = 32 * 1024 * 1024  # bytes of all outputs; the rest is left out
 MAX_LINES = 2000  # of an answer, which has one for each cell
 MAX_VALUES = 200_000  # in all outputs: to check one takes up to 0.1 ms, and they may be forged
 WRITEFILE = "%%writefile "
@@ -92,15 +92,15 @@ def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> Noteb
 
 @dataclass(frozen=True)
 class Answer:
-    """What the sandbox says of a run."""
+    """The report of a run from the sandbox."""
 
     begun: bool = False  # whether it came as far as starting a kernel
-    why: str = ""  # what ended the run early; empty if it came to its end, or did not say
+    why: str = ""  # why the run ended early; empty if it finished or gave no reason
     cells: Mapping[int, NotebookNode] = field(default_factory=dict)  # valid code cells without text, by their places
 
 
 def read_answer(data: bytes) -> Answer:
-    """Read the lines of `notebook_runner`, which the student's code may have forged; what is not valid is left out."""
+    """Read the lines of `notebook_runner`, which the student's code may have forged. Invalid lines are left out."""
     begun, why, cells, left = False, "", dict[int, NotebookNode](), MAX_VALUES
     for line in data.split(b"\n", MAX_LINES)[:MAX_LINES]:
         with suppress(StudentError), reading("An output of your notebook"):
@@ -147,7 +147,7 @@ def _would_overwrite(cell: NotebookNode, folder: Path) -> bool:
     try:
         path = (folder / target).resolve()
         return bool(path.is_relative_to(folder.resolve()) and path.is_file())
-    except (OSError, ValueError, RuntimeError):  # a name that is no file's: the cell itself will say so
+    except (OSError, ValueError, RuntimeError):  # not a file name: the cell itself will fail with a message
         return False
 
 

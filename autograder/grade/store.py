@@ -44,7 +44,7 @@ def _shown(log: bytes) -> bytes:
 
 
 def remove_unfinished(out: Path) -> None:
-    """Remove from the folder of a result what a process left there that was killed."""
+    """Remove files that a killed process left in the folder of a result."""
     shutil.rmtree(out / UNFINISHED, ignore_errors=True)
 
 

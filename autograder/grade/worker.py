@@ -45,7 +45,7 @@ _NO_DIGEST = "0" * 64
 
 
 class Grading:
-    """One submission on its way from what was handed in to a result."""
+    """One submission, from its files to a result."""
 
     def __init__(self, job: Job) -> None:
         self._job, self._suite = job, job.suite
@@ -53,13 +53,13 @@ class Grading:
         patience.begin(job.seconds)
         home = job.scratch / "home"
         home.mkdir(parents=True)
-        # Without a network namespace, a domain of its own is the least that keeps two submissions apart.
+        # Without a network namespace, at least a separate domain keeps two submissions apart.
         domain = 0 if job.isolation is Isolation.BUBBLEWRAP else Domain().number
         self._workspace = Workspace(job.scratch / "ws", activate(), home, domain=domain)
         self._artifacts = Artifacts(job.out, disabled=not job.options.pictures, recordings=job.options.recordings)
         self._phases: dict[str, float] = {}
         self._sha256 = _NO_DIGEST
-        self._status = Status.UNCLEAR  # until what was handed in has been read
+        self._status = Status.UNCLEAR  # until the submission has been read
         self._notices: tuple[str, ...] = ()
         self._unused: tuple[str, ...] = ()
         self._build: Build | None = None
@@ -76,7 +76,7 @@ class Grading:
             diagnosis = checked if observed is OK else observed
         except StudentError as error:
             diagnosis = error.diagnosis
-            if error.__cause__ is not None:  # what no reader of these data is written for
+            if error.__cause__ is not None:  # an error that no reader of this data expects
                 self._log(traceback.format_exception(error))
         if self._build is None and diagnosis is not OK:
             self._build = Build(False, self._phases.get("build", 0.0), log=diagnosis.detail)
@@ -111,7 +111,7 @@ class Grading:
         )
 
     def _prepare(self) -> Diagnosis:
-        """Read the submission, run its notebook, build; return what was wrong with a build that the suite lets fail."""
+        """Read the submission, run its notebook, build it; return the diagnosis of a build that the suite lets fail."""
         from autograder.building.build import build_workspace
         from autograder.building.prebuilt import copy_prebuilt
         from autograder.submission import intake
@@ -145,14 +145,14 @@ class Grading:
                 seen = copy_prebuilt(Path(built), self._workspace, self._suite.packages)
             else:
                 seen = build_workspace(self._workspace, self._suite.packages, may_fail=self._suite.build_may_fail)
-            # A set-up script could write to the sources as well. Checks read what was handed in.
+            # A set-up script could also write to the sources. Checks read the submitted ones.
             subprocess.run(["rm", "-rf", "--", source], check=True)
             write_tree(packages, source)
         self._build, self._builds = seen.build, seen.diagnoses
         return seen.diagnosis
 
     def _clear(self) -> None:
-        """Remove what the notebook wrote, however deep it is nested; a full disk has room again."""
+        """Remove the files that the notebook wrote, at any depth, so that a full disk has space again."""
         subprocess.run(["rm", "-rf", "--", self._folder, self._workspace.scratch], check=True)
         self._workspace.scratch.mkdir()
 
@@ -195,7 +195,7 @@ def prepare() -> None:
 
 
 def work(job: Job) -> None:
-    """Grade a job, and send what it left over this process's line."""
+    """Grade a job, and send the files that it left over this process's line."""
     job.out.mkdir(parents=True, exist_ok=True)
     write_json(job.out / RESULT, Grading(job).grade().to_json())
     with line.held() as connection:

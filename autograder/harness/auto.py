@@ -22,7 +22,7 @@ from autograder.run.workspace import Workspace
 
 TIME_VARIABLE = "AUTOGRADER_TIME"  # "real" keeps every program from being stepped
 PROBE_SECONDS = 1.0
-LATE_MESSAGE_SECONDS = 1.0  # for what a busy machine may hold up in real time
+LATE_MESSAGE_SECONDS = 1.0  # for delays by a busy machine in real time
 MAX_READ = 4 * 1024 * 1024  # bytes of a package's Python files that are looked through
 _WORDS = re.compile(rb"\b(threading|_?thread|asyncio|concurrent|multiprocessing|subprocess|sleep|Clock\w*|Executor)\b")
 
@@ -30,7 +30,7 @@ AnyAuto = TypeVar("AnyAuto", bound="AutoHarness")
 AnyHarness = TypeVar("AnyHarness", bound=Harness)
 
 if TYPE_CHECKING:
-    Base = SteppedHarness  # by `__getattr__`, it has what a Harness has; what SteppedHarness adds is not always there
+    Base = SteppedHarness  # attributes by `__getattr__`; those of SteppedHarness only if stepped
 else:
     Base = object
 
@@ -79,7 +79,7 @@ class AutoHarness(Base):
 
     @property
     def next_ns(self) -> int:
-        """The ROS time in ns at which a program takes what is published now."""
+        """The ROS time in ns at which a program takes a message that is published now."""
         return self.now_ns + (self.tick_ns - 1 if self.time == LOCKSTEP else 0)
 
     def wait_for_late(self, condition: Callable[[], bool]) -> None:

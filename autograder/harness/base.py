@@ -1,4 +1,4 @@
-"""What both kinds of harness share: a student's programs, and the grader's node that talks with them over DDS."""
+"""The common part of all harnesses: a student's programs, and the grader's node that talks with them over DDS."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Harness(ExitStack, ABC):
         clock_rate: seconds that the programs' machine counts in a second of ROS time; always 1 in real time.
 
     Attributes:
-        node: the grader's node; its graph functions show what the student's programs really offer.
+        node: the grader's node; its graph functions show the actual endpoints of the student's programs.
         tick_ns: the step of ROS time that suits the programs' timers.
         finest_tick_ns: the shortest step of ROS time, which suits any timer.
         optional: executables that may fail: the others run on without them.
@@ -100,12 +100,12 @@ class Harness(ExitStack, ABC):
         self._domain = Domain(workspace.domain + next(_NUMBERS))
         self._workspace = replace(workspace, domain=self._domain.number)
         plain = self._workspace.sandbox()
-        often = {**plain.environment, PROFILES_VARIABLE: str(PROFILES)}  # who start together find each other at once
+        often = {**plain.environment, PROFILES_VARIABLE: str(PROFILES)}  # to discover programs at once
         self._sandbox = replace(plain, mounts=(*plain.mounts, Mount(PROFILES)), environment=often)
         self._publishes, self._subscribes = dict(publishes or {}), dict(subscribes or {})
         self._received: dict[str, list[ReceivedMessage]] = {topic: [] for topic in self._subscribes}
 
-    # What each kind of harness defines.
+    # Defined by each kind of harness.
 
     @property
     @abstractmethod
@@ -147,7 +147,7 @@ class Harness(ExitStack, ABC):
     def _connected(self) -> bool:
         """Return whether all endpoints are matched."""
 
-    # What they share.
+    # Common to all kinds.
 
     def __enter__(self: AnyHarness) -> AnyHarness:
         self.callback(self._domain.close)
@@ -166,7 +166,7 @@ class Harness(ExitStack, ABC):
 
     @property
     def output(self) -> str:
-        """What the programs have printed and logged so far."""
+        """The output of the programs so far, including their logs."""
         hold("What your program printed")
         return "".join(process.output for process in self.processes)
 
@@ -214,7 +214,7 @@ class Harness(ExitStack, ABC):
         """Call a service of the student's programs, which run on meanwhile.
 
         Returns:
-            The response; None if there is no such service of that type, or no answer within `seconds` of ROS time.
+            The response, or None without such a service of that type, or without an answer in `seconds` of ROS time.
         """
         hold(f"What {name} answered")
         answers: list[Any] = []

@@ -70,7 +70,7 @@ def drive(
     command: Command | None = None
     end = round(seconds * 1e9)
     recorded: dict[Process, int] = {}
-    if harness.seconds > 0.0:  # what was written before is of another run
+    if harness.seconds > 0.0:  # earlier output belongs to another run
         _record_output(harness, 0.0, Recorder(simulation, state), recorded)
     while state.time_ns < end and not until(state):
         target = min(state.time_ns + harness.tick_ns, end)

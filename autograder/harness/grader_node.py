@@ -37,12 +37,12 @@ class GraderReader:
     """A subscription or client of the grader's: something that takes messages."""
 
     kind: str  # subscription or client
-    channels: tuple[str, ...]  # what it takes
+    channels: tuple[str, ...]  # the channels that it receives from
     entity: Any  # rclpy's object
-    take: Callable[[], bool]  # takes one message and handles it; False when there is none
+    take: Callable[[], bool]  # takes and handles one message; False if none has arrived
     count: int = 0  # how many it has taken
     expected: int = 0  # how many were sent to it, as far as is known
-    transient_local: bool = False  # whether it gets what publishers hold for late subscriptions
+    transient_local: bool = False  # whether publishers send it messages that they keep for late subscriptions
     new: bool = True  # whether that is still to be counted
 
     def empty(self) -> None:
@@ -83,7 +83,7 @@ class GraderNode:
         self.context.try_shutdown()
 
     def make_publisher(self, topic: str, kind: Any) -> None:
-        """Make a publisher that suits each subscription that is seen, unless there is one or the type is another."""
+        """Create a publisher that fits every visible subscription, unless one exists or the types differ."""
         peers = self.subscriptions_of(topic)
         if topic in self.publishers or not _have_type(kind, peers):
             return
@@ -92,7 +92,7 @@ class GraderNode:
         self.written[topic] = channels.publisher_channel(topic, kind, qos)
 
     def make_subscription(self, topic: str, kind: Any, receive: OnMessage) -> None:
-        """Make a subscription that suits each publisher that is seen, unless there is one or the type is another."""
+        """Create a subscription that fits every visible publisher, unless one exists or the types differ."""
         peers = self.publishers_of(topic)
         subscribed = (reader.entity.topic_name for reader in self.readers if reader.kind == "subscription")
         if topic not in subscribed and _have_type(kind, peers):
@@ -104,7 +104,7 @@ class GraderNode:
 
         def take() -> bool:
             taken = subscription.handle.take_message(kind, False)
-            if taken is not None and taken[0] is not None:  # None is what cannot be read as the student's type
+            if taken is not None and taken[0] is not None:  # None: it cannot be read as the student's type
                 receive(taken[0], taken[1]["received_timestamp"])
             return taken is not None
 
@@ -150,7 +150,7 @@ class GraderNode:
         return self._clients[(name, channel)]
 
     def ask(self, kind: Any, name: str, request: Any, then: Callable[[Any], None]) -> None:
-        """Send a request to a service to which there is a client; `then` is called with the response."""
+        """Send a request to a service that has a client. `then` is called with the response."""
         client = self.client(kind, name)
         self.on_exchange("asked", name, request)
         sequence = client.handle.send_request(request)
@@ -167,7 +167,7 @@ class GraderNode:
         return [(channel, client) for (_, channel), client in self._clients.items()]
 
     def take_expected(self) -> bool:
-        """Take what has arrived where something is expected; return whether all that is expected has come."""
+        """Take the messages that are expected and have arrived; return whether none is missing."""
         for reader in self.readers:
             if reader.count < reader.expected:
                 reader.empty()
@@ -196,7 +196,7 @@ class GraderNode:
         return bool(self.node.get_node_names().count(NAME) > 1)
 
     def spin(self, timeout: float) -> None:
-        """Take what has arrived; wait for something at most `timeout` seconds.
+        """Take all messages that have arrived. If none has, wait for one for at most `timeout` seconds.
 
         rclpy's executors do the same, at several times the cost.
         """

@@ -67,7 +67,7 @@ class Stop:
 
 
 def start(arguments: Sequence[str], spec: Sandbox, status: int | None = None) -> Process:
-    """Start `ros2 ARGUMENTS...`, the real one where there is one, else the stand-in.
+    """Start `ros2 ARGUMENTS...`, the real one if it is installed, otherwise the stand-in.
 
     Args:
         arguments: of `ros2`.
@@ -161,7 +161,7 @@ class LaunchHarness(contextlib.ExitStack):
 
     @property
     def output(self) -> str:
-        """What the launch and its processes have printed so far."""
+        """The output of the launch and its processes so far."""
         hold("What the launch printed")
         return self.process.output
 
@@ -198,11 +198,11 @@ class LaunchHarness(contextlib.ExitStack):
         return [name for name in self._grader_node.other_nodes() if "/_" not in name]
 
     def publishers(self, topic: str) -> list[str]:
-        """Return the full names of the nodes that publish on `topic`, but for the grader's own."""
+        """Return the full names of the nodes that publish on `topic`, except the grader's."""
         return _names_of(self._grader_node.publishers_of(topic))
 
     def subscribers(self, topic: str) -> list[str]:
-        """Return the full names of the nodes that subscribe to `topic`, but for the grader's own."""
+        """Return the full names of the nodes that subscribe to `topic`, except the grader's."""
         return _names_of(self._grader_node.subscriptions_of(topic))
 
     def messages(self, topic: str) -> list[Any]:
@@ -231,7 +231,7 @@ class LaunchHarness(contextlib.ExitStack):
     def programs(self) -> list[RunningProgram]:
         """Return the running executables of packages, in the order of their process ids.
 
-        A child that a program has forked, and that still has its name, is no program of its own.
+        A child that a program has forked, and that still has its name, does not count as another program.
         """
         processes = self._processes()
         known = {(program.pid, program.package, program.name) for program in processes}
@@ -241,13 +241,13 @@ class LaunchHarness(contextlib.ExitStack):
         """Return the processes that run executables of packages, in the order of their process ids."""
         programs = []
         for pid in sorted(procfs.measure(self.process.innermost()).pids):
-            # A script is the second argument, behind its interpreter; a process that has ended has none.
+            # The path of a script is the interpreter's first argument. A process that has ended has no command line.
             matches = (_PROGRAM.search(word) for word in _command_of(pid)[:2])
             programs += [RunningProgram(pid, match["package"], match["name"]) for match in matches if match is not None]
         return programs
 
     def kill(self, name: str, number: signal.Signals = signal.SIGKILL) -> int:
-        """Send a signal to every program called `name`, and to what it has forked; return to how many programs."""
+        """Send a signal to every program called `name`, including its forks, and return the number of programs."""
         count = sum(program.name == name for program in self.programs())
         for each in self._processes():
             if each.name == name:
@@ -256,7 +256,7 @@ class LaunchHarness(contextlib.ExitStack):
         return count
 
     def interrupt(self, seconds: float) -> Stop:
-        """Do what Ctrl-C does; wait at most `seconds` of real time for the end."""
+        """Send Ctrl-C, and wait at most `seconds` of real time for the end."""
         if self.status is None:
             runner = self.process.innermost()  # the parent of `ros2`
             os.kill(procfs.children(runner)[0], signal.SIGINT)

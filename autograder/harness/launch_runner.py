@@ -1,4 +1,4 @@
-"""`ros2` in a sandbox, with a process that outlives it and sees what it has left behind.
+"""Runs `ros2` in a sandbox, in a process that outlives it and observes the processes that it leaves running.
 
     python launch_runner.py DESCRIPTOR WORDS-OF-ROS2...
 

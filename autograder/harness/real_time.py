@@ -24,7 +24,7 @@ SETTLE_SECONDS = 3.0  # real time for a node's endpoints to be seen, once the no
 
 
 class RealTimeHarness(Harness):
-    """Programs in real time, for what cannot be stepped: signals, own threads, whole processes."""
+    """Programs in real time, for tests that stepping cannot cover: signals, own threads, whole processes."""
 
     _running: Sequence[tuple[Program, Process]] = ()
 

@@ -39,7 +39,7 @@ class Shared(ExitStack, Generic[P]):
         self._error: StudentError | None = None  # why the programs did not start
 
     def get(self) -> P:
-        """Return a harness whose programs run. Raises what making and entering one raises."""
+        """Return a harness whose programs run. Raises the errors of making and entering one."""
         if self._error is not None:
             raise self._error
         present = self._present

@@ -25,7 +25,7 @@ def next_instant(now_ns: int, end_ns: int, wakes: Iterable[int | None]) -> int:
         wakes: when each program wants to continue besides its timers; None for one that does not.
 
     Returns:
-        The first of the wakes that lies in the step, or its end.
+        The first of the wakes in the step, or the end of the step.
     """
     earliest = now_ns + FINEST_TICK_NS
     later = (max(wake, earliest) for wake in wakes if wake is not None)

@@ -66,7 +66,7 @@ def _step(module: Any, made: list[Any], step: dict[str, Any]) -> dict[str, Any]:
 
 
 def _begun(value: Any) -> Any:
-    """Return what a call returned; of a coroutine, what it returns if it ends before it waits for anything."""
+    """Return the result of a call. For a coroutine, return its result if it ends before it waits."""
     if not inspect.iscoroutine(value):
         return value
     try:
@@ -78,7 +78,7 @@ def _begun(value: Any) -> Any:
 
 
 def _resolved(made: list[Any], value: Any) -> Any:
-    """Return the argument, or what an earlier step made where it refers to one."""
+    """Return the argument, or the result of an earlier step if it refers to one."""
     return made[value[REFERENCE]] if isinstance(value, dict) and REFERENCE in value else value
 
 

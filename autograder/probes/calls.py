@@ -52,15 +52,15 @@ class Step:
 
 @dataclass(frozen=True)
 class StepResult:
-    """What came of a step."""
+    """The result of a step."""
 
-    value: Any = None  # what was returned, as JSON; None when there is none
+    value: Any = None  # the returned value as JSON, or None
     type: str = ""  # the name of the returned value's type when JSON cannot hold it; empty otherwise
     raised: str = ""  # the name of the exception, `message` its text; empty without one
     message: str = ""
     kinds: tuple[str, ...] = ()  # the names of the exceptions that it is an instance of, its own first
     arguments: tuple[Any, ...] = ()  # the arguments after the call, to see whether it changed them
-    printed: str = ""  # what it printed
+    printed: str = ""  # its output
 
 
 def call(name: str, *args: Any, on: int | None = None, module: str | None = None, **kwargs: Any) -> Step:
@@ -74,12 +74,12 @@ def callback(name: str, *, on: int) -> Step:
 
 
 def made(number: int) -> dict[str, int]:
-    """Return the argument that stands for what step `number` made."""
+    """Return an argument that refers to the result of step `number`."""
     return {REFERENCE: number}
 
 
 def look(name: str, *, on: int | None = None) -> Step:
-    """Return the step that reads an attribute of the module, or of what step `on` made."""
+    """Return the step that reads an attribute of the module, or of the result of step `on`."""
     return Step(name, on=on, called=False)
 
 
@@ -101,7 +101,7 @@ def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False
     Args:
         workspace: where the module is installed.
         module: the student's, by its dotted name.
-        steps: what to do, in order.
+        steps: the steps, in order.
         network: whether the process may use DDS, which ROS needs.
 
     Raises:
@@ -140,7 +140,7 @@ def parse_answer(data: bytes, module: str, count: int, process: Process) -> list
 def value(outcome: StepResult, shown: str) -> Any:
     """Return an outcome's value; `shown` is the call as the student would write it.
 
-    A CheckFailed says that it raised, or returned what is no plain value.
+    A CheckFailed says that it raised an exception, or returned a value that is not plain.
     """
     if outcome.raised == "NotImplementedError":
         raise CheckFailed(f"{shown} is still to be written.")

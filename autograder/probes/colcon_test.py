@@ -40,7 +40,7 @@ def colcon_test(workspace: Workspace, package: str) -> Report:
 
 
 def expect_ended(report: Report) -> None:
-    """Fail the check if `colcon test` had to be stopped: it then has no result file, whatever ran before."""
+    """Fail the check if `colcon test` had to be stopped: it then has no result file, whatever ran earlier."""
     expect(
         report.exit_reason is not ExitReason.WALL_TIME,
         f"`colcon test` did not end within {COLCON_TEST.wall_seconds:g} s and was stopped: look for a test that waits "

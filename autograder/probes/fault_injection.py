@@ -11,7 +11,7 @@ from autograder.probes.versions import Version
 from autograder.run.workspace import Workspace
 from autograder.suite import expect
 
-# What flake8 objects to, and pep257: a name that nothing uses, and a docstring that is no sentence.
+# Code that flake8 and pep257 report: an unused name, and a docstring that is not a sentence.
 UNTIDY = '"""no sentence"""\n\nimport os\n\n\n'
 
 

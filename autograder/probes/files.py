@@ -54,7 +54,7 @@ def plain_files(folder: Path, most: int, *, left_out: Collection[str] = (), suff
 
 
 def parse_python(source: str | bytes) -> ast.Module | None:
-    """Return the syntax tree of Python source, which is not run; None where it is no Python."""
+    """Parse Python source without running it; return None if it is not Python."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # a student's "\d" is not our warning

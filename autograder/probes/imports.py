@@ -19,7 +19,7 @@ MAX_FILES = 300
 MAX_BYTES = 256 * 1024
 LEFT_OUT = frozenset({"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".pytest_cache"})
 
-# The rosdep keys of common modules that are no ROS packages. A ROS package's key is its own name.
+# The rosdep keys of common modules that are not ROS packages. A ROS package's key is its own name.
 KEYS = {
     "PIL": "python3-pil",
     "cv2": "python3-opencv",
@@ -37,7 +37,7 @@ KEYS = {
     "sympy": "python3-sympy",
     "yaml": "python3-yaml",
 }
-SET_UP = "setup.py"  # what it imports, colcon's own set-up provides
+SET_UP = "setup.py"  # colcon's own set-up provides its imports
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Import:
 
 
 def imported(package: Path, *, within: Collection[str] = (), without: Collection[str] = ()) -> tuple[Import, ...]:
-    """Return what the Python files of a package import, without the standard library and the package's own modules.
+    """Return the imports in the Python files of a package, without the standard library and its own modules.
 
     Args:
         package: the package's folder.
@@ -78,7 +78,7 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
 
 
 def modules(text: str) -> frozenset[str]:
-    """Return the top-level names that a module's text imports; none if it is no Python."""
+    """Return the top-level names that a module's text imports, or none if it is not Python."""
     names: set[str] = set()
     for node in ast.walk(parse_python(text) or ast.Module([], [])):
         if isinstance(node, ast.Import):
@@ -89,12 +89,12 @@ def modules(text: str) -> frozenset[str]:
 
 
 def undeclared(imports: Collection[Import], declared: Collection[str]) -> tuple[Import, ...]:
-    """Return the imports that none of the declared names stands for."""
+    """Return the imports that no declared name covers."""
     return tuple(each for each in imports if not set(each.keys) & set(declared))
 
 
 def missing(package: Path, manifest: Manifest) -> Mapping[str, tuple[Import, ...]]:
-    """Return what a package imports and does not declare, by the kind of dependency that would declare it.
+    """Return the undeclared imports of a package, by the kind of dependency that would declare them.
 
     `exec` is for the modules and launch files. `test` is for what only test/ imports; there, `exec` counts, too.
     """
@@ -105,7 +105,7 @@ def missing(package: Path, manifest: Manifest) -> Mapping[str, tuple[Import, ...
 
 
 def describe(imports: Collection[Import]) -> str:
-    """Name imports with where they stand and what would declare them."""
+    """List imports with their places and the declarations that they need."""
     return "; ".join(f"{each.files[0]} imports {each.module}{_called(each)}" for each in imports)
 
 

@@ -1,4 +1,4 @@
-"""What colcon installed of a Python package. Checks judge setup.py and setup.cfg by it, not by their text.
+"""The installed files of a Python package. Checks judge setup.py and setup.cfg by them, not by their text.
 
 Only plain files are read. No link is followed out of the install space, and nothing is imported.
 """
@@ -32,8 +32,8 @@ class Installed:
     # Dotted names of the installed Python modules, packages included, of this package and any other.
     modules: frozenset[str]
     marker: bool  # whether the ament index knows the package
-    shared: tuple[str, ...]  # paths below share/PACKAGE, without what colcon itself puts there
-    # What setup.py itself installed, below the prefix; colcon puts a marker and package.xml beside it.
+    shared: tuple[str, ...]  # paths below share/PACKAGE, without those that colcon itself adds
+    # Files that setup.py itself installed, below the prefix. colcon adds a marker and package.xml.
     recorded: frozenset[str]
     extras: Mapping[str, tuple[str, ...]]  # the requirements of each extra, such as `test`
     metadata: Mapping[str, str]  # headers such as Version, License, Maintainer-email
@@ -41,19 +41,19 @@ class Installed:
     classifiers: tuple[str, ...]  # those that a setup.py names
 
     def read(self, name: str) -> bytes | None:
-        """Return a file of share/PACKAGE, None if it is not there, is no plain file or is too large."""
+        """Return a file of share/PACKAGE, or None if it does not exist, is not a plain file or is too large."""
         return read_below(self.prefix, Path("share", self.package, name), MAX_BYTES)
 
 
 def look(install: Path, package: str) -> Installed:
-    """Return what an install folder holds of a package; a package that was not installed has nothing."""
+    """Return the installed files of a package, which are none if it was not installed."""
     with reading(f"What colcon installed of {package}"):
         return _look(install, package)
 
 
 def _look(install: Path, package: str) -> Installed:
     prefix = install / package
-    # Named for the Python that built it; there is one.
+    # The folder is named for the Python that built it, so only one exists.
     sites = [path for path in sorted(prefix.glob("lib/python3*/site-packages")) if not path.is_symlink()]
     modules = frozenset(name for site in sites for file in _files(site) if (name := _module(file)))
     eggs = [egg for site in sites for egg in sorted(site.glob("*-info")) if egg.is_dir() and not egg.is_symlink()]

@@ -1,6 +1,6 @@
 """Interface definitions against a contract: texts of .msg, .srv and .action files, compared with near misses named.
 
-Pure: texts go in, sentences come out. `rosidl_adapter`, the parser of the build itself, decides what a text means.
+Pure: texts go in, sentences come out. `rosidl_adapter`, the parser of the build itself, interprets the texts.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Unreadable(Exception):
 
 
 class Aspect(str, Enum):
-    """What two definitions can differ in."""
+    """The aspects in which two definitions can differ."""
 
     FIELDS = "fields"  # a field's name, place or order
     TYPES = "types"
@@ -78,7 +78,7 @@ class Interface:
 
 @dataclass(frozen=True)
 class Difference:
-    """One difference from the contract: in what, and a sentence for the one who wrote the definition."""
+    """One difference from the contract: its aspect, and a sentence for the author of the definition."""
 
     aspect: Aspect
     sentence: str
@@ -119,7 +119,7 @@ def compare(expected: Interface, actual: Interface) -> tuple[Difference, ...]:
 
 
 def elements(expected: Interface, aspect: Aspect) -> Iterator[Field | Constant]:
-    """Yield what a contract's constants, defaults or bounds are those of; the array without a bound has one, too."""
+    """Yield the constants or fields to which an aspect of a contract applies. Unbounded arrays have bounds, too."""
     for part in expected.parts:
         if aspect is Aspect.CONSTANTS:
             yield from part.constants

@@ -1,4 +1,4 @@
-"""What a subscription gets that joins late: the messages that a publisher has kept for it."""
+"""Tests which messages a publisher has kept for a subscription that joins late."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def kept_messages(present: Node, topic: str, kind: type) -> int:
     The publisher must not publish meanwhile: in lockstep it does not.
 
     Args:
-        present: a node in the domain of the publisher. The one that joins has a context of its own.
+        present: a node in the domain of the publisher. The late subscription has a separate context.
         topic: the fully qualified name of the topic.
         kind: its type.
     """

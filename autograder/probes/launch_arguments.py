@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 _NAME = re.compile(r"^    '(?P<name>.+)':\*?$")  # a star: it is used on condition only
 _DEFAULT = re.compile(r"^        \(default: (?P<default>.*)\)$")
-_CHOICES = ("Valid choices are: ", "One of: ")  # what stands before a list or a tuple
+_CHOICES = ("Valid choices are: ", "One of: ")  # the text before a list or a tuple
 _QUOTED = re.compile(r"'([^']*)'")
 _TEXTS = re.compile(r"'[^']*'(?: \+ '[^']*')*")  # one text, or several in a row
 
@@ -18,14 +18,14 @@ class Argument:
     """A launch argument, as `ros2 launch -s` shows it."""
 
     name: str
-    description: str  # what is said of it; empty if nothing is
+    description: str  # its description, or an empty string
     default: str | None  # the text of its default, None if it has to be given or its default is worked out
     choices: tuple[str, ...]  # the values that are allowed; empty if any is
     is_worked_out: bool = False  # whether it has a default whose text is known only when the launch runs
 
 
 def parse_arguments(text: str) -> dict[str, Argument]:
-    """Read what `ros2 launch -s` prints; return arguments by name."""
+    """Read the output of `ros2 launch -s`; return arguments by name."""
     lines_of: dict[str, list[str]] = {}
     lines: list[str] = []
     for line in text.splitlines():

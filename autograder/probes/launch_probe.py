@@ -1,4 +1,4 @@
-"""Assertions about launch files: the arguments that they declare, what they start, and what goes wrong."""
+"""Assertions about launch files: declared arguments, started nodes, and failures."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def shown_arguments(workspace: Workspace, package: str, file: str) -> dict[str, 
 def expect_argument(arguments: Mapping[str, Argument], name: str, default: str, *, described: bool = True) -> None:
     """Fail the check unless an argument of `shown_arguments` has this default's text and, if asked, a description.
 
-    A default that is worked out passes: what comes of it, a launch without arguments shows.
+    A computed default passes: a launch without arguments shows its value.
     """
     there = ", ".join(arguments) or "none"
     expect(name in arguments, f"The launch file declares no argument {name}; it declares: {there}.")
@@ -196,7 +196,7 @@ def node_names(output: str, program: str) -> set[str]:
 
 
 def failure(output: str) -> str:
-    """Return in a line what went wrong by a launch's output; empty if it names nothing."""
+    """Return a line that says why a launch failed, from its output, or an empty string."""
     if caught := _CAUGHT.search(output):
         return " ".join(caught["what"].split())
     died = [f"{match['name']} died with exit code {match['code']}" for match in _DIED.finditer(output)]

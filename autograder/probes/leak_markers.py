@@ -10,7 +10,7 @@ import re
 
 SYLLABLES = ("ba", "do", "fe", "gi", "ka", "lo", "mu", "ne", "pi", "ra", "so", "tu", "ve", "wa", "xi", "zu")
 LENGTH = 10
-_MARKER = re.compile(f"(?=((?:{'|'.join(SYLLABLES)}){{{LENGTH}}}))")  # two may lie over each other
+_MARKER = re.compile(f"(?=((?:{'|'.join(SYLLABLES)}){{{LENGTH}}}))")  # two markers may overlap
 
 
 def draw_marker(draw: random.Random) -> str:

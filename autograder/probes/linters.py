@@ -1,4 +1,4 @@
-"""What the linters say of a student's package, asked by the grader itself.
+"""Runs the linters on a student's package, as the grader's own check.
 
 A test that is called `test_flake8` need not call flake8. So the tests that `ros2 pkg create` writes take the place of
 the student's. They see the package's Python files and nothing else of it, below a folder from which nothing is
@@ -20,9 +20,9 @@ from autograder.run.workspace import Workspace
 from autograder.suite import CheckFailed
 
 BELOW = "package"  # the folder of a package's files
-# The comments by which flake8, pycodestyle and pydocstyle pass over a line or a file; as long as what replaces them.
+# Comments that make flake8, pycodestyle and pydocstyle skip a line or a file. A replacement has the same length.
 _SWITCH = re.compile(rb"(#\s*(?:flake8\s*[:=]\s*)?no)(qa|pep8)", re.IGNORECASE)
-# How each linter writes what it found.
+# The output format of each linter.
 _FINDINGS = {
     "test_flake8": re.compile(r"^\./(\S+:\d+:\d+: [A-Z]+\d+ .*)$", re.MULTILINE),
     "test_pep257": re.compile(r"^\./(\S+:\d+ .*: D\d+: .*)$", re.MULTILINE),
@@ -30,13 +30,13 @@ _FINDINGS = {
 
 
 def expect_tidy(workspace: Workspace, source: Source, tests: Collection[str], fraction: float = 0.0) -> None:
-    """Fail the check if a linter finds what its own test has not reported, or if its test finds nothing anywhere.
+    """Fail the check if a linter finds something that its own test did not report, or if its test never finds anything.
 
     Args:
         workspace: the built workspace.
         source: the package.
         tests: its tests that run the linters, `module::name`.
-        fraction: what remains of the points where the package is untidy.
+        fraction: the part of the points for an untidy package.
     """
     for name, finding in objections(workspace, source).items():
         sentence = f"{name} passes, but its linter finds something in the package: {finding}"

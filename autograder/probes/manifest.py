@@ -32,9 +32,9 @@ class Manifest:
     format: int
     licences: tuple[str, ...]  # each <license>, as written
     maintainers: tuple[tuple[str, str], ...]  # each (name, e-mail)
-    build_type: str  # what <export> says; empty if it says nothing, and then ROS takes the package for an old CMake one
+    build_type: str  # the text of <export>; without it, ROS takes the package for an old CMake one
     depends: Mapping[str, frozenset[str]]  # the names by kind, one of `KINDS`; those whose condition holds in this ROS
-    groups: frozenset[str]  # of which dependency groups it is a member
+    groups: frozenset[str]  # the dependency groups of which it is a member
 
     def needs(self, *kinds: str) -> frozenset[str]:
         """Return the names of the dependencies of the given kinds; of all kinds if none is given."""
@@ -42,12 +42,12 @@ class Manifest:
 
 
 def read(package: Path) -> Manifest:
-    """Read the manifest of the package in a folder; a CheckFailed says why there is none that ROS would take."""
+    """Read the manifest of the package in a folder. A CheckFailed says why ROS would not accept it."""
     return parse(_text(package), _where(package))
 
 
 def read_leniently(package: Path) -> Manifest:
-    """Read a manifest's tags, also where ROS refuses the whole of it; a CheckFailed says why there are none.
+    """Read the tags of a manifest, even if ROS rejects it as a whole. A CheckFailed says why it has none.
 
     One that ROS takes is read as by `read`. Otherwise no condition counts.
     """
@@ -124,7 +124,7 @@ def _of_tags(root: ElementTree.Element) -> Manifest:
     def texts(tag: str) -> tuple[str, ...]:
         return tuple(" ".join("".join(each.itertext()).split()) for each in root.findall(tag))
 
-    plain = ("build", "build_export", "exec")  # what a <depend> is
+    plain = ("build", "build_export", "exec")  # the meanings of <depend>
     told = root.get("format", "1")
     return Manifest(
         name="".join(texts("name")[:1]),

@@ -1,4 +1,4 @@
-"""How often messages come, and whether that is what a contract asks."""
+"""Measures how often messages are published, and compares this with the contract."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MOST = 2.0  # mean pauses may be so many times as long as they should be, where 
 
 
 def mean_period(messages: Sequence[ReceivedMessage]) -> float:
-    """Return the mean time between messages in s; infinity if there are fewer than two."""
+    """Return the mean time between messages in s, or infinity for fewer than two."""
     return (messages[-1].seconds - messages[0].seconds) / (len(messages) - 1) if len(messages) > 1 else math.inf
 
 

@@ -1,4 +1,4 @@
-"""What the two files that describe a package say of it: setup.py against package.xml, and a manifest of interfaces."""
+"""Compares the two files that describe a package, setup.py and package.xml, and checks manifests of interfaces."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def expect_pytest(workspace: Workspace, installed: Installed, fraction: float = 
 
 
 def wrong_for_interfaces(manifest: Manifest, uses: Mapping[str, str]) -> list[str]:
-    """Return what is wrong in the manifest of a package of interfaces, in halves of sentences.
+    """Return the mistakes in the manifest of an interface package, as clauses.
 
     `uses` has the packages that its definitions use, each with the name of one that does.
     """

@@ -30,7 +30,7 @@ from autograder.suite import CheckFailed
 
 Value = bool | int | float | str | list[object] | None
 
-OWN = frozenset({"use_sim_time", "start_type_description_service"})  # what rclpy declares on every node
+OWN = frozenset({"use_sim_time", "start_type_description_service"})  # parameters that rclpy declares on every node
 SECONDS = 5.0  # of the node's time for an answer
 SHOWN = 200  # characters of a node's own words
 ALIKE = 0.6
@@ -87,7 +87,7 @@ class NodeParameters:
         return SetParametersReply(result.successful, shortened(result.reason))
 
     def _ask(self, kind: Any, name: str, request: Any) -> Any:
-        """Call one of the node's services; a CheckFailed says that there is none, or no answer."""
+        """Call one of the node's services. A CheckFailed says that it is missing or does not answer."""
         service = f"{self.node}/{name}"
         response = self.harness.call(kind, service, request, SECONDS)
         if response is not None:
@@ -104,7 +104,7 @@ def shortened(text: str) -> str:
 
 
 def near_misses(expected: Collection[str], actual: Collection[str]) -> dict[str, str]:
-    """Return the wanted names that are missing, each with the one name that seems to stand for it, or ''."""
+    """Return the expected names that are missing, each with the actual name that is probably meant, or ''."""
     missing, extra = sorted(set(expected) - set(actual)), sorted(set(actual) - set(expected))
     likeness = {(name, other): SequenceMatcher(None, name, other).ratio() for name in missing for other in extra}
     near: dict[str, str] = {}
@@ -146,7 +146,7 @@ def _in_type_of(like: Value, value: Value) -> Value:
 
 
 def differences(values: Mapping[str, Value], expected: Mapping[str, Value]) -> list[str]:
-    """Say for each wanted parameter that has another value what it is and what it should be."""
+    """Describe the parameters whose value differs from the expected one."""
     return [
         f"{name} is {value_text(values.get(name))} instead of {value_text(value)}"
         for name, value in expected.items()
@@ -160,14 +160,14 @@ def value_text(value: Value) -> str:
 
 
 def override_arguments(values: Mapping[str, Value]) -> list[str]:
-    """Return what stands behind `--ros-args` for a node that is started with these values of its parameters."""
+    """Return the arguments after `--ros-args` that start a node with these values of its parameters."""
     return [word for name, value in values.items() for word in ("-p", f"{name}:={_in_yaml(value)}")]
 
 
 def read_file(path: Path) -> dict[str, dict[str, Value]]:
     """Read a parameter file: values by parameter, by the node or wildcard that they are for, in the file's order.
 
-    A CheckFailed says what to do where it is missing, still to be written, no YAML, or not nested as ROS reads it.
+    A CheckFailed says what to do if it is missing, unfinished, not YAML, or not nested as ROS requires.
     """
     if path.is_symlink() or not path.is_file():
         raise CheckFailed(
@@ -192,7 +192,7 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
 
 
 def for_node(file: Mapping[str, Mapping[str, Value]], name: str) -> dict[str, Value]:
-    """Return what `read_file` found for a node, by wildcards or by its name without a namespace, in any form."""
+    """Return the values that `read_file` found for a node, by wildcards or by its name without a namespace."""
     keys = ("/**", f"/**/{name}", name, f"/{name}")
     return {parameter: value for key in keys for parameter, value in file.get(key, {}).items()}
 

@@ -1,4 +1,4 @@
-"""Runs pytest in the sandbox, reports how it ended, and stays until the trusted side has looked at what is left.
+"""Runs pytest in the sandbox, reports the result, and stays until the trusted side has inspected the leftovers.
 
     python pytest_runner.py REPORT_FD STATUS_FD GO_FD REVERSED ARGUMENTS...
 
@@ -6,7 +6,7 @@ When pytest has ended, its report of JUnit XML goes to REPORT_FD and its exit st
 waits for the end of GO_FD. All of it is in the power of the tests that run here: the trusted side takes what it hears
 for their claim.
 
-Where this process was forked with the launch packages, what the tests launch is forked, too.
+If this process was forked with the launch packages, programs that the tests launch are forked, too.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def main() -> None:
     report = Path(os.environ["HOME"]) / "report.xml"
     arguments, sys.argv = [*sys.argv[5:], f"--junitxml={report}"], ["pytest"]
     status = int(pytest.main(arguments, plugins=[Reversed()] if backwards else []))
-    gc.collect()  # what nothing refers to any more is not left behind
+    gc.collect()  # objects without references do not count as leftovers
     sys.stdout.flush()
     with os.fdopen(answer, "wb") as stream:
         stream.write(report.read_bytes() if report.is_file() else b"")

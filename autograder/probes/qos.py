@@ -7,9 +7,9 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
 
 def non_default_qos(node: Node, *topics: str) -> str:
-    """Return which endpoint on the topics is not what `10` stands for, reliable and volatile; "" if all are.
+    """Describe the first endpoint on the topics whose profile is not that of `10`, reliable and volatile; "" if none.
 
-    The length of its queue is known to nobody but the program. `node` is the grader's; its own endpoints do not count.
+    Only the program knows the length of its queue. `node` is the grader's; its own endpoints do not count.
     """
     for topic in topics:
         published, taken = node.get_publishers_info_by_topic(topic), node.get_subscriptions_info_by_topic(topic)

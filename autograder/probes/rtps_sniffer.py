@@ -53,7 +53,7 @@ class RtpsSniffer:
 
 
 def _member(port: int) -> socket.socket:
-    """Return a socket that receives what is sent to the multicast group on this machine."""
+    """Return a socket that receives messages to the multicast group on this machine."""
     made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # participants bind the port, too
     made.bind((GROUP, port))

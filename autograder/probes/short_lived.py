@@ -1,4 +1,4 @@
-"""A program of a launch that ends by itself: what ran beside it, and whether it hangs at its end."""
+"""A program of a launch that ends by itself: which programs ran beside it, and whether it hangs at its end."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ UNSEEN_SECONDS = 5.0  # real time, once others run, until a program that was not
 def run_together(harness: LaunchHarness, first: str, second: str) -> bool:
     """Watch a launch until the program `first`, which ends by itself, is gone; return whether `second` ran beside it.
 
-    What the launch prints counts for nothing here: a launch file can print the same.
+    The output of the launch is ignored: a launch file can print the same lines.
     """
     seen = together = False
     since = time.monotonic()

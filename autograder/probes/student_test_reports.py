@@ -23,13 +23,13 @@ from autograder.run.sandbox import ExitReason
 
 MAX_BYTES = 1024 * 1024
 MAX_MESSAGE = 300
-MAX_SOURCE = 256 * 1024  # bytes of a test file, of which names are read
-UNNAMED = "a test"  # what a test is called whose name does not stand in the student's source
+MAX_SOURCE = 256 * 1024  # bytes of a test file from which names are read
+UNNAMED = "a test"  # the name for a test whose own name does not occur in the student's source
 _KEY = secrets.token_bytes(16)
 
 
 class ClaimedOutcome(str, Enum):
-    """What a run claims of one test."""
+    """The outcome of one test, as the run reports it."""
 
     PASSED = "passed"
     FAILED = "failed"
@@ -39,11 +39,11 @@ class ClaimedOutcome(str, Enum):
 
 @dataclass(frozen=True)
 class Claims:
-    """What a run claims of its tests."""
+    """The outcomes of all tests, as the run reports them."""
 
     # By test, `module::name` or `module::Class::name`, in the order in which they ran.
     verdicts: Mapping[str, ClaimedOutcome] = field(default_factory=dict)
-    messages: Mapping[str, str] = field(default_factory=dict)  # the first line of what went wrong, by test
+    messages: Mapping[str, str] = field(default_factory=dict)  # the first line of each failure, by test
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class TestRun:
     sniffed: bool = False  # whether an `RtpsSniffer` listens in the default domain
     conftest: bool = True  # whether pytest reads the conftest.py that is there
     without: tuple[str, ...] = ()  # tests that do not run, called as in `Claims`
-    shown: bool = False  # whether the student may read what it says of `version`: only if the version is no secret
+    shown: bool = False  # whether the student may read the output about `version`: only if the version is not secret
     __test__: ClassVar[bool] = False  # pytest would take it for a class of tests
 
 
@@ -67,9 +67,9 @@ class Report:
 
     exit_reason: ExitReason | None  # how its process ended; None when the grader ended it after pytest was done
     status: int | None  # pytest's exit status, None when it never came to that
-    claims: Claims  # what it says of its tests
+    claims: Claims  # the reported outcomes of its tests
     left: int  # UDP sockets that were still open after the last test: each ROS context that is not ended holds some
-    output: str  # what it printed
+    output: str  # its output
     joined_domain: bool = False  # whether a program joined the default domain, where the run was sniffed
     known: frozenset[str] | None = None  # of a closed report: the tests in the student's source, `module::name`
 
@@ -118,7 +118,7 @@ class Report:
 
 
 def shown_name(test: str) -> str:
-    """Return what a sentence calls a test, `module::name[parameters]`; of a closed report, without parameters."""
+    """Return the name of a test in sentences, `module::name[parameters]`, or without parameters for a closed report."""
     return test.partition("[#")[0].partition("::")[2] or UNNAMED
 
 
@@ -142,7 +142,7 @@ class Source:
         return {name.removeprefix("test/"): data for name, data in self.files.items() if name.startswith("test/")}
 
     def test_names(self, files: tuple[str, ...]) -> frozenset[str]:
-        """Return the tests that stand in test files, as a report names them; the files are parsed and not run."""
+        """Return the tests in test files, named as in a report. The files are parsed, not run."""
         names: set[str] = set()
         for name in files:
             data = self.tests.get(name, b"")
@@ -176,7 +176,7 @@ def parse_claims(data: bytes) -> Claims | None:
     for case in root.iter("testcase"):
         name = "::".join([*_place(case.get("classname", "")), case.get("name", "")])
         verdict, message = _verdict(case)
-        # A test whose clean-up fails is there twice: the failure counts.
+        # A test whose clean-up fails is listed a second time: the failure counts.
         if verdicts.get(name, ClaimedOutcome.PASSED) is ClaimedOutcome.PASSED:
             verdicts[name] = verdict
             messages[name] = message

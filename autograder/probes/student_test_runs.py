@@ -1,4 +1,4 @@
-"""Runs a student's tests against versions of the package under test, and reports what they say of each.
+"""Runs a student's tests against versions of the package under test, and reports the results of each version.
 
     source = take(workspace, "wheels")
     reports = run(workspace, source, [TestRun(("test_limits.py",), right), TestRun(("test_limits.py",), faulty)])
@@ -51,7 +51,7 @@ HOME = Path("/tmp")  # the sandbox's own
 def take(workspace: Workspace, package: str) -> Source:
     """Read a package's source, which the student's code could write to while it was built.
 
-    A StudentError says that there is something else than plain files, or no folder of the package's name.
+    A StudentError says that it contains something except plain files, or no folder with the package's name.
     """
     entries = read_packages(workspace.root)
     folder = next(
@@ -72,8 +72,8 @@ def run(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun]) ->
     which it has just woken the executor.
 
     Raises:
-        StudentError: there is no room left on the disk.
-        GraderError: there is no domain left to listen in.
+        StudentError: the disk is full.
+        GraderError: no domain is free to listen in.
     """
     hold("What your tests reported")
     with ThreadPoolExecutor(JOBS) as pool:
@@ -88,12 +88,12 @@ def run(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun]) ->
 
 
 def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = TEST_RUN, network: bool = False) -> Sandbox:
-    """Return the sandbox of a run: the workspace's, and what pytest needs beside it.
+    """Return the sandbox of a run: that of the workspace, and the files that pytest needs.
 
     Args:
         workspace: the built workspace.
         readable: more files and folders that the run may read.
-        limits: what the run may use.
+        limits: the resource limits of the run.
         network: whether it shares the grader's loopback.
     """
     mounts = (*workspace.sandbox().mounts, Mount(STANDINS), *map(Mount, readable))
@@ -140,7 +140,7 @@ def _run_in(place: Path, workspace: Workspace, source: Source, test_run: TestRun
 
 
 def _confined(workspace: Workspace, folder: Path, test_run: TestRun, home: Path) -> Sandbox:
-    """Describe the sandbox of one run: nothing in it can be written to but its own /tmp, where there is one."""
+    """Describe the sandbox of one run. Its only writable folder is its own /tmp, if it has one."""
     if current_isolation() is Isolation.BUBBLEWRAP:
         spec = sandboxed(replace(workspace, scratch=HOME), folder, RUNNER, network=test_run.sniffed)
         return replace(spec, workdir=folder, mounts=tuple(mount for mount in spec.mounts if mount.path != HOME))
@@ -168,7 +168,7 @@ def _launch_plugins() -> tuple[str, str]:
 
 
 def _launches(source: Source, test_run: TestRun) -> bool:
-    """Return whether tests may launch something, for which there is more to import."""
+    """Return whether tests may launch programs, which takes further imports."""
     read = [*test_run.files, *(name for name in source.tests if not Path(name).name.startswith("test_"))]
     return any(b"launch" in source.tests.get(name, b"") for name in read)
 

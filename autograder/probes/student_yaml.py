@@ -1,4 +1,4 @@
-"""Reads YAML that anybody may have written: aliases and merges may stand for a bounded number of values only."""
+"""Reads untrusted YAML: aliases and merges may expand to a bounded number of values only."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from typing import Any
 
 import yaml
 
-MAX_VALUES = 20_000  # that a file stands for, with each alias counted as what it repeats
+MAX_VALUES = 20_000  # values in a file, with each alias counted as the values that it repeats
 
 
 def load(text: str | bytes) -> Any:
-    """Return the plain data that a YAML document stands for.
+    """Parse a YAML document into plain data.
 
     Raises:
-        yaml.YAMLError: it is not YAML, it contains itself, or it stands for more than `MAX_VALUES`. PyYAML raises other
+        yaml.YAMLError: it is not YAML, it contains itself, or it expands to more than `MAX_VALUES`. PyYAML raises other
             exceptions, too, for tags and numbers that it cannot read.
     """
     loader = yaml.SafeLoader(text)
@@ -28,7 +28,7 @@ def load(text: str | bytes) -> Any:
 
 
 def _size(node: yaml.Node, known: dict[int, int]) -> int:
-    """Return how many values a node stands for; `known` has those of nodes, 0 for one whose inside is being counted."""
+    """Return the number of values in a node. `known` has those of other nodes, 0 for a node that is being counted."""
     size = known.get(id(node))
     if size == 0:
         raise yaml.YAMLError("an alias stands inside of what it repeats")

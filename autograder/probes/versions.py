@@ -117,7 +117,7 @@ def _installed(prefix: Path, package: str, name: str) -> Path | None:
 
 def _obfuscated(text: str, draw: random.Random) -> str:
     tree = ast.parse(text)
-    nodes = list(ast.walk(tree))  # to go round a tree takes long, and there are hundreds of them
+    nodes = list(ast.walk(tree))  # walking a tree takes long, and there are hundreds of them
     for node in nodes:
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
             own = node.body[ast.get_docstring(node) is not None :]
@@ -139,7 +139,7 @@ def _obfuscated(text: str, draw: random.Random) -> str:
 def _own_names(nodes: Sequence[ast.AST]) -> set[str]:
     """Return the names that only a function of these nodes assigns to.
 
-    These are no parameters, which callers may name, and nothing shared.
+    These are not parameters, which callers may name, and not shared.
     """
     stored = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
     kept = {node.arg for node in nodes if isinstance(node, ast.arg)}

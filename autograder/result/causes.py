@@ -14,7 +14,7 @@ from autograder.result.model import CheckResult
 from autograder.suite import Outcome
 
 FAILED_AS_WELL = "These failed as well; mend the first and run again:"
-MAX_NAMED = 3  # titles in the line about what was not checked
+MAX_NAMED = 3  # titles in the line about unchecked behaviour
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Cause:
     """A check, and those that did not pass because it did not.
 
     Attributes:
-        check: what came first. Of a check that passed, nothing came.
+        check: the check that failed first. A check that passed is no cause.
         failed: the checks that failed as well.
         unchecked: the checks that could not be checked.
     """
@@ -43,7 +43,7 @@ class Cause:
 
     @property
     def not_checked(self) -> str:
-        """The line about what could not be checked, empty if there is nothing. It names a few, and counts many."""
+        """The line about checks that could not run, or an empty string. It names a few and counts many."""
         if not self.unchecked:
             return ""
         few = " ".join(check.title for check in self.unchecked)
@@ -51,7 +51,7 @@ class Cause:
 
     @property
     def unnamed(self) -> tuple[str, ...]:
-        """The titles of what could not be checked, if they are too many for the line."""
+        """The titles of checks that could not run, if they are too many for the line."""
         titles = tuple(check.title for check in self.unchecked)
         return titles if len(titles) > MAX_NAMED else ()
 
@@ -61,7 +61,7 @@ def causes(checks: Sequence[CheckResult], diagnosis: str = "") -> tuple[Cause, .
 
     Args:
         checks: the results of checks.
-        diagnosis: the sentence about what was wrong with the program, which a check may give as its reason.
+        diagnosis: the sentence about the failure of the program, which a check may give as its reason.
     """
     places = {check.id: place for place, check in reversed(list(enumerate(checks)))}
     first = [_first(place, checks, places) for place in range(len(checks))]

@@ -8,7 +8,7 @@ from autograder.result.model import UNFINISHED
 
 SUMMARY = "index.html"  # the table of the class
 EARLIER_MARKS = "earlier-marks.json"  # a list of results; `autograder compare` reads it, too
-COLLECTION_REPORT = "handed_in.json"  # the late students, and what fits no student
+COLLECTION_REPORT = "handed_in.json"  # the late students, and the files that belong to no student
 ONE, MANY = "result.json", "results.json"  # a result, and a list of them, which are looked for by these names
 FILES = frozenset((SUMMARY, EARLIER_MARKS, COLLECTION_REPORT, ONE, MANY))
 

@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 
 SCHEMA = "autograder-result/1"
 UNFINISHED = ".unfinished"  # in the folder of a result: the folder of a grading that is to replace it
-MAX_HARMLESS_DELAY = 0.1  # s, one period at 10 Hz; a program that is held up for so long loses no check
+MAX_HARMLESS_DELAY = 0.1  # s, one period at 10 Hz; so short a delay makes a program fail no check
 
 
 class Status(str, Enum):
-    """Whether the grader reached a result. What cannot be read, or holds two answers, is unclear."""
+    """Whether the grader reached a result. A submission that cannot be read, or contains two answers, is unclear."""
 
     GRADED = "graded"
     NOT_GRADED = "not_graded"
@@ -54,14 +54,14 @@ class CheckResult:
     points: float  # points that the check earned, of `max_points`
     max_points: float
     outcome: Outcome
-    message: str  # what is wrong, or an empty string
+    message: str  # why it failed, or an empty string
     hints: tuple[str, ...]
     doc: str | None  # address of a page to read, or None
     visibility: Visibility
     seconds: float  # wall time of the check
     holds: tuple[str, ...] = ()  # ids of the requirements that it covers
     after: tuple[str, ...] = ()  # ids of the checks that explain its failure if they did not pass either
-    talk: tuple[Exchange, ...] = ()  # what the nodes were asked, and what they answered
+    talk: tuple[Exchange, ...] = ()  # requests to the nodes, and their answers
 
     @classmethod
     def of(
@@ -77,7 +77,7 @@ class CheckResult:
         """Return the result of a check, which took `seconds` of wall time.
 
         If it failed, it earns the share `fraction` of its points, 0 to 1. If it was not checked, it earns none. The
-        hints are those of the check, unless `hints` has those that follow from what was wrong.
+        hints are those of the check, unless `hints` contains more specific ones.
         """
         share = {Outcome.PASSED: 1.0, Outcome.FAILED: fraction, Outcome.NOT_CHECKED: 0.0}[outcome]
         if hints is None or outcome is Outcome.PASSED:
@@ -148,13 +148,13 @@ class Result:
     phases: Mapping[str, float] = dataclasses.field(default_factory=dict)  # wall time of each phase, in seconds
     time: str = "lockstep"  # "lockstep", or "real" if a program's time could not be stepped
     time_note: str = ""  # the sentence that names that program and the reason
-    unjudged: tuple[str, ...] = ()  # ids of checks that raised an error of their own over data of the student's
-    notices: tuple[str, ...] = ()  # sentences about what was graded, for the student
-    unused: tuple[str, ...] = ()  # what was handed in and plays no part, by its path
-    held_up: float = 0.0  # the longest time, in seconds, for which a busy machine held up that program or the grader
+    unjudged: tuple[str, ...] = ()  # ids of checks that raised an error over the student's data
+    notices: tuple[str, ...] = ()  # sentences for the student about the graded files
+    unused: tuple[str, ...] = ()  # submitted files that do not count, by their paths
+    held_up: float = 0.0  # the longest delay, in seconds, of that program or the grader by a busy machine
     files_digest: str = ""  # digest of every file that the grading read; `suite_version` changes only when marks can
     launch: str = ""  # versions of the real launch, launch_ros and ros2cli, or "stand-ins"
-    # The folder of its artifacts. It is no part of the JSON form, and who reads that says which it is.
+    # The folder of its artifacts. It is not part of the JSON form; the reader of a file sets it.
     folder: Path = dataclasses.field(default=Path(), compare=False)
 
     @property
@@ -217,7 +217,7 @@ def from_json(data: Any, *, source: str = "result", folder: Path = Path()) -> Re
     """Return the result that a JSON form describes; `source` is the name of its file, for the error.
 
     Raises:
-        UsageError: `data` does not match the schema, or has more points than there are. The message names `source`.
+        UsageError: `data` does not match the schema, or has more points than possible. The message names `source`.
     """
     with _first_use:
         from jsonschema.exceptions import best_match  # imported here because it takes a second; workers do not need it

@@ -40,7 +40,7 @@ def add_held(seconds: float) -> None:
 
 
 def is_held(seconds: float = 0.0) -> bool:
-    """Return whether programs held the grading for longer than they may, the last one for `seconds`."""
+    """Return whether programs, the last one for `seconds`, made the grading wait longer than allowed."""
     return math.isfinite(_Account.deadline) and _Account.held + seconds > HELD_SECONDS
 
 
@@ -72,7 +72,7 @@ def require() -> None:
 
 
 def too_slow() -> StudentError:
-    """Return the error of programs that held the grading for longer than they may."""
+    """Return the error for programs that made the grading wait longer than allowed."""
     sentence = (
         f"Your nodes kept the grader waiting for {HELD_SECONDS:.0f} s in all, and it waits no longer: a callback has "
         "to return at once, without a sleep, a loop that waits or a blocking call."

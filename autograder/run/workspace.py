@@ -28,9 +28,9 @@ class Workspace:
 
     root: Path  # the workspace's folder, with `src` and `install`
     ros: RosEnvironment  # the ROS 2 that it was built with
-    scratch: Path  # a writable folder for homes and logs, used where a sandbox has no /tmp of its own
+    scratch: Path  # a writable folder for homes and logs, for sandboxes without their own /tmp
     domain: int = 0  # the `ROS_DOMAIN_ID` in which its programs and the grader meet
-    # What harnesses find out about time; copies of a workspace share it.
+    # What harnesses learn about time; copies of a workspace share it.
     time_record: TimeRecord = field(default_factory=TimeRecord, compare=False)
     exchanges: ExchangeLog = field(default_factory=ExchangeLog, compare=False)  # copies share it
 
@@ -50,7 +50,7 @@ class Workspace:
             yield Path(folder)
 
     def executable(self, package: str, name: str) -> Path:
-        """Return the path of an installed executable; a StudentError names what the package installs instead."""
+        """Return the path of an installed executable. A StudentError names those that the package does install."""
         folder = self.install / package / "lib" / package
         path = folder / name
         if path.is_file():

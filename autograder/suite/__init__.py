@@ -1,4 +1,4 @@
-"""What a check is, and what a suite of checks is."""
+"""Checks and suites of checks."""
 
 from autograder.suite.declaration import (
     Check,

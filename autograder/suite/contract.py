@@ -43,7 +43,7 @@ def contract(assignment: str) -> dict[str, Requirement]:
     """Return a chapter's requirements by their ids, cell by cell.
 
     Raises:
-        UsageError: there is no such chapter.
+        UsageError: the chapter does not exist.
     """
     notebook = json.loads(layout.source_notebook(assignment).read_text(encoding="utf-8"))
     return requirements(notebook["cells"])

@@ -1,4 +1,4 @@
-"""What a check is: one function, one behaviour, and the sentence that the student reads.
+"""The declaration of checks: one function, one behaviour, and the sentence that the student reads.
 
 A suite is a pytest module. Each of its tests is a check, in the group of checks that the module names:
 
@@ -65,7 +65,7 @@ class Check:
     Attributes:
         id: the function's name without `test_`; unique in its suite.
         title: the first paragraph of its docstring.
-        points: what it is worth, above 0.
+        points: its worth, above 0.
         group: the locked grade cell that it counts for.
         hints: shown one after the other when it fails.
         doc: a page to read, or None.
@@ -87,7 +87,7 @@ class Check:
 
     @property
     def dependencies(self) -> tuple[str, ...]:
-        """Ids of the checks that it needs or comes after. They stand earlier in the suite."""
+        """Ids of the checks in `needs` and `after`. They are declared earlier in the suite."""
         return self.needs + self.after
 
 
@@ -98,7 +98,7 @@ class FractionError(GraderError, ValueError):
 class CheckFailed(AutograderError):
     """A check's verdict "failed": a sentence for the student and the fraction of the points that was reached.
 
-    `hints` are what helps with this failure; None for the hints of the check.
+    `hints` are the hints for this failure, or None for those of the check.
     """
 
     def __init__(self, message: str, *, fraction: float = 0.0, hints: tuple[str, ...] | None = None) -> None:
@@ -126,7 +126,7 @@ class Declare(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class CheckRow:
-    """A row of a table of checks that share a body; a table's own class adds what the body needs.
+    """A row of a table of checks with a common body. A subclass adds the fields that the body needs.
 
     Attributes:
         id: the check's, as in `Check`; so are the others.
@@ -152,7 +152,7 @@ def check(
     after: tuple[str, ...] = (),
     doc: str | None = None,
 ) -> Callable[[F], F]:
-    """Declare a pytest function a check; what the arguments are, `Check` says. One sentence needs no tuple.
+    """Declare a pytest function as a check. `Check` explains the arguments. A single requirement needs no tuple.
 
     Raises:
         GraderError: the function's name, docstring or points break the contract of a check.
@@ -180,7 +180,7 @@ def check(
 
 
 def group(name: str, *, needs: tuple[str, ...] = (), after: tuple[str, ...] = (), doc: str | None = None) -> Declare:
-    """Return `check` for one group, with what its checks need, come after and link to unless a check says otherwise."""
+    """Return `check` for one group, with defaults for the `needs`, `after` and `doc` of its checks."""
     default_needs, default_after, default_doc = needs, after, doc
 
     def check_of_group(
@@ -197,10 +197,10 @@ def group(name: str, *, needs: tuple[str, ...] = (), after: tuple[str, ...] = ()
 
 
 def hint(*texts: str) -> Callable[[F], F]:
-    """Add hints to the function of a check, before those of the `hint` below it. It stands below `check`.
+    """Add hints to the function of a check, before those of the `hint` below it. Use it below `check`.
 
     Raises:
-        GraderError: it stands above `check`, which would not see it.
+        GraderError: it is used above `check`, which would not see it.
     """
 
     def add(function: F) -> F:
@@ -213,7 +213,7 @@ def hint(*texts: str) -> Callable[[F], F]:
 
 
 def check_each_row(check: Declare, rows: Iterable[R]) -> Callable[[F], F]:
-    """Declare a check for each row of a table, as a function `test_ID` of the module in which the body stands.
+    """Declare a check for each row of a table, as a function `test_ID` in the module of the body.
 
     The body takes a row, and then fixtures.
 

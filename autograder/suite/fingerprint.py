@@ -17,7 +17,7 @@ from pathlib import Path
 
 from autograder import layout
 
-# The version of the grader and the simulator, of what the checks of all chapters use. Raise it by one with each change
+# The version of the grader and the simulator, which the checks of all chapters use. Raise it by one with each change
 # by which a submission can get another mark with the same seed, or another reason for it: see CONTRIBUTING.md. Marks of
 # another version are graded again by `--resume`.
 GRADER_VERSION = 4
@@ -61,7 +61,7 @@ def files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
 
 
 def chapter_files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
-    """Return the sorted paths of a chapter's files and of what its checks read; the arguments are as in `version`."""
+    """Return the sorted paths of a chapter's files and of the files that its checks read; arguments as in `version`."""
     return sorted(_below(layout.course().root, places(assignment, reads)))
 
 
@@ -96,7 +96,7 @@ def places(assignment: str, reads: Iterable[str] = (), *, parts: Iterable[str] =
 
 
 def _below(root: Path, tops: Iterable[Path]) -> Iterator[Path]:
-    """Yield the files at and below some paths, without what tools left there."""
+    """Yield the files at and below some paths, without those that tools left there."""
     for path in (path for top in tops for path in (top, *top.rglob("*")) if path.is_file()):
         parts = path.relative_to(root).parts
         if "__pycache__" not in parts and not any(part.startswith(".") for part in parts):
@@ -127,5 +127,5 @@ def _modules(dotted: str, checks: Path) -> Iterator[Path]:
 def _is_read(parts: tuple[str, ...]) -> bool:
     """Return whether each grading reads a file of the autograder or the simulator."""
     if parts[:2] == ("autograder", "checks"):
-        return len(parts) == 3  # what a check is; the chapters stand in folders
+        return len(parts) == 3  # the package itself; the chapters are in folders
     return parts[0] != "autograder" or not NOT_READ & {parts[1], "/".join(parts[1:3])}

@@ -30,8 +30,8 @@ class Row:
     """A row of a table.
 
     Attributes:
-        head: what the head of the table calls the columns.
-        cells: what stands in the columns, with marks.
+        head: the names of the columns in the head of the table.
+        cells: the text of the columns, with markup.
         label: the first cell; where it is empty, that of the row above.
     """
 
@@ -41,7 +41,7 @@ class Row:
 
     @property
     def text(self) -> str:
-        """The row in words. The head names the columns after the first, unless there is only one."""
+        """The row in words. The head names the columns after the first, unless the table has only one."""
         heads = self.head[1:] if len(self.cells) > 2 else ("",)
         values = (f"{head} {cell}".strip() for head, cell in zip(heads, self.cells[1:], strict=False) if cell)
         return _unmarked(": ".join(part for part in (self.label, ", ".join(values)) if part))
@@ -51,7 +51,7 @@ def quote(cell: Mapping[str, Any], text: str) -> str | None:
     """Return the row or the sentence of a notebook's cell that holds `text`, as it is read; None if none does.
 
     Args:
-        cell: the cell. Markdown is rendered, code is read as it stands.
+        cell: the cell. Markdown is rendered, code is read unchanged.
         text: a part of the cell's source: a row with its bars, a bullet, or a sentence or a part of one.
     """
     source = "".join(cell["source"])

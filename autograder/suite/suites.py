@@ -7,10 +7,10 @@ The package, `chNN_name.visible` or `chNN_name.hidden`, says in its `__init__.py
     GROUPS            optional: the groups of checks in the order in which results show them, instead of MODULES
     FOLDERS           optional: folders in `src` that a submission brings besides its packages
     READS             optional: files and folders of the course, by their paths below its root, that the checks read
-                      besides what lies in their own chapter's folder
+                      besides those in their own chapter's folder
     BUILD_MAY_FAIL    optional, True: a package that is missing or does not build does not end the grading. Checks see
                       it by the fixture `builds`, and those of a built package name one that asks for it in `needs`.
-    OWN_TESTS         optional: the checks that lose points by what the submission's own tests say of its other files
+    OWN_TESTS         optional: the checks that lose points if the submission's own tests of its other files fail
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ class Suite:
         files: its modules, in the order in which they are run.
         checks: every check, in the order in which results show them.
         build_may_fail: whether its checks are run even if a package is missing or does not build.
-        folders: what a submission brings in `src` besides its packages.
+        folders: the folders that a submission contains in `src` besides its packages.
         reads: files and folders of the course that its checks read besides their own packages, by their paths.
-        own_tests: ids of the checks that lose points by what a submission's own tests say of its other files.
+        own_tests: ids of the checks that lose points by the results of the submission's own tests of its other files.
     """
 
     assignment: str
@@ -129,7 +129,7 @@ def read(home: str, assignment: str, kind: str) -> Suite:
         kind: "visible" or "hidden".
 
     Raises:
-        UsageError: there is none.
+        UsageError: it does not exist.
         GraderError: it breaks the contract of a check.
     """
     package = f"{home}.ch{assignment}.{kind}"

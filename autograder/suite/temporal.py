@@ -11,7 +11,7 @@ import typing
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-# rtamt's parser (antlr4 4.7) takes TextIO from typing.io, of which Python 3.11 warns and which 3.13 no longer has.
+# rtamt's parser (antlr4 4.7) takes TextIO from typing.io, which is deprecated in Python 3.11 and removed in 3.13.
 sys.modules["typing.io"] = typing
 import rtamt  # noqa: E402
 
@@ -20,7 +20,7 @@ from autograder.suite.declaration import expect  # noqa: E402
 
 @dataclass(frozen=True)
 class Verdict:
-    """What became of "always CONDITION" on a trace.
+    """The result of "always CONDITION" on a trace.
 
     Attributes:
         robustness: the smallest value of the condition; above 0 when it always holds.

@@ -24,7 +24,7 @@ _KEY = re.compile(r"[0-9a-f]{16,64}")
 
 
 class Cache:
-    """A cache in a folder of its own, which this user alone can read; `limit` bounds the bytes of its entries."""
+    """A cache in a private folder of this user. `limit` bounds the bytes of its entries."""
 
     def __init__(self, root: Path, limit: int = LIMIT) -> None:
         self.root, self._limit = root, limit
@@ -51,18 +51,18 @@ class Cache:
 
         Args:
             key: 16 to 64 hexadecimal digits.
-            make: fills the new folder that it is given. If it raises, there is no entry.
+            make: fills the given new folder. If it raises, no entry is added.
         """
         self.root.mkdir(parents=True, exist_ok=True, mode=0o700)
         entry, made = self.root / key, False
         with self._lock(key) as lock:
             fcntl.flock(lock, fcntl.LOCK_SH)
             while not entry.is_dir():
-                fcntl.flock(lock, fcntl.LOCK_EX)  # whoever else wants it waits here, and then finds it made
+                fcntl.flock(lock, fcntl.LOCK_EX)  # others that want it wait here, and then find it
                 if not entry.is_dir():
                     self._make(entry, make)
                     made = True
-                fcntl.flock(lock, fcntl.LOCK_SH)  # it is let go of in between, and somebody may evict it
+                fcntl.flock(lock, fcntl.LOCK_SH)  # the lock is free in between, and the entry may be evicted
             os.utime(entry)
             if made:
                 self._evict()
@@ -85,7 +85,7 @@ class Cache:
             shutil.rmtree(fresh, ignore_errors=True)
 
     def _evict(self) -> None:
-        """Remove what was unused for longest until the rest fits, and what killed builds left."""
+        """Remove the least recently used entries until the rest fits, and the remains of killed builds."""
         entries: list[tuple[float, int, Path]] = []
         for folder in self.root.iterdir():
             with contextlib.suppress(FileNotFoundError):
@@ -101,7 +101,7 @@ class Cache:
                 total -= size
 
     def _remove(self, folder: Path, key: str) -> bool:
-        """Remove a folder unless somebody uses or makes what has this key; return whether it is gone."""
+        """Remove a folder unless its key is in use or being made; return whether it is gone."""
         with self._lock(key) as lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -1,6 +1,6 @@
 """The CDR of DDS, in which messages travel: plain values to bytes and back, by rosidl's model of their types.
 
-The bytes may come from anybody. What is read is bounded, and whatever does not fit the type is a ValueError.
+The bytes are untrusted. Reading is bounded, and bytes that do not fit the type raise a ValueError.
 """
 
 from __future__ import annotations

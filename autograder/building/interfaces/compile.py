@@ -21,7 +21,7 @@ _LIBRARIES = (FAST, INTROSPECTION, "rosidl_generator_c", "rosidl_typesupport_c",
 def compile_package(
     package: str, prefix: Path, work: Path, prefixes: tuple[Path, ...], dependencies: tuple[str, ...]
 ) -> None:
-    """Compile what the generators wrote to `work` into libraries and the extension module under `prefix`.
+    """Compile the generators' output in `work` into libraries and the extension module under `prefix`.
 
     The library of the Fast DDS type support holds everything but introspection: rcl asks for these two by name. It is
     the extension module, too, under a second name.
@@ -48,7 +48,7 @@ def compile_package(
         path for path in sources("rosidl_generator_py", "*.c") if path.parent != work / "rosidl_generator_py" / package
     ]
     entry = next((work / "rosidl_generator_py" / package).glob("_*.ep.*.c"))
-    # What includes the same headers is compiled together. The C++ comes first, because it takes longest.
+    # Files with the same headers are compiled together. C++ comes first, because it takes longest.
     main = [
         _unit(work, "types.cpp", sources(FAST, "*.cpp") + sources("rosidl_typesupport_c", "*.cpp")),
         _unit(work, "python.c", [*conversions, entry]),

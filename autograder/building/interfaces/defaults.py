@@ -1,4 +1,4 @@
-"""What a field holds before anybody sets it."""
+"""The initial values of fields."""
 
 from __future__ import annotations
 

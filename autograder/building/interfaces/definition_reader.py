@@ -22,7 +22,7 @@ MAX_FILES = 64
 MAX_BYTES = 64 * 1024
 MAX_FIELDS = 512
 MAX_ELEMENTS = 100_000  # a message's fixed arrays, multiplied through all that it holds
-FOREIGN_ELEMENTS = 128  # what a message of ROS's counts for
+FOREIGN_ELEMENTS = 128  # the count for a message of ROS
 SECTIONS = {"msg": 1, "srv": 2, "action": 3}
 PARTS = {"msg": "a message has none", "srv": "request --- response", "action": "goal --- result --- feedback"}
 
@@ -182,7 +182,7 @@ class _Reader:
         return section
 
     def _reads_the_same(self, section: Section) -> bool:
-        """Return whether the lines that are written anew mean what they were written from."""
+        """Return whether the rewritten lines have the same meaning as the original ones."""
         spec = self._parse(str(section))
         values = [constant.value for constant in section.constants] + [field.default for field in section.fields]
         return values == [constant.value for constant in spec.constants] + [f.default_value for f in spec.fields]

@@ -34,7 +34,7 @@ class Field:
     package: str | None = None  # of a message
     max_length: int | None = None  # of a text
     is_array: bool = False
-    size: int | None = None  # of an array: how many elements there are
+    size: int | None = None  # the number of elements of an array
     at_most: bool = False  # whether `size` is a bound
     default: Value | list[Value] | None = None
 

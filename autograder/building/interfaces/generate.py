@@ -78,7 +78,7 @@ def adapt(prefix: Path, package: str, texts: dict[str, str]) -> tuple[str, ...]:
 
 
 def escape_texts() -> None:
-    """Let the generators write each character of a text as an escape, but for plain letters and digits.
+    """Make the generators write each character of a text as an escape, except plain letters and digits.
 
     So no text can leave its literal, whatever a compiler makes of quotation marks, trigraphs or line ends.
     """
@@ -92,7 +92,7 @@ def escape_texts() -> None:
 
 
 def share_parsing(job: InterfaceBuildJob) -> None:
-    """Parse each .idl, and let the generators take what came of it."""
+    """Parse each .idl, and pass the result to the generators."""
     parser = import_module("rosidl_parser.parser")
     locator_of = import_module("rosidl_parser.definition").IdlLocator
     parser.parse_idl_string = cache(parser.parse_idl_string)  # type: ignore[attr-defined]
@@ -122,7 +122,7 @@ def arguments(job: InterfaceBuildJob, generator: str, **more: Any) -> str:
 
 
 def generate(job: InterfaceBuildJob) -> None:
-    """Run all generators, in two processes: what needs the type hashes here, the rest in a fork."""
+    """Run all generators in two processes: those that need the type hashes here, the rest in a fork."""
     python = import_module("rosidl_generator_py.generate_py_impl")
     descriptions = import_module("rosidl_generator_type_description")
     code, supports = import_module("rosidl_generator_c"), import_module("rosidl_typesupport_c")
@@ -172,7 +172,7 @@ def both(here: Callable[[], None], aside: Callable[[], None]) -> None:
 
 
 def install(job: InterfaceBuildJob) -> None:
-    """Lay out what dependants and `load` look for: Python, headers, type descriptions, manifest, index."""
+    """Install the files that dependants and `load` need: Python, headers, type descriptions, manifest, index."""
     package, share = job.package, job.prefix / "share"
     site = site_packages(job.prefix) / package
     site.mkdir(parents=True)
@@ -198,7 +198,7 @@ def install(job: InterfaceBuildJob) -> None:
 
 
 def main() -> None:
-    """Build what PREFIX's recipe says."""
+    """Build the package of the recipe in PREFIX."""
     prefix = Path(sys.argv[1]).resolve()
     recipe = json.loads((prefix / "recipe.json").read_text())
     sys.stdout = Path(os.devnull).open("w")  # the generators tell of each file  # noqa: SIM115

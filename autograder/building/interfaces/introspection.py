@@ -65,7 +65,7 @@ def _constants() -> tuple[int | None, int | None]:
     return name.value, cast(handle, c_void_p).value
 
 
-_keep: list[Any] = []  # what C code points to, for as long as the process lives
+_keep: list[Any] = []  # objects that C code points to, for the lifetime of the process
 
 
 class Introspection:

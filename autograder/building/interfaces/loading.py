@@ -43,7 +43,7 @@ def load_interfaces(workspace: Workspace, package: str) -> Any:
 
 @lru_cache(maxsize=8)
 def classes(packages: tuple[tuple[str, Texts], ...]) -> Any:
-    """Return the classes of the last of these packages, of which each uses only those before it."""
+    """Return the classes of the last of these packages. Each package uses only those before it."""
     from autograder.building.interfaces.known_types import KnownTypes
     from autograder.building.interfaces.messages import add_package
 

@@ -107,7 +107,7 @@ def add_package(package: str, definitions: tuple[Definition, ...], known: KnownT
 
     Returns:
         The classes as the package's modules would hold them: `.msg.RobotStatus`, `.srv.CheckTrip`, ... One that is not
-        there is a StudentError.
+        it raises a StudentError.
     """
     models = [structures.model(package, definition) for definition in definitions]
     known.describe(models)

@@ -1,4 +1,4 @@
-"""From the texts of an interface package of ours to a prefix with it: cached, or built in a process of its own."""
+"""Builds the prefix of one of our interface packages from its texts, or takes it from the cache."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class GenerationError(InterfaceError):
 def build(package: str, files: Mapping[str, str], *, cache: Cache | None = None) -> Path:
     """Return a prefix with the package built from its definitions, from the cache if it was built before.
 
-    The prefix stays until the cache is full and somebody builds another one.
+    The prefix stays until the cache is full and another one is built.
 
     Args:
         package: its name.
@@ -46,7 +46,7 @@ def build(package: str, files: Mapping[str, str], *, cache: Cache | None = None)
     Raises:
         DefinitionError: a definition is wrong; names file and line.
         GenerationError: the generators or the compiler failed.
-        RosError: there is no usable ROS 2.
+        RosError: no usable ROS 2 was found.
     """
     ros = activate()
     definitions = read(package, files)
@@ -69,7 +69,7 @@ def exists(prefixes: tuple[Path, ...], package: str, message: str | None) -> boo
 
 
 def identity(ros: RosEnvironment) -> dict[str, object]:
-    """Return what a built package depends on beside its own content: the Python, and the ROS by its versions."""
+    """Return the dependencies of a built package besides its content: the Python, and the versions of ROS."""
     return {
         "prefixes": [str(prefix) for prefix in ros.prefixes],
         "python": [sys.executable, sys.version, sysconfig.get_config_var("EXT_SUFFIX")],
@@ -80,7 +80,7 @@ def identity(ros: RosEnvironment) -> dict[str, object]:
 @lru_cache(maxsize=1)
 def _versions(ros: RosEnvironment) -> list[str]:
     """Name the installed ROS: each wheel's version, or each sourced package's manifest by its size and time."""
-    if ros.kind == "wheels":  # by the folders' names: to read what is in them takes half a second
+    if ros.kind == "wheels":  # from the names of the folders: reading their content takes half a second
         versions = [path.stem for path in ros.rclpy.parent.glob("*.dist-info")]
         return sorted(name for name in versions if name.lower().startswith(("ros-", "ros_", "numpy")))
     manifests = [path for prefix in ros.prefixes for path in sorted(prefix.glob("share/*/package.xml"))]
@@ -94,7 +94,7 @@ def _own_version() -> str:
 
 def _make(package: str, recipe: str, prefix: Path) -> None:
     (prefix / RECIPE).write_text(recipe)
-    path = [str(HERE.parents[2]), *filter(None, [os.environ.get("PYTHONPATH")])]  # it imports what this process does
+    path = [str(HERE.parents[2]), *filter(None, [os.environ.get("PYTHONPATH")])]  # same module paths
     try:
         done = subprocess.run(
             [sys.executable, "-m", "autograder.building.interfaces.generate", str(prefix)],

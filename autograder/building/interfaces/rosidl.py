@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-# What rosidl_adapter asks of a constant's name; its own expression takes exponential time on a wrong one.
+# rosidl_adapter's rule for the name of a constant. Its own expression takes exponential time on a wrong name.
 CONSTANT_NAME = re.compile("^(?!.*__)(?!.*_$)[A-Z][A-Z0-9_]*$")
 
 

@@ -28,7 +28,7 @@ HEADER = 4  # bytes before the message's own
 INITIAL = 256  # bytes that a history makes room for in advance; it grows
 NAMES = ("_CREATE_ROS_MESSAGE", "_CONVERT_FROM_PY", "_CONVERT_TO_PY", "_DESTROY_ROS_MESSAGE", "_TYPE_SUPPORT")
 
-_keep: list[Any] = []  # what C code points to, for as long as the process lives
+_keep: list[Any] = []  # objects that C code points to, for the lifetime of the process
 _messages: dict[int, bytes | None] = {}  # None for one that could not be taken
 _numbers = itertools.count(1)
 
@@ -213,7 +213,7 @@ def _functions() -> tuple[Any, ...]:
 def _borrowed() -> Mapping[str, Any]:
     """Return ready-made structures, for the parts that are the same for all types.
 
-    The description of a type is another one's: nobody asks the grader for it.
+    The description of a type belongs to another one: it is never requested from the grader.
     """
     from std_msgs.msg import Empty as EmptyMessage
     from std_srvs.srv import Empty as EmptyService

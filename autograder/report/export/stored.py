@@ -21,7 +21,7 @@ def load(path: Path) -> tuple[Result, ...]:
             file, named after the student.
 
     Raises:
-        UsageError: there is nothing to read, or a file does not contain a result. The message names the file.
+        UsageError: the path contains no results, or a file is not a result. The message names the file.
     """
     if not path.exists():
         raise UsageError(f"{path}: no such file or folder; use the folder that `autograder grade --out` wrote")

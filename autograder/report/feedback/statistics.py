@@ -52,7 +52,7 @@ class ClassStatistics:
 
 
 def class_statistics(results: Sequence[Result]) -> ClassStatistics:
-    """Return the statistics of graded results, of which there must be at least one."""
+    """Return the statistics of graded results. At least one is required."""
     bands = Counter(min(int(result.percent // BAND_PERCENT), 100 // BAND_PERCENT - 1) for result in results)
     by_check: dict[tuple[str, str], list[tuple[Result, CheckResult]]] = {}
     for result in results:

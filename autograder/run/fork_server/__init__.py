@@ -1,4 +1,4 @@
-"""Python programs are forked into their sandboxes from a process that has imported what they share.
+"""Forks Python programs into their sandboxes from a process that has already imported their common modules.
 
 A fork server (`server.py`) is a trusted process outside every sandbox. It has imported a profile's modules
 (`profiles.py`), and reads no file of a student's. Bubblewrap makes the sandbox, as for any command. The server forks a

@@ -1,4 +1,4 @@
-"""What a forked program starts is forked, too: a child fork server.
+"""Also forks, rather than spawns, the children of a forked program: a child fork server.
 
 What `ros2 launch` starts would import all that the launch was forked with, and what colcon starts would import
 setuptools. Neither can fork them itself: it has threads, and things of its own in memory. So before it does anything
@@ -41,10 +41,10 @@ _PLAIN |= dict.fromkeys(("executable", "gid", "gids", "uid"))
 
 
 def fork_children(own: Sequence[str]) -> None:
-    """Let what this program starts be forked from now on; it does not return in the processes of what it starts.
+    """From now on, fork the programs that this one starts. In their processes, this function does not return.
 
     It is to be called while the program has one thread, and has read nothing of the student's. `own` are first words of
-    the names of packages that the program has, and what it starts does not.
+    the names of packages that only the program itself has, not its children.
     """
     before = getattr(subprocess.Popen, "_execute_child", None)
     if before is None or list(inspect.signature(before).parameters)[: len(_PARAMETERS)] != _PARAMETERS:
@@ -76,7 +76,7 @@ def fork_children(own: Sequence[str]) -> None:
 
 
 def _ask(line: socket.socket, request: dict[str, Any], given: dict[str, Any]) -> int:
-    """Have a program forked; return its process id, 0 if there is no server any more."""
+    """Request a fork; return the process id of the program, or 0 if the server has ended."""
     streams = (given["p2cread"], given["c2pwrite"], given["errwrite"])
     fds = [number if descriptor == -1 else descriptor for number, descriptor in enumerate(streams)]
     try:
@@ -87,7 +87,7 @@ def _ask(line: socket.socket, request: dict[str, Any], given: dict[str, Any]) ->
 
 
 def _request(args: Any, given: dict[str, Any]) -> dict[str, Any] | None:
-    """Return what the server is to do; None where it is better left to `subprocess`."""
+    """Return the request to the server, or None if `subprocess` has to start the program."""
     plain = all(given[name] == value for name, value in _PLAIN.items()) and not given["pass_fds"]
     if not plain or isinstance(args, str | bytes):
         return None
@@ -101,7 +101,7 @@ def _request(args: Any, given: dict[str, Any]) -> dict[str, Any] | None:
 
 
 def _python_words(words: list[str], cwd: Path) -> list[str]:
-    """Return what follows `python` in a command line that this interpreter would be started with, else nothing."""
+    """Return the words after `python` in a command line for this interpreter, or nothing for another one."""
     if words[:1] == [sys.executable]:
         options = 1
         while words[options : options + 1] == ["-W"]:
@@ -119,12 +119,12 @@ def _python_words(words: list[str], cwd: Path) -> list[str]:
 
 
 def _interpreter(environment: dict[str, str]) -> dict[str, str]:
-    """Return what an interpreter reads of its environment when it starts, but for where modules are."""
+    """Return the environment variables that an interpreter reads at its start, except those for module paths."""
     return {k: v for k, v in environment.items() if k.startswith(("PYTHON", "LC_", "LANG")) and k != "PYTHONPATH"}
 
 
 def _serve(line: socket.socket) -> None:
-    """Fork a program for each request, until there are no more."""
+    """Fork a program for each request, until the requests end."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # this process ends with the one that it serves
     set_command_line([])
     while True:
@@ -137,7 +137,7 @@ def _serve(line: socket.socket) -> None:
         if middle == 0:
             try:
                 child = os.fork()
-            except OSError:  # there is no room for more processes
+            except OSError:  # the limit of processes is reached
                 os._exit(1)
             if child == 0:
                 line.detach()

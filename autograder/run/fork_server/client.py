@@ -27,7 +27,7 @@ class ForkServer:
     """One fork server, which forks one program after another.
 
     Args:
-        profile: what it imports, a name in `PROFILES`.
+        profile: its early imports, a name in `PROFILES`.
         environment: its environment variables, which every program can read in its /proc.
     """
 
@@ -51,7 +51,7 @@ class ForkServer:
         return self._popen.pid
 
     def spawn(self, request: ForkRequest, status: int) -> int:
-        """Fork a program into a sandbox that stands; return its process id, or raise a ForkError.
+        """Fork a program into an existing sandbox; return its process id, or raise a ForkError.
 
         Args:
             request: the program; it gets the descriptors `request.fds`, under the same numbers.

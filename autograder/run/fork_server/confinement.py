@@ -1,4 +1,4 @@
-"""Going into a sandbox that bubblewrap has made, and giving up what bubblewrap would not have given.
+"""Enters a sandbox that bubblewrap has made, and drops the privileges that bubblewrap would have dropped.
 
 A forked process has to come by itself to what bubblewrap gives: the sandbox's namespaces, no capability and no way to
 any, its descriptors and limits. See setns(2), ioctl_nsfs(2), capabilities(7), prctl(2), seccomp(2).
@@ -26,7 +26,7 @@ _libc = ctypes.CDLL(None, use_errno=True)
 
 
 def join(placeholder: int) -> int:
-    """Join the namespaces of the process `placeholder`, but for its user namespace; return a descriptor of that one.
+    """Join the namespaces of the process `placeholder`, except its user namespace; return a descriptor of the latter.
 
     This process becomes the master of the user namespace that owns the others, which the kernel grants to the user who
     has made it. Its next child is in the pid namespace, too.
@@ -58,7 +58,7 @@ def place(fds: list[int], numbers: list[int], spare: int) -> int:
         os.dup2(descriptor, number)
     kept = {0, 1, 2, *numbers, high[0]}
     for number in {int(name) for name in os.listdir("/proc/self/fd")} - kept:
-        os.closerange(number, number + 1)  # the listing's own is closed by now, which is no error here
+        os.closerange(number, number + 1)  # the listing's own descriptor is already closed, which is not an error here
     return high[0]
 
 
@@ -80,7 +80,7 @@ def drop_privileges() -> None:
     steps = ctypes.create_string_buffer(program)
     named = struct.pack("HP", len(program) // 8, ctypes.addressof(steps))  # struct sock_fprog
     _check(_libc.prctl(_PR_SET_SECCOMP, _SECCOMP_MODE_FILTER, named, 0, 0))
-    # Whoever changes its user namespace loses its own /proc files; starting a program gives them back.
+    # A process that changes its user namespace loses its own /proc files; starting a program restores them.
     _check(_libc.prctl(_PR_SET_DUMPABLE, 1, 0, 0, 0))
 
 

@@ -1,4 +1,4 @@
-"""What execve(2) and the start of Python do, done to a forked interpreter: it becomes that of another program."""
+"""Does to a forked interpreter what execve(2) and the start of Python do: it becomes that of another program."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from typing import Any
 
 Program = tuple[CodeType, dict[str, Any]]
 
-_ARG_START = 45  # among the fields of /proc/self/stat behind the name, before _ARG_END, proc_pid_stat(5)
+_ARG_START = 45  # among the fields of /proc/self/stat after the name, before _ARG_END, proc_pid_stat(5)
 
 
 def emulate_start(
@@ -26,7 +26,7 @@ def emulate_start(
     """Make this interpreter like one that was started with a command line; return its code and its globals.
 
     Args:
-        command: what follows `python`: `-W FILTER` any number of times, a script or `-c CODE`, and its arguments.
+        command: the words after `python`: `-W FILTER` any number of times, a script or `-c CODE`, and its arguments.
         environment: all environment variables.
         base: where Python finds modules without any PYTHONPATH, and whether that is there outside the sandbox.
         given: more globals of the program.
@@ -34,14 +34,14 @@ def emulate_start(
     code: CodeType | None = None
 
     def show(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-        while trace and trace.tb_frame.f_code is not code:  # what has called the program is no part of it
+        while trace and trace.tb_frame.f_code is not code:  # the callers of the program are not part of it
             trace = trace.tb_next
         sys.__excepthook__(kind, error.with_traceback(trace), trace)
 
     sys.excepthook = show
     loaded = os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
     os.environ.clear()
-    ctypes.CDLL(None).clearenv()  # libraries that were loaded have set some, of which `os` does not know
+    ctypes.CDLL(None).clearenv()  # loaded libraries have set some that `os` does not know
     os.environ.update(environment)
     words = [*command]
     while words[0] == "-W":
@@ -56,7 +56,7 @@ def emulate_start(
         source = file.read_bytes()
     _find_modules(command, folder, base)
     if numbers := sys.modules.get("numpy.random"):
-        numbers.seed()  # its global generator; Python's `random` gets a seed of its own at each fork
+        numbers.seed()  # its global generator; Python's `random` is seeded anew at each fork
     set_command_line([sys.executable, *command])
     sys.argv[:] = words
     sys.orig_argv[:] = [sys.executable, *command]
@@ -76,7 +76,7 @@ def forget(words: Iterable[str]) -> None:
 
 
 def set_command_line(words: Sequence[str]) -> None:
-    """Let /proc/self/cmdline say `words`, as much of them as there is room for."""
+    """Set /proc/self/cmdline to `words`, as far as they fit."""
     start, end = map(int, Path("/proc/self/stat").read_text().rpartition(")")[2].split()[_ARG_START:][:2])
     text = b"".join(os.fsencode(word) + b"\0" for word in words)[: end - start - 1]
     ctypes.memmove(start, text.ljust(end - start, b"\0"), end - start)
@@ -87,7 +87,7 @@ def _find_modules(command: Sequence[str], first: str, base: Mapping[str, bool]) 
 
     A program that would have another module than the one that is loaded is started instead.
     """
-    given = os.environ.get("PYTHONPATH")  # an empty part of which is the working folder
+    given = os.environ.get("PYTHONPATH")  # an empty part means the working folder
     modules = [*dict.fromkeys(str(Path(part).absolute()) for part in given.split(os.pathsep))] if given else []
     sys.modules.pop("sitecustomize", None)
     if _shadowed(modules):
@@ -101,7 +101,7 @@ def _find_modules(command: Sequence[str], first: str, base: Mapping[str, bool]) 
 
 
 def _shadowed(folders: Sequence[str]) -> bool:
-    """Return whether a folder has a module of its own that is called as one that is loaded from elsewhere."""
+    """Return whether a folder contains a module with the name of one that was loaded from elsewhere."""
     loaded = {name.partition(".")[0] for name in sys.modules}
     return any(
         (name := entry.name.partition(".")[0]) in loaded and _is_module(entry) and not _is_from(folder, name)

@@ -1,4 +1,4 @@
-"""What a fork server imports before it forks programs: one table.
+"""The table of modules that a fork server imports before it forks programs.
 
 A profile imports nothing that its programs would not import anyway. A student's program that lacks an import has to
 fail in the grader as it does elsewhere.
@@ -26,10 +26,10 @@ KINDS = ("generator_py", "typesupport_c", "typesupport_fastrtps_c", "typesupport
 
 @dataclass(frozen=True)
 class Profile:
-    """What is imported early for one kind of program."""
+    """The early imports for one kind of program."""
 
     load: Callable[[], None]  # imports it
-    forks: bool = False  # whether what such a program starts is forked, too (`children.py`)
+    forks: bool = False  # whether children of such a program are forked, too (`children.py`)
     own: tuple[str, ...] = ()  # first words of the names of packages that the programs it starts do not have
 
 
@@ -55,27 +55,27 @@ def _ros() -> None:
 
 
 def _lockstep() -> None:
-    """Import what the host of programs in lockstep imports."""
+    """Import the modules of the host that runs programs in lockstep."""
     _ros()
     _import("lockstep_host.host", folder=AUTOGRADER / "run" / "lockstep")
 
 
 def _tests() -> None:
-    """Import pytest, and what `import numpy` and `import rclpy` bring."""
+    """Import pytest, and the dependencies of numpy and rclpy."""
     _ros()
     _import("numpy", "rclpy", "pytest")
     _import(*(f"_pytest.{name}" for name in sys.modules["_pytest.config"].default_plugins))
 
 
 def _launch() -> None:
-    """Import the launch packages, the real ones or their stand-ins, and what the programs that are launched share."""
+    """Import the launch packages, real or stand-ins, and the common modules of launched programs."""
     _tests()
     names = ("launch_ros.actions", "launch_ros.substitutions", "launch.launch_description_sources")
     _import(*names, folder=AUTOGRADER / "ros" / "standins" if util.find_spec("launch") is None else None)
 
 
 def _colcon() -> None:
-    """Import what colcon imports to build Python packages, and what their setup.py imports."""
+    """Import the modules that colcon needs to build Python packages, and those of their setup.py."""
     # colcon looks for CMake when it is imported, and finds it in the sandbox there.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.prefix) / "bin"), "/usr/bin", "/bin"])
     _import("asyncio.subprocess", "setuptools", "distutils.core", "colcon_core.command")

@@ -1,6 +1,6 @@
-"""What the grader asks of a fork server: one program, as data that crosses a socket.
+"""The request to a fork server: one program, as data that crosses a socket.
 
-The server answers twice, with the program's process id and with "entered"; or once, with why it has "failed".
+The server answers with the program's process id and then "entered", or with the reason why it has "failed".
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ FORBIDDEN = {
     **{"add_key": 248, "request_key": 249, "keyctl": 250},
     # other processes
     **{"ptrace": 101, "process_vm_readv": 310, "process_vm_writev": 311, "kcmp": 312, "pidfd_getfd": 438},
-    # namespaces and mounts; clone3 hides from a filter what it is to make, and the C library does without it
+    # namespaces and mounts; a filter cannot see the flags of clone3, and the C library works without it
     **{"clone3": 435, "unshare": 272, "setns": 308, "mount": 165, "umount2": 166, "pivot_root": 155, "chroot": 161},
     **{"open_tree": 428, "move_mount": 429, "fsopen": 430, "fspick": 433},
     # parts of the kernel that no node needs

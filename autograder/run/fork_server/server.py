@@ -28,15 +28,15 @@ from autograder.run.fork_server.request import MAX_BYTES, MAX_FDS, ForkRequest
 
 
 def main() -> Program:
-    """Serve until there are no more requests; return in the process of a program only, with what it is to run."""
+    """Serve until the requests end. Return only in the process of a program, with its request."""
     atexit.register(_release)  # the first that is registered is called last
     del sys.path[0]  # the working folder, which -m adds
     requests, profile = socket.socket(fileno=int(sys.argv[1])), PROFILES[sys.argv[2]]
     given = {str(Path(part).absolute()) for part in os.environ.get("PYTHONPATH", "").split(os.pathsep)}
     before = [path for path in sys.path if path not in given]
-    gc.disable()  # nothing of what is imported is garbage
+    gc.disable()  # imported objects are never garbage
     profile.load()
-    gc.freeze()  # no program looks through what all share, which would copy it
+    gc.freeze()  # so that no collection touches shared pages, which would copy them
     gc.enable()
     added = [path for path in sys.path if path not in before and path.startswith(sys.prefix)]  # by setuptools
     base = {path: Path(path).exists() for path in (*before, *added)}
@@ -47,14 +47,14 @@ def main() -> Program:
 
 
 def _release() -> None:
-    """Let go of what a program has opened and rclpy's globals hold: nobody takes apart what all programs share."""
+    """Close the files of a program and release rclpy's globals, without finalizing objects that all programs share."""
     for module, name in (("rclpy", "__executor"), ("rclpy.utilities", "g_default_context")):
         if module in sys.modules:
             setattr(sys.modules[module], name, None)
 
 
 def serve(requests: socket.socket) -> ForkRequest:
-    """Fork for each request, and end when there are no more; return in the process of a program, with its request.
+    """Fork for each request until they end. Return only in the process of a program, with its request.
 
     A request is received by the child that it is for: a program finds nothing of earlier ones in its memory.
     """

@@ -19,7 +19,7 @@ from autograder.run.sandbox.limits import (
 )
 from autograder.run.sandbox.spec import Mount, Sandbox, View
 
-# Of /etc, only what the dynamic linker, compilers and fonts read: no accounts, no keys, no host's own settings.
+# Of /etc, only the files for the dynamic linker, compilers and fonts: no accounts, keys or settings of this machine.
 _ETC = ("alternatives", "fonts", "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "localtime", "magic")
 _SYSTEM = ("bin", "lib", "lib32", "lib64", "sbin")
 # The kernel counts these for each user of the machine. A user namespace has a limit of its own, which its sandboxes
@@ -61,14 +61,14 @@ def worker_sandbox(
     /proc below another one's if the outer one's user is not root, who alone gets parts of /proc covered.
 
     Args:
-        command: what is run in it.
-        view: what it sees beyond the system and the grader's own code.
+        command: the command to run.
+        view: what it sees in addition to the system and the grader.
         scratch: the folder that is a file system in memory, of `limits.WORKER_SCRATCH` bytes.
         user: the user to become, for root; None leaves the user as it is.
         groups: folders of control groups in which the worker sandbox makes those of its sandboxes.
     """
     apart = ("--unshare-user", "--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts")
-    # As process 1, for bubblewrap's own would be left unwaited for, and its processor time would count for nobody.
+    # As process 1, because bubblewrap's own would never be waited for, and its processor time would not be counted.
     own_proc = (
         *apart,
         "--as-pid-1",
@@ -92,7 +92,7 @@ def worker_sandbox(
 
 
 def becoming(user: int) -> list[str]:
-    """Return what root puts before a command that is to run as another user."""
+    """Return the words before a command that root runs as another user."""
     return ["setpriv", f"--reuid={user}", f"--regid={user}", "--clear-groups", "--no-new-privs", "--pdeathsig=KILL"]
 
 
@@ -129,7 +129,7 @@ def _grader() -> tuple[Path, ...]:
     code = (layout.ROOT / "autograder", layout.ROOT / "sim", layout.SHARED_WORLDS)
     try:
         ros = find()
-    except RosError:  # whoever needs it says so
+    except RosError:  # only for sandboxes that ask for it
         return (*code, *course)
     return (*code, *course, *(ros.prefixes if ros.kind == "sourced" else ()))
 
@@ -138,7 +138,7 @@ def sandbox(command: list[str], spec: Sandbox, filter_fd: int | None, status_fd:
     """Return the command line that runs `command` in the sandbox that `spec` describes.
 
     Args:
-        command: what is run in it.
+        command: the command to run.
         spec: the sandbox.
         filter_fd: a descriptor from which bubblewrap reads the filter of system calls; None for a trial without.
         status_fd: a descriptor to which bubblewrap writes how the command ended; the command does not inherit it.
@@ -151,7 +151,7 @@ def sandbox(command: list[str], spec: Sandbox, filter_fd: int | None, status_fd:
         *(() if spec.network else ("--unshare-net",)),
         *("--hostname", "robot"),
         *_system(),
-        # Read-only, for settings of the kernel that the machine's root owns, and anybody can write to.
+        # Read-only, because some kernel settings of root are writable for everybody.
         *("--dev", "/dev", "--proc", "/proc", "--remount-ro", "/proc"),
         *("--size", str(spec.limits.scratch), "--tmpfs", "/dev/shm"),
         *("--size", str(spec.limits.scratch), "--tmpfs", "/tmp"),
@@ -171,7 +171,7 @@ def sandbox(command: list[str], spec: Sandbox, filter_fd: int | None, status_fd:
 
 
 def python_mounts() -> tuple[Path, ...]:
-    """Return the folders of the Python that runs the grader, where they lie outside the system's own."""
+    """Return the folders of the grader's Python outside the system folders."""
     folders = {Path(sys.prefix), Path(sys.base_prefix)}
     return tuple(sorted(folder for folder in folders if not folder.is_relative_to("/usr")))
 
@@ -192,8 +192,8 @@ def _system() -> list[str]:
 
 
 def _private_folders() -> tuple[Path, ...]:
-    """Return what is covered wherever a mount would show it: the sources of notebooks hold the answers, too.
+    """Return the paths that are hidden in every mount. The sources of notebooks also contain answers.
 
-    An installed course lies inside the Python that every sandbox sees.
+    An installed course is inside the Python that every sandbox sees.
     """
     return *layout.check_folders(), layout.SOLUTIONS, layout.CHAPTERS

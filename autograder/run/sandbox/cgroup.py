@@ -26,7 +26,7 @@ _LEAF = "worker"
 _CLOSE_SECONDS = 5.0
 _TICK = 0.005
 _STALE = 3600.0  # s after which an empty group was left by a grader that was killed
-# A shell that joins the groups before `--`, and becomes the command behind it.
+# A shell that joins the groups before `--`, and then executes the command after it.
 _ENTER = 'while [ "$1" != -- ]; do echo $$ > "$1"/cgroup.procs || exit 1; shift; done; shift; exec "$@"'
 
 
@@ -59,9 +59,9 @@ class ControlGroup:
         return any(line.split()[0] == "oom_kill" and line.split()[1] != "0" for line in events.splitlines())
 
     def close(self) -> None:
-        """Kill what is left of the group, and remove it; one that is not empty after 5 s is left to a later `make`."""
+        """Kill the rest of the group, and remove it. If it is not empty after 5 s, a later `make` removes it."""
         with contextlib.suppress(OSError, KeyError):
-            (self.by_controller["pids"] / "pids.max").write_text("0")  # who is about to die has no more children
+            (self.by_controller["pids"] / "pids.max").write_text("0")  # a dying process has no more children
         deadline = time.monotonic() + _CLOSE_SECONDS
         for folder in self.folders:
             while not _removed(folder) and time.monotonic() < deadline:
@@ -99,7 +99,7 @@ def make(limits: Limits) -> ControlGroup:
 
 
 def make_nested(limits: Limits, user: int | None) -> ControlGroup:
-    """Return a new group in which its processes make groups for what they start; `user` is who they are, if not this.
+    """Return a new group in which its processes create groups for their children. `user` runs them, if not this user.
 
     The bounds of the new group stay out of their reach.
     """
@@ -120,7 +120,7 @@ def make_nested(limits: Limits, user: int | None) -> ControlGroup:
 
 
 def bounds() -> frozenset[str]:
-    """Return what this machine bounds for all processes of a sandbox of this user together: pids, memory."""
+    """Return which resources this machine can limit for all processes of a sandbox together: pids, memory."""
     group = make(Limits())
     group.close()
     return frozenset(group.by_controller) | ({"pids"} if os.geteuid() != 0 else set())
@@ -175,7 +175,7 @@ def _own(cgroups: str, controller: str) -> str:
 
 
 def _below(mount: Path, root: Path, group: str) -> Path:
-    """Return where a group stands below a mount that shows `root`, or the mount itself if it does not show it."""
+    """Return the path of a group below a mount that shows `root`, or the mount itself if the mount does not show it."""
     return mount / Path(group).relative_to(root) if Path(group).is_relative_to(root) else mount
 
 

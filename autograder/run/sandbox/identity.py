@@ -20,7 +20,7 @@ _USERS = range(47_000, 48_000)
 
 @contextmanager
 def ordinary_user() -> Iterator[int | None]:
-    """Claim a user for as long as the block lasts; None where this process is no root, and needs none.
+    """Claim a user for the duration of the block, or yield None if this process is not root.
 
     A claim is a socket of the operating system's, which ends with its process.
 

@@ -24,7 +24,7 @@ class Isolation(str, Enum):
     """How strongly students' code is isolated. Every result contains the name.
 
     `bubblewrap`: own process, mount, ipc, user and network namespaces.
-    `process`: only a process tree with limits. Students' code can read what the grader's user can read.
+    `process`: only a process tree with limits. Students' code can read everything that the grader's user can read.
     """
 
     BUBBLEWRAP = "bubblewrap"

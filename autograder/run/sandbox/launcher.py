@@ -41,7 +41,7 @@ def current_isolation() -> Isolation:
 
 
 def restore_sigint() -> None:
-    """Let SIGINT end what this process will start; call it in the main thread.
+    """Let SIGINT end the processes that this one will start; call it in the main thread.
 
     A shell's background job ignores SIGINT, and all its descendants inherit that: the same node would end on Ctrl-C
     when it is graded in the foreground, and not when it is graded in the background.
@@ -54,13 +54,13 @@ def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = (),
     """Start `command` in the sandbox that `spec` describes, as strongly as the current isolation level allows.
 
     Args:
-        command: what is run.
+        command: the command to run.
         spec: the sandbox.
         pass_fds: descriptors that it inherits.
         profile: for a Python script, what its interpreter has imported before (`fork_server.profiles`).
 
     Raises:
-        StudentError: the grading has no time left for programs. What runs when the time is over is stopped.
+        StudentError: the grading has no time left for programs. Running ones are stopped at that moment.
     """
     patience.require()
     limits = replace(spec.limits, wall_seconds=patience.bounded(spec.limits.wall_seconds))
@@ -73,7 +73,7 @@ def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = (),
 
 
 def warm_up(profile: str) -> None:
-    """Let the fork server of a profile begin its imports, if there is none yet."""
+    """Start the fork server of a profile, if it is not running, so that it begins its imports."""
     with _lock:
         if profile not in _servers:
             kept = {name: os.environ[name] for name in _SEARCHED if name in os.environ}

@@ -1,4 +1,4 @@
-"""What each kind of program may use. Every limit of time, memory and size on a process tree stands here."""
+"""The resource limits of each kind of program. Every limit of time, memory and size on a process tree is here."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class TreeLimits:
 NODE = Limits(wall_seconds=600.0)
 # Processor time bounds a build, and does not depend on the machine's load; the wall time is for a build that waits.
 BUILD = Limits(wall_seconds=420.0, cpu_seconds=180, memory=2 * GIB, output=4 * MIB, scratch=256 * MIB)
-# `colcon test` with a student's tests. Tests that never end are run twice, and both have to fit into a worker sandbox.
+# `colcon test` with a student's tests. Endless tests are run a second time, and both runs have to fit.
 COLCON_TEST = replace(BUILD, wall_seconds=150.0)
 # The submitted notebook's kernel.
 KERNEL = Limits(wall_seconds=180.0, cpu_seconds=180, memory=2 * GIB, output=4 * MIB, scratch=256 * MIB)
@@ -72,8 +72,8 @@ INOTIFY_INSTANCES = 16  # of a whole worker sandbox; the kernel gives a user of 
 INOTIFY_WATCHES = 4096  # of a whole worker sandbox
 SIGNALS = 1024  # queued to each sandbox; the kernel counts them for the machine's user, too
 INSTALLED = TreeLimits()  # an install space after a build, which is copied for each grading, and kept
-# The same with what is noted of it, on its way from who built it to who keeps it and to who asked.
+# The same with its note, on the way from the builder to the cache and to the worker.
 KEPT = TreeLimits(names=5002, size=65 * MIB, depth=33, path=1088, paths=2 * MIB)
 SOURCES = TreeLimits(names=2000, size=16 * MIB)  # the interface packages of a submission
-RESULT_FILES = TreeLimits(names=200, depth=1)  # what a worker leaves: the result, its notebook, the pictures
-MESSAGE = 4 * MIB  # bytes of one message from a worker to who started it, but for a list of files
+RESULT_FILES = TreeLimits(names=200, depth=1)  # the files that a worker leaves: the result, its notebook, the pictures
+MESSAGE = 4 * MIB  # bytes of one message from a worker, except a list of files

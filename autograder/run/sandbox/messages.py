@@ -54,10 +54,10 @@ def send_tree(line: Connection, tree: Mapping[Entry, bytes]) -> None:
 
 
 def receive_tree(line: Connection, limits: TreeLimits) -> dict[Entry, bytes]:
-    """Receive a tree: what is in each file, and where each link leads.
+    """Receive a tree: the content of each file, and the target of each link.
 
     Raises:
-        MessageError: it breaks the limits, has a path that leads out of it, or is not what its list says.
+        MessageError: it exceeds the limits, has a path that leads out of it, or differs from its list.
         EOFError: the sender is gone.
     """
     try:

@@ -23,7 +23,7 @@ _TICK = 0.1  # s between two looks at the clock while the process is silent
 _MEASURE = 0.25  # s between two measurements of the tree
 _REPORT = 4096  # bytes; bubblewrap's report has some hundred
 _EXIT = b'"exit-code"'  # in the report of a command that was run
-_MANY = 8  # at least so many processes fill the memory together: then it is their number, not what one of them holds
+_MANY = 8  # if at least this many processes fill the memory together, their number is the cause
 
 
 class ExitReason(str, Enum):
@@ -39,13 +39,13 @@ class ExitReason(str, Enum):
 
 
 class Process:
-    """A started command, watched by a thread of its own until it has ended.
+    """A started command, watched by a separate thread until it ends.
 
-    Use it as a context manager: leaving the block kills what is still alive.
+    Use it as a context manager: leaving the block kills the remaining processes.
 
     Args:
-        command: what is run.
-        limits: what its tree may use.
+        command: the command to run.
+        limits: the resource limits of its tree.
         environment: its environment variables; the present ones when not given.
         pass_fds: descriptors that it inherits, beside its standard streams.
         cwd: its working folder; the present one when not given.
@@ -53,9 +53,9 @@ class Process:
         group: a control group that the command enters, closed after its end; leaving the block waits for it.
         writable: folders as it sees them, on whose file systems `Limits.files` more files may come.
         stdin: its standard input.
-        is_placeholder: the command stands in for a program that is adopted later; the time counts from then.
+        is_placeholder: the command is replaced by a program that is adopted later; time counts from then.
         status: a descriptor from which bubblewrap's report is read, and that is closed at the end. It names the exit
-            status of what ran, or nothing if the sandbox could not be made.
+            status of the command, or nothing if the sandbox could not be made.
 
     Raises:
         GraderError: in `wait`, `exit_reason` and `returncode`, if the sandbox could not be made. The student's
@@ -111,12 +111,12 @@ class Process:
 
     @property
     def output(self) -> str:
-        """What it has written so far, at most `Limits.output` bytes; bytes that are no UTF-8 are replaced."""
+        """The output so far, at most `Limits.output` bytes. Bytes that are not UTF-8 are replaced."""
         return self.written(0).decode("utf-8", errors="replace")
 
     def written(self, start: int) -> bytes:
-        """Return what it has written so far, from the byte number `start` on."""
-        self._read()  # the watcher may not have come to what is in the pipe by now
+        """Return the output so far, from the byte number `start` on."""
+        self._read()  # the watcher may not have read the pipe yet
         with self._lock:
             return bytes(self._output[start:])
 
@@ -233,7 +233,7 @@ class Process:
                         self._end(ExitReason.FILES)
                     else:
                         files = min(files, now_there)
-            # What was written just before the end; a grandchild may hold the pipe open, so only what is there.
+            # The last output before the end. A grandchild may hold the pipe open, so read only the available bytes.
             while open_stream and selector.select(0):
                 open_stream = self._read()
         with self._lock:
@@ -255,7 +255,7 @@ class Process:
         return self._group is not None and self._group.ran_out()
 
     def _read(self) -> bool:
-        """Take in what is in the pipe, all that it can hold; return whether more may come."""
+        """Read all available bytes of the pipe; return whether more may come."""
         assert self._popen.stdout is not None
         with self._lock:
             if self._popen.stdout.closed:

@@ -1,4 +1,4 @@
-"""What the kernel tells of processes in /proc, see proc(5)."""
+"""Reads the kernel's data about processes in /proc, see proc(5)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ TICK = 1.0 / _TICKS_A_SECOND  # s
 
 @dataclass(frozen=True)
 class Tree:
-    """What a process and its descendants use right now."""
+    """The current resource use of a process and its descendants."""
 
     pids: tuple[int, ...]
     threads: int
@@ -94,7 +94,7 @@ def children(pid: int) -> list[int]:
 
 
 def name(pid: int) -> str:
-    """Return what a process runs, at most 15 characters of it; nothing if it is gone."""
+    """Return the name of a process's program, at most 15 characters; empty if it has ended."""
     try:
         return _read(f"/proc/{pid}/comm").decode(errors="replace").strip()
     except OSError:
@@ -110,7 +110,7 @@ def _started_by(pid: int, task: int | str) -> list[int]:
 
 
 def _stat(pid: int) -> list[bytes]:
-    """Return the fields of a process behind its name, the third field of proc_pid_stat(5) first."""
+    """Return the fields of a process after its name, the third field of proc_pid_stat(5) first."""
     return _read(f"/proc/{pid}/stat").rpartition(b")")[2].split()
 
 

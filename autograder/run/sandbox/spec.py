@@ -1,4 +1,4 @@
-"""What a sandbox shows to the code in it: a description, no effects."""
+"""The description of a sandbox: what the code in it sees. No effects."""
 
 from __future__ import annotations
 
@@ -33,20 +33,20 @@ class View:
     """The part of the machine that a worker sandbox sees, besides the system, the grader and its scratch folder."""
 
     shown: tuple[Path, ...] = ()  # folders and files that it reads; they are read-only
-    # What was handed in. A worker of root's is another user, and may be unable to read it: it gets a copy.
+    # The submission. Root's worker runs as another user, and may be unable to read it: it gets a copy.
     submitted: tuple[Path, ...] = ()
     writable: tuple[Path, ...] = ()  # folders that it writes to
-    copies: Mapping[Path, Path] = field(default_factory=dict)  # what is shown in the place of a path, if not itself
+    copies: Mapping[Path, Path] = field(default_factory=dict)  # the path to show in the place of another one
 
 
 @dataclass(frozen=True)
 class Sandbox:
-    """One sandbox: what is seen, what may be used, with which environment."""
+    """One sandbox: visible files, resource limits and environment."""
 
-    workdir: Path  # the working folder; it must lie in a mount
+    workdir: Path  # the working folder, inside a mount
     # Beyond the read-only system and the grader's Python; suites and solutions in them are covered.
     mounts: tuple[Mount, ...] = ()
     # All environment variables that the code gets, nothing is inherited.
     environment: Mapping[str, str] = field(default_factory=dict)
     network: bool = False  # True: the loopback of the worker sandbox, to reach the grader over DDS; False: none
-    limits: Limits = NODE  # what the tree may use
+    limits: Limits = NODE  # the resource limits of the tree

@@ -17,12 +17,12 @@ from autograder.run.sandbox.limits import MIB, TreeLimits
 
 Ignored = Callable[[Sequence[str]], Container[str]]
 _CHUNK = 1 << 20
-_CHANGED = (errno.ENOENT, errno.ENOTDIR, errno.ELOOP, errno.ENXIO)  # something else than what was seen is there now
+_CHANGED = (errno.ENOENT, errno.ENOTDIR, errno.ELOOP, errno.ENXIO)  # the file was replaced after it was listed
 _UNFOLLOWED = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
 
 
 class TreeError(Exception):
-    """A tree breaks a limit, or holds what is neither a file, a folder nor a link inside; the message says what."""
+    """A tree exceeds a limit, or contains something except files, folders and inner links. The message says what."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Entry:
 
 
 def survey(root: Path, limits: TreeLimits) -> tuple[Entry, ...]:
-    """List a tree, folders before what is in them; nothing of it is opened.
+    """List a tree, folders before their content, without opening any file.
 
     Raises:
         TreeError: it is larger than `limits`, nested deeper, or holds a device, a FIFO, a socket, or a link that leads
@@ -61,10 +61,10 @@ def survey(root: Path, limits: TreeLimits) -> tuple[Entry, ...]:
 
 
 def read_tree(root: Path, limits: TreeLimits) -> dict[Entry, bytes]:
-    """Read all of a tree: what is in each file, and where each link leads, which is relative to its folder.
+    """Read a whole tree: the content of each file, and the target of each link, relative to its folder.
 
     Raises:
-        TreeError: as `survey` does, or it holds what cannot be read.
+        TreeError: as in `survey`, or it contains an unreadable file.
     """
     try:
         read = ((entry, _read(root / entry.path, entry)) for entry in survey(root, limits))
@@ -139,7 +139,7 @@ def _read_file(path: Path, size: int) -> bytes:
 
 
 def copy_unread(source: Path, target: Path, limits: TreeLimits, ignored: Ignored) -> None:
-    """Copy what was handed in, for a reader that may not reach it; nothing is followed or looked into.
+    """Copy a submission for a reader that may not reach it, without following links or reading archives.
 
     The copy is refused for the same reasons as the original. Links stay links, devices and pipes become pipes. Of what
     is larger than `limits`, the size is kept and not the content: the reader sees that it is too large. `ignored` says
@@ -220,7 +220,7 @@ def _copy_file(pair: _Pair, left: _Left) -> None:
 
 @contextmanager
 def _opened_unfollowed(folder: Path) -> Iterator[int]:
-    """Open a folder by an absolute path, no part of which is followed if it is a link."""
+    """Open a folder by an absolute path, without following links."""
     with ExitStack() as stack:
         descriptor = stack.enter_context(_opened(folder.anchor or "."))
         for part in folder.relative_to(folder.anchor).parts:

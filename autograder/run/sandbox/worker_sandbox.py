@@ -39,7 +39,7 @@ _YOUNG = 60.0  # s in which a folder that was just made gets its lock
 
 @dataclass(frozen=True)
 class WorkerReport:
-    """How a worker ended, what it wrote to stdout and stderr, and the files that it left."""
+    """The exit reason of a worker, its output on stdout and stderr, and the files that it left."""
 
     exit_reason: ExitReason
     returncode: int
@@ -135,7 +135,7 @@ def place_of(path: Path, isolation: Isolation, scratch: Path) -> Path:
 
 
 def _reachable(view: View, scratch: Path, user: int) -> View:
-    """Return a view of which a user can read what was handed in, and write to what is writable."""
+    """Return a view in which a user can read the submission and write to the writable folders."""
     copies = {path: scratch / "submitted" / f"{number}" for number, path in enumerate(view.submitted)}
     for path, copy in copies.items():
         copy.parent.mkdir(exist_ok=True)
@@ -146,7 +146,7 @@ def _reachable(view: View, scratch: Path, user: int) -> View:
 
 
 def copy_submission(path: Path, copy: Path) -> None:
-    """Copy what was handed in, for intake to read it as it would read the original."""
+    """Copy a submission so that intake reads it like the original."""
     copy_unread(path, copy, _SUBMITTED, lambda names: {*filter(is_ignored, names), *environment_parts(names)})
 
 
