@@ -92,7 +92,7 @@ def _mutant(assignment: str, mutant: Mutant, sources: tuple[str, ...], only: tup
 def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
     """Yield correct answers in other styles: the reference with some files replaced."""
     folder = suites.hidden(assignment).folder / "variants"
-    for variant in sorted(folder.iterdir()) if folder.is_dir() else ():
+    for variant in sorted(path for path in folder.glob("*") if path.is_dir()):
 
         def write(target: Path, variant: Path = variant) -> None:
             write_reference(sources, target)

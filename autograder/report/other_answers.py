@@ -1,0 +1,65 @@
+"""Other good answers to an assignment: the variants that students with full marks may see, and what differs in them.
+
+`variants/shown.yaml` in a chapter's checks names them, each with a text that says what differs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import dropwhile
+from pathlib import Path
+
+import yaml
+
+from autograder import layout
+from autograder.exceptions import UsageError
+
+SHOWN = "shown.yaml"
+
+
+@dataclass(frozen=True)
+class OtherAnswer:
+    """A correct answer in another style.
+
+    Attributes:
+        differs: what differs from the answer of most students, in some sentences.
+        files: the path and the text of each file that it writes in its own way.
+    """
+
+    differs: str
+    files: tuple[tuple[str, str], ...]
+
+
+def other_answers(assignment: str) -> tuple[OtherAnswer, ...]:
+    """Return the other answers to an assignment, in the order of `shown.yaml`.
+
+    Raises:
+        UsageError: there are none, or `shown.yaml` names a variant that does not exist.
+    """
+    folder = layout.CHECKS / f"ch{assignment}" / "variants"
+    path = folder / SHOWN
+    try:
+        texts = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except OSError:
+        raise UsageError(f"{assignment} has no other answers to show: there is no {path}") from None
+    except (ValueError, yaml.YAMLError) as error:
+        raise UsageError(f"{path} cannot be read as YAML: {error}") from None
+    if not isinstance(texts, dict) or not all(isinstance(text, str) for pair in texts.items() for text in pair):
+        raise UsageError(f"{path}: write the name of a variant, a colon and what differs in it, for each variant")
+    return tuple(_answer(folder, name, differs) for name, differs in texts.items())
+
+
+def _answer(folder: Path, name: str, differs: str) -> OtherAnswer:
+    known = sorted(variant.name for variant in folder.iterdir() if variant.is_dir())
+    if name not in known:
+        raise UsageError(f"{folder / SHOWN} names {name!r}, and there is no such variant: {', '.join(known)}")
+    paths = sorted(path for path in (folder / name).rglob("*") if path.is_file())
+    return OtherAnswer(differs, tuple((path.relative_to(folder / name).as_posix(), _text(path)) for path in paths))
+
+
+def _text(path: Path) -> str:
+    """Return the text of a file; of a Python file, without the licence at its head."""
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    if path.suffix == ".py":
+        lines = list(dropwhile(lambda line: line.startswith("#") or not line.strip(), lines))
+    return "".join(lines)

@@ -1,0 +1,69 @@
+"""Students with full marks get other good answers, and nobody else does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from autograder import layout
+from autograder.exceptions import UsageError
+from autograder.report.export import write
+from autograder.report.other_answers import SHOWN, other_answers
+from autograder.result.model import Result
+from autograder.suite import suites
+
+MakeResult = Callable[..., Result]
+
+
+@pytest.mark.promise(
+    "autograder export results --format other_answers --out pages` writes a page with two other good answers"
+)
+def test_a_page_is_written_for_full_marks_only(
+    make_result: MakeResult, broken_result: Result, ungraded_result: Result, tmp_path: Path
+) -> None:
+    less = make_result()
+    assert less.score < less.max_score
+    checks = tuple(replace(check, points=check.max_points) for check in less.checks)
+    full = replace(less, student="dora", checks=checks)
+    assert full.score == full.max_score
+    out = write([less, broken_result, ungraded_result, full], "other_answers", tmp_path / "out")
+    (page,) = (path for path in out.rglob("*") if path.is_file())
+    assert page == out / "dora" / "other_answers.html"
+    html = page.read_text(encoding="utf-8")
+    assert html.count("<h2>Answer ") == 2
+    assert "class State(Enum):" in html
+    assert "numpy judges all beams at once" in html
+    assert "dora" not in html
+
+
+@pytest.mark.parametrize("assignment", suites.graded_assignments())
+def test_each_graded_chapter_shows_two_answers_with_what_differs(assignment: str) -> None:
+    answers = other_answers(assignment)
+    assert len(answers) == 2
+    assert all(len(answer.differs.split()) > 10 and answer.files for answer in answers)
+    assert not any("Licensed under" in text for answer in answers for path, text in answer.files if path[-3:] == ".py")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (None, "02_nodes has no other answers to show: there is no .*shown.yaml"),
+        ("[states", "cannot be read as YAML"),
+        ("states\n", "write the name of a variant, a colon and what differs in it"),
+        ("states: 3\n", "write the name of a variant, a colon and what differs in it"),
+        ("stats: It has states.\n", "names 'stats', and there is no such variant: states"),
+    ],
+)
+def test_a_slip_in_the_list_is_named(
+    text: str | None, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    variants = tmp_path / "ch02_nodes" / "variants"
+    (variants / "states").mkdir(parents=True)
+    if text is not None:
+        (variants / SHOWN).write_text(text)
+    monkeypatch.setattr(layout, "CHECKS", tmp_path)
+    with pytest.raises(UsageError, match=message):
+        other_answers("02_nodes")
