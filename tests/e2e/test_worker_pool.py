@@ -21,12 +21,13 @@ from autograder.grade.job import WHOLE_SUITE, Job, Options
 from autograder.grade.pipeline import RunJob, in_own_sandbox
 from autograder.grade.store import LOG
 from autograder.result.model import Result, Status
-from autograder.run.sandbox import Isolation
+from autograder.run.sandbox import Isolation, procfs
+from autograder.suite import Outcome
 
 ASSIGNMENT = "02_nodes"
 PACKAGE = "my_robot_package"
 Servers = Callable[[], list[int]]
-SOME = Options(only=("starts", "node_name", "publishes_cmd_vel", "threshold"))
+SOME = Options(only=("starts", "node_name", "subscribes_scan", "publishes_cmd_vel", "threshold"))
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +85,30 @@ def test_a_shared_sandbox_gives_the_same_results_as_one_for_each_submission(
     assert [_verdicts(result) for result in shared] == [_verdicts(alone[number]) for number in (0, 1, 0)]
     for shared_one, own in zip(shared, alone, strict=False):
         assert (shared_one.suite_version, shared_one.files_digest) == (own.suite_version, own.files_digest)
+    assert {check.outcome for check in shared[0].checks if check.id in SOME.only} == {Outcome.PASSED}
     assert shared[1].diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
+
+
+def _zombies(pid: int) -> list[int]:
+    """Return the ended processes below a process that the fork server of the verification did not wait for."""
+    zombies = []
+    for child in procfs.children(pid):
+        with contextlib.suppress(OSError):
+            ended = Path(f"/proc/{child}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+            by_server = "autograder.author.verification" in Path(f"/proc/{pid}/cmdline").read_text()
+            zombies += [child] if ended and by_server else _zombies(child)
+    return zombies
+
+
+def test_a_worker_waits_for_the_processes_that_earlier_submissions_left(
+    reference: Path, half: Path, servers: Servers, tmp_path: Path
+) -> None:
+    with WorkerPool(Isolation.BUBBLEWRAP, 1) as workers:
+        _grade(reference, tmp_path / "reference", workers, SOME)
+        (server,) = servers()
+        left = _zombies(server)
+        _grade(half, tmp_path / "half", workers)
+        assert set(left).isdisjoint(_zombies(server))
 
 
 def test_a_worker_can_be_used_after_the_thread_that_used_it_first_has_ended(

@@ -43,6 +43,7 @@ def serve(scratch: Path, client: Connection) -> None:
             line.take(client)
             _work(job, log_file)
         _, status = os.waitpid(child, 0)
+        _reap_orphans()
         output = log_file.read_bytes()[-OUTPUT:].decode("utf-8", errors="replace") if log_file.is_file() else ""
         reply = {"do": "done", "status": os.waitstatus_to_exitcode(status), "output": output}
         for left in scratch.iterdir():
@@ -65,6 +66,13 @@ def _work(job: Job, log_file: Path) -> None:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)
+
+
+def _reap_orphans() -> None:
+    """Remove the exited processes that a child left. This server is process 1 in its sandbox, so it is their parent."""
+    with suppress(ChildProcessError):
+        while os.waitpid(-1, os.WNOHANG) != (0, 0):
+            pass
 
 
 def main() -> None:
