@@ -1,1 +1,1 @@
-"""What authors and instructors do with a course: keep it in sync, verify its grader, release it."""
+"""Tools for the authors and instructors of a course: keep it in sync, verify its grader, release it."""

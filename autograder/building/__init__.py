@@ -1,5 +1,5 @@
-"""Building: a student's packages by colcon, in a sandbox that has no network.
+"""Builds a student's packages with colcon, in a sandbox without a network.
 
-`build` builds what a suite wants, and tells checks what became of each package where a failed build does not end the
-grading. `interface_bundle` takes a submission's message packages from the cache of builds.
+`build` builds the packages that a suite requires, and reports the outcome of each package to checks if a failed build
+does not end the grading. `interface_bundle` takes a submission's message packages from the cache of builds.
 """

@@ -76,12 +76,12 @@ def build(workspace: Workspace, required: tuple[str, ...], *, whole: bool = Fals
 def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail: bool = False) -> BuildOutcome:
     """Build packages of a workspace.
 
-    Where a build may fail, and does, each package is built by itself, so that one's error is not the other's. Colcon
-    alone judges then whether a package is whole.
+    If a build may fail, and does, each package is built separately, so that an error in one does not affect another.
+    Then colcon alone decides whether a package is complete.
 
     Raises:
-        StudentError: one is missing or does not build, and may not; a limit ended a build; or the build left what must
-            not be looked at.
+        StudentError: a required package is missing or does not build; a limit ended a build; or the build left files
+            that must not be read.
     """
     source = workspace.root / "src"
     try:

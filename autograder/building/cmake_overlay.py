@@ -1,10 +1,10 @@
-"""A CMake overlay with which interface packages build in half the time, their CMakeLists.txt as it is.
+"""A CMake overlay that halves the build time of interface packages without changes to their CMakeLists.txt.
 
-It stands before ROS in CMAKE_PREFIX_PATH and holds a Config file for each of rosidl's generators, which reads the real
-one. What it changes is how the build goes about it, and not what it says or installs for Python nodes:
+It precedes ROS in CMAKE_PREFIX_PATH and contains a Config file for each of rosidl's generators, which reads the real
+one. It changes the steps of the build, but not its messages or the files that it installs for Python nodes:
 
 - the C++ generators, which no Python node needs, are left out of `rosidl_generate_interfaces`;
-- what the others generate is compiled a library at a time: nearly all the time goes into headers that the files share.
+- the output of the others is compiled one library at a time: common headers take nearly all of the time.
 """
 
 from __future__ import annotations

@@ -47,8 +47,8 @@ def colcon_build(workspace: Workspace, folders: Iterable[Path], *choice: str) ->
     options for choosing among them.
 
     Raises:
-        StudentError: it did not build, or what it left is not contained; the detail holds the end of the output. If
-            a limit ended the build, it is a StoppedBuildError.
+        StudentError: it did not build, or its files are not contained; the detail has the end of the output. If a limit
+            ended the build, it is a StoppedBuildError.
     """
     with workspace.apart() as folder:
         overlay = cmake_overlay.write_overlay(workspace.ros.prefixes, folder / "cmake-overlay")

@@ -1,9 +1,9 @@
-"""colcon in a sandbox.
+"""Runs colcon in a sandbox.
 
     python colcon_runner.py ARGUMENTS-OF-COLCON
 
-To build one Python package, colcon starts Python three times for its setup.py, and most of what those do is to import
-setuptools. Where this process was forked, they are forked, too.
+To build one Python package, colcon starts Python three times for its setup.py, mostly to import setuptools. If this
+process was forked, they are forked, too.
 """
 
 from __future__ import annotations

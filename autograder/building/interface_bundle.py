@@ -1,8 +1,8 @@
-"""A submission's interface packages as one bundle: built alone by colcon, and kept for whoever brings the same ones.
+"""A submission's interface packages as one bundle: built separately by colcon, and kept for equal submissions.
 
-Building messages takes ten times as long as building nodes, and most of a class brings the same messages. The bundle is
-built in a workspace of its own, so what is kept depends on nothing but the content that it is kept under. What
-student's build files made is used in sandboxes only. `keeper` keeps it; a worker has no cache of its own.
+Building messages takes ten times as long as building nodes, and most of a class has the same messages. The bundle is
+built in a separate workspace, so a cache entry depends only on the content that is its key. The output of students'
+build files is used only in sandboxes. `keeper` keeps the bundles; a worker has no cache.
 """
 
 from __future__ import annotations

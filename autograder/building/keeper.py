@@ -1,9 +1,9 @@
-"""What outlives a grading, on the side of who started the worker: built interface packages, for all who bring them.
+"""Keeps built interface packages for later gradings, in the process that started the worker.
 
-A worker cannot write to the cache. It sends sources. Who started it looks them up by their content; where they are new
-it has them built by another worker in its own sandbox, which sees these sources and nothing else of any submission.
-So an entry is what an untouched worker makes of the content that it is kept under: a worker that was taken over can
-have its own sources built, and cannot say what anybody else's become.
+A worker cannot write to the cache. It sends sources, and the process that started it looks them up by their content. If
+they are new, another worker builds them in its own sandbox, which contains these sources and no other file of any
+submission. So an unmodified worker has built each entry from the content that is its key: a worker that was taken over
+can request builds of its own sources, but cannot change the packages of other submissions.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`autograder serve`: grades what students hand in on a JupyterHub, at once."""
+"""`autograder serve`: grades submissions on a JupyterHub at once."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from autograder.run.sandbox import Isolation
 @seed_option
 @isolation_option
 def serve(settings: Path, data: Path, jobs: int, check: bool, seed: int, isolation: str) -> None:
-    """Grade what students hand in, as a service of a JupyterHub, by the file SETTINGS.
+    """Grade submissions as a service of a JupyterHub, configured by the file SETTINGS.
 
     The hub starts it: docs/serve.md has the lines for its configuration. It ends when it is ended, in whatever way, and
     loses nothing by that.

@@ -17,7 +17,7 @@ from autograder.lms.roster import read_roster
 from autograder.result.class_folder import COLLECTION_REPORT
 from autograder.result.model import write_json
 
-REPORTED = ("late", "late_by", "times", "older", "unmatched", "missing")  # what is written of a download
+REPORTED = ("late", "late_by", "times", "older", "unmatched", "missing")  # for files from a download
 roster_option = click.option(
     "--roster",
     type=click.Path(path_type=Path, dir_okay=False, exists=True),

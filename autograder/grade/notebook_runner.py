@@ -3,9 +3,9 @@
     python notebook_runner.py ORDER_FD ANSWER_FD
 
 The order, `{"notebook": ..., "skipped": [INDEX, ...], "cell_seconds": ..., "max_output": ...}`, comes on one
-descriptor. The answer goes to another, a line of JSON each: `{"event": "begin"}` before there is a kernel, `{"event":
-"cell", "index": ..., "outputs": [...], "execution_count": ...}` after each cell, and `{"event": "end", "why": ...}`. It
-is a claim of a sandbox in which the student's code runs. A kernel's messages come no further than here.
+descriptor. The answer goes to another, one line of JSON for each event: `{"event": "begin"}` before the kernel starts,
+`{"event": "cell", "index": ..., "outputs": [...], "execution_count": ...}` after each cell, and `{"event": "end",
+"why": ...}`. The student's code in the sandbox can forge it. No message of the kernel itself leaves this process.
 """
 
 from __future__ import annotations

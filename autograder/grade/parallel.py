@@ -13,8 +13,8 @@ R = TypeVar("R")
 def map_parallel(do: Callable[[T], R], items: Sequence[T], *, jobs: int, on_done: Callable[[R], None]) -> tuple[R, ...]:
     """Call `do` with each item, `jobs` at once; return the results in the order of the items.
 
-    `on_done` gets each result as it comes. The first exception, or Ctrl-C, comes out once what has begun is done, and
-    nothing more is begun.
+    `on_done` gets each result as soon as it is available. After an exception or Ctrl-C, no further call begins. The
+    first exception is raised when the running calls have finished.
     """
     with ThreadPoolExecutor(jobs) as pool:
         running = [pool.submit(do, item) for item in items]

@@ -1,11 +1,11 @@
 """The pytest plug-in of a grading: it turns a suite's checks into results, and other errors into failures.
 
-A check that raises any other exception fails if data of the student's are in hand: if a door of
-`autograder.submission.reading` was passed in the check, or when one of its fixtures was made. The instructor is told.
-It is a failure of the grader if nothing is in hand.
+A check that raises any other exception fails if the student's data was read: if the check, or one of its fixtures,
+passed a door of `autograder.submission.reading`. The instructor is told. Without such data, it is a failure of the
+grader.
 
-The checks of every chapter, visible and hidden, have its fixtures. A chapter's own stand in its conftest.py, or in the
-one module that uses them. A harness for several checks is kept by `autograder.harness.Shared`.
+The checks of every chapter, visible and hidden, have its fixtures. A chapter's own fixtures are in its conftest.py, or
+in the one module that uses them. `autograder.harness.Shared` keeps a harness for several checks.
 """
 
 from __future__ import annotations

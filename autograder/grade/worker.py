@@ -2,8 +2,8 @@
 
     python -m autograder.grade.worker JOB DESCRIPTOR
 
-It imports no student code; that runs in sandboxes below it. It sends `result.json` and the pictures over the line that
-the descriptor is an end of, or ends with a traceback, which is a failure of the grader.
+It imports no student code, which runs in sandboxes inside this one. It sends `result.json` and the pictures over the
+line whose end is the descriptor, or ends with a traceback, which is a failure of the grader.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""How long a busy machine kept programs in real time from running.
+"""Measures how long a busy machine kept programs in real time from running.
 
-Only the kernel can tell a program that is late from one that the machine did not let run. What stops the whole machine
-stops the grader as well, and the grader's own clock shows it.
+Only the kernel can distinguish a slow program from one that did not get a processor. A stall of the whole machine also
+stalls the grader, and shows in the grader's own clock.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The grader's node: its publishers, subscriptions and clients.
 
-It counts by channel what it has sent and what it has taken, as the programs do (see `lockstep_host`). So a harness
-in lockstep knows when it has taken all that was sent to it.
+It counts the messages that it has sent and taken on each channel, as the programs do (see `lockstep_host`). So a
+harness in lockstep knows when it has taken every message.
 """
 
 from __future__ import annotations

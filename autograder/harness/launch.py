@@ -97,8 +97,8 @@ class LaunchHarness(contextlib.ExitStack):
             harness.parameters("/driver", "speed")
             harness.interrupt(20.0)
 
-    A launch that ends is no error: look at `status` and `output`. `StudentError` comes out of every method that waits
-    when the launch goes over a limit.
+    The end of a launch is not an error: see `status` and `output`. Every waiting method raises a
+    `StudentError` if the launch exceeds a limit.
 
     Args:
         workspace: the student's built workspace.

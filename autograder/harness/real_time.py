@@ -128,9 +128,9 @@ class RealTimeHarness(Harness):
 def usual_rate(instants: Sequence[float], seconds: float) -> float:
     """Return how many times in `seconds` something usually happens; `instants` are in s, ascending.
 
-    A busy machine keeps a program from running now and then, and what it would have done then never happens. A count
-    would blame the program; the median interval does not. Where less than half as much happened as the median interval
-    promises, the count is right.
+    A busy machine sometimes keeps a program from running, and the events of that time never happen. A count would blame
+    the program, but the median interval does not. If the count is less than half of the number that the median interval
+    implies, the count is used.
     """
     count = len(instants) / seconds
     if len(instants) < 3:

@@ -18,7 +18,7 @@ from autograder.run.sandbox import Isolation
 from autograder.suite import suites
 
 SCRIPTS = layout.ROOT / "assets" / "gradescope"  # both are executable, also in the zip
-# What grading needs in addition to the course with its hidden checks and reference.
+# Required for grading in addition to the course with its hidden checks and reference.
 COPIED = ("autograder", "sim", "assets", "pyproject.toml", "requirements.lock", "Makefile")
 
 

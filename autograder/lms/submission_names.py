@@ -76,7 +76,7 @@ class DownloadedItem:
         is_submission: whether it is a submitted file, not a text that was typed into the system.
         is_receipt: whether it is a file that the system writes for each attempt, even without a submitted file.
         system: the system, if the name identifies it.
-        time: when it was handed in, in ISO 8601, if the system says it; Gradescope alone says in which time zone.
+        time: the submission time in ISO 8601, if the system states it; only Gradescope states the time zone.
     """
 
     path: Path

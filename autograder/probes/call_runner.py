@@ -1,10 +1,10 @@
-"""Runs inside the sandbox: calls functions and classes of a student's module as JSON says, and answers in JSON.
+"""Runs inside the sandbox: calls functions and classes of a student's module by an order in JSON, and answers in JSON.
 
     python call_runner.py ORDER_FD ANSWER_FD
 
 The order, `{"module": ..., "steps": [...]}`, comes on one descriptor; steps are as in `autograder.probes.calls`. The
-answer goes to another, so that what the student's code prints is not part of it. It is a claim of the process that the
-student's code runs in; the trusted side compares its values and believes nothing else of it.
+answer goes to another one, so that it does not contain the output of the student's code. The student's code can forge
+the answer: the trusted side only compares its values.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Runs `colcon test` on a student's package in the sandbox.
 
-colcon runs setup.py first, which could write what pytest writes. So each run has a name of its own, which pytest puts
-into its report, and a report with another name counts for nothing.
+colcon first runs setup.py, which could write the same files as pytest. So each run has a unique name, which pytest
+includes in its report, and a report with another name is ignored.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ def colcon_test(workspace: Workspace, package: str) -> Report:
     Its build and test folders are written to.
 
     Returns:
-        What colcon says: its exit status, and the tests in the file that its `test-result` would count. Where it had to
-        be stopped, that of a second run, as in `student_test_runs.run`.
+        colcon's exit status, and the tests in the file that `colcon test-result` would count. If it had to be stopped,
+        those of a second run, as in `student_test_runs.run`.
     """
     first, _ = _colcon_test(workspace, package)
     return first if first.exit_reason is not ExitReason.WALL_TIME else _colcon_test(workspace, package)[0]

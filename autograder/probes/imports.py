@@ -1,7 +1,7 @@
 """The imports of a package's sources, and whether package.xml declares them. Sources are parsed and never run.
 
-rosdep installs what package.xml names before anything is built or run, so a module that is imported and not declared
-works on its author's machine and nowhere else. Files that are too large, too many or no Python are left out.
+rosdep installs the packages in package.xml before a build, so an undeclared import works only on its author's machine.
+Files that are too large or not Python, or exceed the maximum number, are left out.
 """
 
 from __future__ import annotations

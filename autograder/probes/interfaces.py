@@ -112,7 +112,7 @@ def parse(package: str, path: str, text: str) -> Interface:
 def compare(expected: Interface, actual: Interface) -> tuple[Difference, ...]:
     """Return how a definition differs from its contract; the empty tuple if it does not.
 
-    Further constants, and a default that says what a field without one holds anyway, are no differences.
+    Additional constants, and a default that equals the value without one, are not differences.
     """
     parts = range(len(expected.parts))
     return tuple(difference for index in parts for difference in _Comparison(expected, actual, index).differences())

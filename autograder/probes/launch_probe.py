@@ -75,9 +75,8 @@ def expect_argument(arguments: Mapping[str, Argument], name: str, default: str, 
 def settle(harness: LaunchHarness, expected: Collection[str]) -> list[str]:
     """Wait for the nodes that a launch should start; return the nodes that are seen in the end.
 
-    Returns early when nothing more is to be expected: the launch has ended, or each program that runs has been seen as
-    a node, and either these are the wanted ones or nothing has changed for a while. A node that should be there twice
-    is wanted twice.
+    Returns early if the launch has ended, or if every running program has been seen as a node, and these nodes are the
+    expected ones or have not changed for a while. A name that two nodes should have is listed in `expected` twice.
     """
     state: tuple[object, ...] = ()
     since = time.monotonic()
@@ -115,8 +114,8 @@ def expect_nodes(harness: LaunchHarness, expected: Collection[str]) -> None:
 def expect_parameters(harness: LaunchHarness, node: str, expected: Mapping[str, Value]) -> None:
     """Fail the check unless a node, by its full name, has these values; numbers to nine digits, types exactly.
 
-    A launch that an exception ends stops its nodes, and by chance one of them answers before it is gone. That is no
-    answer.
+    If an exception ends a launch, it stops its nodes, and one of them may still answer before it ends. That answer does
+    not count.
     """
     actual = harness.parameters(node, list(expected))
     if actual is None or _CAUGHT.search(harness.output):
@@ -149,8 +148,8 @@ def expect_clean_stop(harness: LaunchHarness) -> None:
 def _died_of_ctrl_c(harness: LaunchHarness) -> list[tuple[str, str]]:
     """Interrupt a launch, which has to end; return name and exit code of each process that did not end cleanly.
 
-    A node is seen before its constructor has ended, where Ctrl-C is beyond what its `main` catches. One that answers
-    is spinning; one that never answers is not waited for long.
+    A node is visible before its constructor has ended, and there its `main` does not catch Ctrl-C. A node that answers
+    a request is spinning. The wait for a node that does not answer is short.
     """
     for node in harness.nodes():
         harness.parameters(node, ["use_sim_time"])

@@ -1,9 +1,9 @@
 """Runs the linters on a student's package, as the grader's own check.
 
-A test that is called `test_flake8` need not call flake8. So the tests that `ros2 pkg create` writes take the place of
-the student's. They see the package's Python files and nothing else of it, below a folder from which nothing is
-imported: no configuration, no conftest.py, no module with a linter's name. Comments that switch a linter off are
-words like any others. Then the student's own tests have to find what is untidy in a copy.
+A test called `test_flake8` does not necessarily call flake8. So the tests that `ros2 pkg create` writes replace the
+student's. They see only the Python files of the package, below a folder from which nothing is imported: no
+configuration, no conftest.py, no module with a linter's name. Comments that disable a linter have no effect. Then the
+student's own tests have to find mistakes of style in a copy.
 """
 
 from __future__ import annotations

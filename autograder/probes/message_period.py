@@ -26,8 +26,8 @@ def mean_period(messages: Sequence[ReceivedMessage]) -> float:
 def is_paced(messages: Sequence[ReceivedMessage], period: float, time: str) -> bool:
     """Return whether messages come one by one, with a pause of `period` s between them.
 
-    Two at once, and then a pause that is twice as long, are not right, although their number is. In real time single
-    pauses may be off by more, but the one in the middle may not: a program can choose to run in real time.
+    Two messages at once and then a double pause are wrong, although the number is right. In real time, single pauses
+    have a larger tolerance, but the median does not: a program can choose to run in real time.
 
     Args:
         messages: in the order in which they came; two or more.

@@ -3,8 +3,7 @@
     python pytest_runner.py REPORT_FD STATUS_FD GO_FD REVERSED ARGUMENTS...
 
 When pytest has ended, its report of JUnit XML goes to REPORT_FD and its exit status to STATUS_FD; the process then
-waits for the end of GO_FD. All of it is in the power of the tests that run here: the trusted side takes what it hears
-for their claim.
+waits for the end of GO_FD. The tests in this process can forge all of this, and the trusted side does not rely on it.
 
 If this process was forked with the launch packages, programs that the tests launch are forked, too.
 """

@@ -19,10 +19,10 @@ def crashed(status: int | None) -> bool:
 def lost_a_race(output: str) -> bool:
     """Return whether a program's output ends with the traceback of an error that rclpy raises by chance.
 
-    Each comes of a few microseconds in which rclpy's thread for signals shuts the context down: an executor has found
+    Each is a race of a few microseconds with rclpy's signal thread, which shuts the context down: an executor has found
     the context valid and builds its wait set, or `Context.try_shutdown` has found it valid and shuts it down itself. On
-    a busy machine the latter is one of 500 ends of a right program. A program that calls `rclpy.shutdown` is no such
-    case: it raises each time.
+    a busy machine, the latter happens in one of 500 ends of a right program. A program that calls `rclpy.shutdown` is
+    not such a case: it raises each time.
     """
     lines = output.splitlines()
     frames = [line for line in lines if line.startswith("  File ")]

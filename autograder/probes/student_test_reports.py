@@ -1,8 +1,8 @@
-"""Records of runs of a student's tests: the package, the run that is wanted, and its report in JUnit XML.
+"""Records of runs of a student's tests: the package, the requested run, and its report in JUnit XML.
 
-A run that could read a hidden version can put its text into whatever it reports: ids of parametrized tests, names of
-generated ones, exceptions, output. So its report is closed (`Report.closed`): only names that stand in the student's
-source are left of its words.
+A run that could read a hidden version can put its text into any part of the report: ids of parametrized tests, names of
+generated ones, exceptions, output. So its report is closed (`Report.closed`): of its text, only names from the
+student's source remain.
 """
 
 from __future__ import annotations
@@ -110,8 +110,8 @@ class Report:
     def closed(self, known: frozenset[str]) -> Report:
         """Return the report without any text of the run, for a run that could read a hidden version.
 
-        There is no output and no message. A test is called by its name in the student's source, or `UNNAMED`. A
-        parameter's id becomes a digest, by which runs in this process can be compared, and which says nothing else.
+        It has no output and no messages. A test is called by its name in the student's source, or `UNNAMED`. A
+        parameter's id becomes a digest, which serves only to compare runs in this process.
         """
         verdicts = {_closed(name, known): verdict for name, verdict in self.claims.verdicts.items()}
         return replace(self, claims=Claims(verdicts), output="", known=known)

@@ -3,13 +3,13 @@
     source = take(workspace, "wheels")
     reports = run(workspace, source, [TestRun(("test_limits.py",), right), TestRun(("test_limits.py",), faulty)])
 
-A run is in the power of the student's tests: what it reports is a claim, "passes" or "fails", and the points come from
-claiming the right thing of each version. So a run must not be able to tell which version it has before it: every run
-gets a sandbox of its own with no network but its own loopback, a path drawn at random, the same times and environment,
-and nothing that it can write to but a /tmp that ends with it. It sees its version and nothing of the others, the suites
-or earlier runs. `versions` says how versions are kept alike, and what remains. What it says of a version that students
-do not have comes back without its words (`Report.closed`). Only a run that is sniffed shares the grader's loopback,
-which no other program uses. The run can notice that, so it has to get a right version.
+The student's tests control a run: it claims "passes" or "fails", and earns points if the claim is right for each
+version. So a run must not be able to recognise its version. Every run gets its own sandbox with only its own loopback,
+a random path, the same times and environment, and no writable folder except a temporary /tmp. It sees its version, but
+not the others, the suites or earlier runs. `versions` explains how versions are made indistinguishable, and the
+remaining differences. The report on a version that students do not have comes back without its text (`Report.closed`).
+Only a sniffed run shares the grader's loopback, which no other program uses. The run can notice that, so it has to get
+a right version.
 """
 
 from __future__ import annotations

@@ -2,11 +2,11 @@
 
 A test that recognises a version without running it could report the expected result: by the text of a file, its hash or
 byte code, by names, paths or times. So `obfuscate` rewrites every version, including the reference: it removes comments
-and renames docstrings, local names and private attributes in each run. Each docstring is then a leak marker, and so is
-the last comment of a file: nothing that a student gets may contain one (`verification.leaks`). Right and faulty
+and draws new docstrings, local names and private attributes in each run. Each docstring is then a leak marker, and so
+is the last comment of a file: nothing that a student gets may contain one (`verification.leaks`). Right and faulty
 versions in different styles are mixed in an order drawn from the seed. All have the same files, with the same times.
 
-What remains: who reads a version's code as a linter would, and finds the fault in it, has found the fault. A test that
+A test may still read the code of a version like a linter, and find the fault there: that is a valid way. A test that
 fails at random has to pass on every right version, and more than once.
 """
 

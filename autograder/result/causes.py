@@ -1,7 +1,7 @@
-"""Which failures came with another one: a student mends that one first, and runs the checks again.
+"""Groups failures by their causes: a student fixes the cause first, and runs the checks again.
 
-A check names those whose failure is likely to be the cause of its own (`CheckResult.after`). And checks that give the
-same reason have one cause: a build that failed, or a program that crashed.
+A check names other checks whose failure probably causes its own (`CheckResult.after`). Checks with the same reason also
+have one cause: a build that failed, or a program that crashed.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The ROS 2 distribution of the course. Its facts are in `distribution.json` beside this, and nowhere else in code.
 
 `autograder/bootstrap.py` and the Makefiles read that file by themselves, since they run before anything is installed.
-`docs/distribution.md` lists what a course for another distribution has to change besides it.
+`docs/distribution.md` lists the other changes for a course on another distribution.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ class PlatformPackage:
     """A package of Python, or a tool that pip installs, as the distribution's platform has it.
 
     Attributes:
-        name: what pip calls it.
-        debian: what apt calls it.
+        name: its name in pip.
+        debian: its name in apt.
         version: the version of the platform.
         meets: where a student meets it.
         differs: why another version may be installed; empty where none may.
@@ -37,11 +37,11 @@ class Distribution:
     """A ROS 2 distribution.
 
     Attributes:
-        name: what ROS_DISTRO says, and how branches of ROS's repositories are called.
+        name: the value of ROS_DISTRO, and the name of branches in ROS's repositories.
         title: how people write it.
         rclpy: the first two numbers of its rclpy's version.
         pythons: the versions of Python that its wheels are for. The platform's own comes first.
-        setup: what a shell sources where it is installed from packages.
+        setup: the file that a shell sources if ROS is installed from packages.
         docs: the address of its documentation.
         platform: the system that it belongs to.
         platform_page: the address of the versions of that system.

@@ -34,7 +34,7 @@ class Domain:
                 claim.bind(f"\0ros-domain-{self.number}")
                 break
             except OSError:
-                continue  # somebody else's
+                continue  # in use by another process
         else:
             self.number = DOMAINS[start % len(DOMAINS)]
         self._descriptor = claim.detach()  # open for as long as the process, whatever becomes of this object

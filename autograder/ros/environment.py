@@ -118,7 +118,7 @@ def find(environ: Mapping[str, str] | None = None) -> RosEnvironment:
             f"open a shell without it, or source {DISTRIBUTION.setup}"
         )
     prefixes = tuple(Path(part) for part in environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part)
-    # What is in front of the installation are workspaces: sourced by the user, or built and loaded by this process.
+    # The prefixes before the installation are workspaces: sourced by the user, or built and loaded by this process.
     installed = [index for index, prefix in enumerate(prefixes) if rclpy.is_relative_to(prefix)]
     if not installed:
         raise RosNotFoundError(f"rclpy is at {rclpy}, but not in AMENT_PREFIX_PATH: source {DISTRIBUTION.setup}")
@@ -126,13 +126,13 @@ def find(environ: Mapping[str, str] | None = None) -> RosEnvironment:
 
 
 def activate(*, overlays: tuple[Path, ...] = (), domain: int | None = None) -> RosEnvironment:
-    """Switch ROS 2 on for this process and the children it starts. Safe to call twice.
+    """Activate ROS 2 for this process and its children. A second call changes nothing.
 
     Call it before the first `import rclpy`. Workspaces that are sourced already stay sourced. `ros2` and `colcon` are
     found by their names, also where this Python's environment was not activated, as in a notebook's kernel.
 
     Raises:
-        RosError: there is no usable ROS 2 of the course's distribution.
+        RosError: no usable ROS 2 of the course's distribution was found.
     """
     environment = find()
     sourced = [Path(part) for part in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part]

@@ -1,4 +1,4 @@
-"""The source repositories of the real `launch`, `launch_ros` and `ros2cli`, and what of them is installed here.
+"""The source repositories of the real `launch`, `launch_ros` and `ros2cli`, and the packages that are installed here.
 
 Tags and commits are those of `distribution.json`. The records in tests/e2e were written with them.
 """
@@ -13,7 +13,7 @@ from pathlib import Path
 
 from autograder.ros.distribution import DISTRIBUTION
 
-STANDINS = "stand-ins"  # what `describe_launch` returns where none of the real packages is installed
+STANDINS = "stand-ins"  # the value of `describe_launch` if no real package is installed
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Source:
-    """A repository and what to take from it.
+    """A repository and the packages to take from it.
 
     Attributes:
         variable: the environment variable that names another place to clone from.
@@ -46,7 +46,7 @@ class Source:
     built: bool = False
 
     def place(self, environ: Mapping[str, str]) -> Place:
-        """Return what to clone: the pinned tag, unless the user names another one."""
+        """Return the tag to clone: the pinned one, unless the user names another one."""
         chosen = environ.get(self.variable)
         if not chosen:
             return Place(self.url, self.tag, self.commit)
@@ -116,6 +116,6 @@ def installed_packages(names: Iterable[str]) -> dict[str, str]:
 
 
 def describe_launch() -> str:
-    """Return what `launch` and `ros2` are here: the versions of the real packages, or "stand-ins"."""
+    """Return the installed `launch` and `ros2`: the versions of the real packages, or "stand-ins"."""
     installed = installed_packages(("launch", "launch_ros", "ros2cli"))
     return ", ".join(f"{name} {number}" for name, number in installed.items()) or STANDINS

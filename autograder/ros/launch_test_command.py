@@ -1,4 +1,4 @@
-"""The command `launch_test FILE` of the real `launch_testing`; the stand-in has none, and its error says so."""
+"""The command `launch_test FILE` of the real `launch_testing`. The stand-in lacks it, and its error says so."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ and flake8 replaces it for ever. And rclpy 7.1's MultiThreadedExecutor looks aga
 given to a thread, and so keeps that thread from the interpreter: on an idle machine a 10 Hz timer beside a 10 Hz
 subscription lost a quarter of its ticks to it and took half of a core (github.com/ros2/rclpy/issues/1452). And
 ament_lint_auto has no wheel, which each CMake package that `ros2 pkg create` makes asks for. Each file is replaced
-atomically; to patch it twice changes nothing.
+atomically; patching them again changes nothing.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def offer_lint_auto(prefix: Path) -> bool:
 
 
 def link_standins(site_packages: Path) -> Path:
-    """Put the stand-ins' folder at the end of `sys.path`, where anything real is found before them."""
+    """Put the stand-ins' folder at the end of `sys.path`, so that real packages are found first."""
     standins = Path(__file__).parent / "standins"
     pth = site_packages / STANDINS_PTH
     _replace(pth, f"{standins}\n")

@@ -34,7 +34,7 @@ from autograder.ros.environment import RosEnvironment, find
 from autograder.ros.exceptions import RosError
 from autograder.ros.launch_packages import SOURCES, Source, describe_launch, installed_packages, python_packages
 
-CHOOSE_STANDINS = "ROS2_STANDINS"  # the environment variable that is 1 where the stand-ins are wanted
+CHOOSE_STANDINS = "ROS2_STANDINS"  # the environment variable that is 1 to choose the stand-ins
 REACH_SECONDS = 10.0  # for all sources together
 CLONE_SECONDS = 120.0
 BUILD_SECONDS = 600.0
@@ -48,13 +48,13 @@ class RealLaunchError(RosError):
 
 @dataclass(frozen=True)
 class Step:
-    """A command, what it does, and what helps if it fails."""
+    """A command, its purpose, and a fix if it fails."""
 
     what: str
     command: Sequence[str]
     hint: str = ""
     seconds: float = BUILD_SECONDS
-    cwd: Path = Path("/")  # where no module lies beside Python's own
+    cwd: Path = Path("/")  # if no module is beside Python's own
     variables: Mapping[str, str] | None = None
 
 
@@ -69,17 +69,17 @@ def install(
     """Install every package of the sources, or no Python package at all.
 
     Args:
-        ros: what to install on top of; interfaces are built into its first prefix.
+        ros: the ROS to extend; interfaces are built into its first prefix.
         environ: where the variables of the sources are looked up.
         python: the interpreter whose environment gets the Python packages.
-        sources: what to install, in this order.
-        requirement: what to get from the package index first, with its hash; empty if nothing is needed.
+        sources: the repositories to install, in this order.
+        requirement: a package to install from the package index first, with its hash; may be empty.
 
     Returns:
         The names of the packages, in the order of installation.
 
     Raises:
-        RealLaunchError: `ros` is no set of wheels, a source does not answer or has another commit, or a step failed.
+        RealLaunchError: `ros` is not a set of wheels, a source does not answer or has another commit, or a step failed.
     """
     if ros.kind == "sourced":
         raise RealLaunchError(f"{ros.describe()}: it has the real launch and ros2 already, there is nothing to do")
@@ -107,14 +107,14 @@ def install(
         options = ["--no-deps", "--no-index", "--force-reinstall", *map(str, sorted(wheels.glob("*.whl")))]
         try:
             _run(Step("install what was built", [*pip, "install", *options]))
-        except BaseException:  # some of the real packages do not work with some of the stand-ins
+        except BaseException:  # some real packages do not work with some stand-ins
             remove(python_names, python=python)
             raise
     return [*interface_names, *python_names]
 
 
 def remove(names: Sequence[str], *, python: str = sys.executable) -> None:
-    """Uninstall Python packages, those of them that are installed, so that the stand-ins are imported.
+    """Uninstall those of the Python packages that are installed, so that the stand-ins are imported.
 
     Raises:
         RealLaunchError: pip failed.
@@ -123,10 +123,10 @@ def remove(names: Sequence[str], *, python: str = sys.executable) -> None:
 
 
 def set_up(environ: Mapping[str, str]) -> str:
-    """Install the real packages unless they are there or the stand-ins are chosen; a failure leaves the stand-ins.
+    """Install the real packages unless they exist or the stand-ins are chosen. A failure leaves the stand-ins.
 
     Returns:
-        One line that says what is installed and why.
+        One line about the installed packages and the reason.
 
     Raises:
         RealLaunchError: the stand-ins are chosen, and the real packages cannot be uninstalled.
@@ -220,7 +220,7 @@ def _run(*steps: Step) -> list[str]:
 
 @contextmanager
 def _process(step: Step) -> Iterator[subprocess.Popen[str]]:
-    """Start a step's command in a process group of its own, and end the group."""
+    """Start a step's command in its own process group, and end the group."""
     environ = {**os.environ, "GIT_TERMINAL_PROMPT": "0", **(step.variables or {})}
     process = subprocess.Popen(
         step.command,
@@ -242,7 +242,7 @@ def _process(step: Step) -> Iterator[subprocess.Popen[str]]:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Install the real packages and say what is there now; return an exit code."""
+    """Install the real packages and print the result; return an exit code."""
     parser = argparse.ArgumentParser(
         prog="real-launch",
         description="Install the real launch, launch_ros and ros2cli on top of the ROS 2 wheels.",

@@ -1,1 +1,1 @@
-"""What was handed in: read within bounds, its ROS packages found, its unfinished files named."""
+"""Submissions: reads them within bounds, finds their ROS packages, and names unfinished files."""

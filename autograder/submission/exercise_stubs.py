@@ -9,13 +9,13 @@ from pathlib import Path
 from autograder.diagnosis import Diagnosis, Kind
 
 STILL_TO_BE_WRITTEN = "this part of the exercise is still to be written"
-# What a release holds in the place of an answer. It is valid Python in any function. A node that runs it ends with this
+# The text in a release in place of an answer. It is valid Python in any function. A node that runs it ends with this
 # sentence, which tells the student what to do.
 CODE_STUB = f"# YOUR CODE HERE\nraise NotImplementedError('{STILL_TO_BE_WRITTEN}')"
 TEXT_STUB = "YOUR ANSWER HERE"
 MAX_BYTES = 256 * 1024  # no file of an exercise is longer
 
-# What colcon and rosidl read to build a package; a stub in any other file does not keep the package from being built.
+# Files that colcon and rosidl read to build a package. A stub in any other file does not prevent the build.
 _BUILT_FROM = ("package.xml", "setup.py", "setup.cfg", "CMakeLists.txt", "msg/*.msg", "srv/*.srv", "action/*.action")
 _DEPENDENCY = re.compile(r"<(?:\w+_)?depend\b[^<>]*>\s*(\w[\w-]{0,99})(?![\w.-])", re.ASCII)
 
@@ -57,7 +57,7 @@ def _stubs(source: Path, packages: tuple[str, ...]) -> Iterator[tuple[str, str]]
 
 
 def _read(path: Path) -> str:
-    """Return a file's text as far as it counts; nothing for what is no regular file."""
+    """Return the text of a regular file up to `MAX_BYTES`, or an empty string."""
     if path.is_symlink() or not path.is_file():
         return ""
     with path.open("rb") as file:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 def outside_strings(data: bytes, quotes: int) -> bytes | None:
-    """Return what of a JSON text stands outside of its strings; None if it has more quotation marks than so many.
+    """Return the part of a JSON text outside its strings, or None if it has too many quotation marks.
 
     The steps and the memory for it grow with the length of the text.
     """
@@ -15,7 +15,7 @@ def outside_strings(data: bytes, quotes: int) -> bytes | None:
 def holds_more(data: bytes, values: int, quotes: int) -> bool:
     """Return whether a JSON text has more values, or more quotation marks, than so many.
 
-    Commas and brackets outside of strings are counted, of which there are at least as many as values, but for one.
+    Counts commas and brackets outside strings. A text has at most one more value than these.
     """
     outside = outside_strings(data, quotes)
     return outside is None or sum(map(outside.count, (b",", b"[", b"{"))) > values

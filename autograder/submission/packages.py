@@ -15,8 +15,8 @@ from autograder.submission.reading import reading
 
 MANIFEST = "package.xml"
 MAX_MANIFEST = 64 * 1024  # bytes
-NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,99}")  # what colcon takes, and what can be the name of a folder
-IGNORED = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")  # in a folder below which there are no packages
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,99}")  # names that colcon accepts, and that can be the name of a folder
+IGNORED = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")  # in a folder without packages below it
 COLCON_PKG = "colcon.pkg"
 MAX_PACKAGES = 50  # more than a course's chapters, and few enough for the command line of colcon
 DEPENDS = ("depend", "build_depend", "build_export_depend", "exec_depend", "buildtool_depend")
@@ -24,7 +24,7 @@ DEPENDS = ("depend", "build_depend", "build_export_depend", "exec_depend", "buil
 
 @dataclass(frozen=True)
 class Package:
-    """A package's folder, and what its package.xml says. `probes.manifest` validates that, this does not."""
+    """A package's folder, and the content of its package.xml. `probes.manifest` validates that, this does not."""
 
     folder: Path
     name: str
@@ -63,7 +63,7 @@ def read_packages(source: Path) -> tuple[dict[str, Package], dict[Path, str]]:
     in packages. `building.colcon` gives colcon these folders, so that what is built is what is judged.
 
     Raises:
-        StudentError: two packages have the same name, or there are too many.
+        StudentError: two packages have the same name, or the tree has too many.
     """
     packages: dict[str, Package] = {}
     broken: dict[Path, str] = {}

@@ -1,13 +1,13 @@
-"""Whose fault an error is: what fails while data of the student's are read, converted or compared is the student's.
+"""Assigns errors: an error while the student's data is read, converted or compared is the student's.
 
-Each door, a place where such data enter the trusted process, is a block::
+Each door, a place where such data enters the trusted process, is a block::
 
     with reading("src/wheels/package.xml"):
         root = ET.fromstring(data)
 
-Whatever the block raises becomes a `StudentError` that names the data. Errors of the grader that say what they are pass
-through, and so does what only a machine can do. A door also notes what is in hand from then on: a check that raises an
-exception of its own fails if it has something in hand, and is a failure of the grader if it has nothing.
+An exception in the block becomes a `StudentError` that names the data. The grader's own errors with a message pass
+through, and so do errors that only a machine can cause. A door also records the data's name. If a check itself raises
+an exception, the check fails if any data was recorded, and otherwise it is a failure of the grader.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ MAX_REASON = 200  # characters of an exception's text
 MAX_INT = 10**100  # an int beyond a float's range can be neither compared with one nor, at 4,300 digits, shown
 MAX_DEPTH = 20  # of lists in lists
 MAX_VALUES = 100_000
-# No data cause these: a disk that fails, and a machine that has no more processes, memory or descriptors.
+# No data causes these: a failing disk, and a machine without free processes, memory or descriptors.
 _OF_THE_MACHINE = frozenset(
     {errno.EIO, errno.EMFILE, errno.ENFILE, errno.EROFS, errno.ESTALE, errno.ENODEV, errno.EAGAIN, errno.ENOMEM}
 )
-# What Python, its parsers and the fields of ROS messages raise for data that code was not written for.
+# Errors of Python, its parsers and the fields of ROS messages for unexpected data.
 _OF_DATA = (
     *(ArithmeticError, AssertionError, AttributeError, LookupError, MemoryError, RecursionError, SyntaxError),
     *(TypeError, ValueError),
 )
-# What files of an unexpected kind, name or size cause; shutil's own errors have no number.
+# Errors for files of an unexpected kind, name or size. shutil's own errors have no number.
 _OF_FILES = frozenset(
     {errno.ENOENT, errno.EEXIST, errno.ENOTDIR, errno.EISDIR, errno.ENOTEMPTY, errno.ENAMETOOLONG, errno.ELOOP}
     | {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EINVAL, None}
@@ -44,15 +44,15 @@ _in_hand: dict[str, None] = {}  # names of data, each once, the latest last
 
 @contextmanager
 def reading(what: str, kind: Kind = Kind.UNREADABLE, advice: str = "") -> Iterator[None]:
-    """Make what fails in this block the student's fault, and note that the data are in hand.
+    """Attribute errors in this block to the student, and record that the data was read.
 
     Args:
-        what: names the data for the student, at the start of a sentence.
+        what: the name of the data for the student, at the start of a sentence.
         kind: of the diagnosis.
-        advice: a sentence that says what to do.
+        advice: a sentence with a fix.
 
     Raises:
-        StudentError: the block raised anything but an error of the grader's own or of the machine.
+        StudentError: the block raised an error that is neither the grader's own nor the machine's.
     """
     hold(what)
     try:
@@ -67,18 +67,18 @@ def reading(what: str, kind: Kind = Kind.UNREADABLE, advice: str = "") -> Iterat
 
 
 def hold(what: str) -> None:
-    """Note that data of the student's are in hand, by a name for the student."""
+    """Record that the student's data was read, by a name for the student."""
     _in_hand.pop(what, None)
     _in_hand[what] = None
 
 
 def in_hand() -> tuple[str, ...]:
-    """Return the names of the data in hand, the latest last."""
+    """Return the names of the recorded data, the latest last."""
     return tuple(_in_hand)
 
 
 def put_down() -> None:
-    """Forget what is in hand: what comes now has not seen it."""
+    """Forget the recorded data before code that has not seen it."""
     _in_hand.clear()
 
 
@@ -93,7 +93,7 @@ def is_of_data(error: BaseException) -> bool:
 
 
 def beyond_bounds(value: object) -> str:
-    """Return what in plain data no check can compute with or show, as the name of a type; empty if there is nothing."""
+    """Return the type of a value that no check can compute with or show, or an empty string."""
     pending, count = [(value, 0)], 0
     while pending:
         each, depth = pending.pop()

@@ -15,10 +15,10 @@ A suite is a pytest module. Each of its tests is a check, in the group of checks
 `check` itself takes the group as an argument, for a module whose checks belong to several. `check_each_row` declares a
 check for every row of a table. A check in a folder called `visible` is visible, any other is hidden.
 
-A check passes, fails (with the fraction of its points that was reached) or is not checked, because a check that it
-`needs` did not pass: there is no program to run, or no topic to look at. A check `after` another is run in any case and
-judges its own sentence; if both fail, feedback shows it under the other. Any other exception is the grader's own
-failure, never the student's zero.
+A check passes, fails (with a fraction of its points) or is not checked, because a check that it `needs` did not pass:
+for example, no program starts, or a topic does not exist. A check `after` another one runs in any case and judges its
+own requirement. If both fail, feedback shows it under the other one. Any other exception is a failure of the grader,
+never a zero for the student.
 """
 
 from __future__ import annotations

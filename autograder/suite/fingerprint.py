@@ -1,8 +1,8 @@
 """The version of a suite, and a digest of all files that a grading reads.
 
-A submission that is graded twice with the same seed and the same version gets the same mark: `autograder grade
---resume` relies on this. A version holds the digest of the chapter's files and of what its checks declare to read, and
-`GRADER_VERSION` for everything else.
+Two gradings of a submission with the same seed and the same version give the same mark. `autograder grade --resume`
+relies on this. A version consists of a digest of the chapter's files and of the files that its checks declare to read,
+and `GRADER_VERSION` for everything else.
 
 The digest of all files changes with every comment. It is for those who need more than the same mark: the verification
 of the grader, and the machines of a cluster.
@@ -75,10 +75,10 @@ def _digest(paths: Iterable[Path]) -> str:
 
 
 def places(assignment: str, reads: Iterable[str] = (), *, parts: Iterable[str] = ("visible", "hidden")) -> list[Path]:
-    """Return the files and folders of the course that are an assignment's own in a grading: nothing of them is shared.
+    """Return the files and folders of the course that only the gradings of one assignment read.
 
-    They are its checks without what is for verification, the modules of other chapters' checks that those import, its
-    notebook, the packages that it gives, and what its suite says that it reads.
+    They are its checks without the files for verification, the modules of other chapters' checks that those import, its
+    notebook, the packages that it gives to students, and the files that its suite declares to read.
 
     Args:
         assignment: name of the assignment.

@@ -1,7 +1,7 @@
 """The sentences of a notebook's cell as a student reads them: rendered, and whole.
 
-Authors name a sentence of the contract by its Markdown, or by a part of it. `quote` returns what stands there on the
-page: the row of the table, or the whole sentence, without markup.
+Authors name a requirement by its Markdown, or by a part of it. `quote` returns the text on the page: the row of the
+table, or the whole sentence, without markup.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 """A suite: the visible or the hidden checks of one assignment, read from the modules of one package.
 
-The package, `chNN_name.visible` or `chNN_name.hidden`, says in its `__init__.py`:
+The `__init__.py` of the package, `chNN_name.visible` or `chNN_name.hidden`, contains:
 
-    PACKAGES          the ROS 2 packages that a submission must bring
-    MODULES           its modules that hold checks, in the order in which they are run
+    PACKAGES          the ROS 2 packages that a submission must contain
+    MODULES           its modules with checks, in the order in which they are run
     GROUPS            optional: the groups of checks in the order in which results show them, instead of MODULES
-    FOLDERS           optional: folders in `src` that a submission brings besides its packages
+    FOLDERS           optional: folders in `src` that a submission contains besides its packages
     READS             optional: files and folders of the course, by their paths below its root, that the checks read
                       besides those in their own chapter's folder
     BUILD_MAY_FAIL    optional, True: a package that is missing or does not build does not end the grading. Checks see

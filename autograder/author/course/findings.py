@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Finding:
-    """A problem in a file: what is wrong and what to do.
+    """A problem in a file, and how to fix it.
 
     Attributes:
         file: the name of the notebook, or the path of another file, relative to the course's folder.
         cell: the id of the notebook's cell, or None if it does not concern a single cell.
-        message: what is wrong and what to do.
+        message: the problem and the fix.
         line: the line of the file, from 1, or None if it does not concern a single line.
     """
 

@@ -125,7 +125,7 @@ class Attack:
     says: str = ""
 
     def verify(self, result: Result, only: frozenset[str] = frozenset()) -> str:
-        """Describe what the attack gained or disturbed, or return an empty string.
+        """Describe any gain or interference of the attack, or return an empty string.
 
         Args:
             result: result of the attack.
@@ -148,7 +148,7 @@ class Attack:
 
 
 def first_sentence(result: Result) -> str:
-    """Return what a student reads first."""
+    """Return the first sentence that a student reads."""
     if result.diagnosis.kind is not Kind.OK:
         return result.diagnosis.sentence
     return next((check.message for check in result.checks if check.outcome is Outcome.FAILED), "")

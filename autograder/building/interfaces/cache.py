@@ -1,8 +1,8 @@
 """A content-addressed cache of built trees: built once, put in place whole, bounded in size.
 
-Each entry is a folder named by its key, beside a lock file that is held by who uses, builds or evicts it. The kernel
-lets go of locks when a process dies, and a half-built folder is never under an entry's name. What nobody uses goes as
-soon as the entries have more than the limit, so they exceed it by what is in use at most.
+Each entry is a folder named by its key, beside a lock file. Processes that use, build or evict the entry hold the lock.
+The kernel releases locks when a process dies, and a half-built folder never has an entry's name. If the entries exceed
+the limit, those that are not in use are removed.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Reading interface definitions with bounds and with errors that name the line: texts in, plain definitions out.
+"""Reads interface definitions with bounds and with errors that name the line: texts in, plain definitions out.
 
-The real parser decides what a definition means. What it would let through and generated code could not bear (words of
-C and Python, gigantic arrays) is refused here. The text that goes on is written anew from what was parsed, without
-comments: nothing of the author's own text reaches a generator, and comments do not count for a type's hash.
+The real parser interprets a definition. This module also rejects names and sizes that it accepts but that generated
+code cannot handle: keywords of C and Python, gigantic arrays. The resulting text is written anew from the parsed
+definition, without comments: no text of the author reaches a generator, and comments do not affect a type's hash.
 """
 
 from __future__ import annotations

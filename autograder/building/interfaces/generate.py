@@ -2,8 +2,8 @@
 
     python -m autograder.building.interfaces.generate PREFIX
 
-PREFIX holds `recipe.json`, as `build` wrote it, and gets the built package. A process of its own, because the
-generators patch, print and keep state, and because it forks, which no process with a running rclpy may do.
+PREFIX contains `recipe.json`, as `build` wrote it, and gets the built package. This is a separate process, because the
+generators patch, print and keep state, and because it forks, which a process with a running rclpy must not do.
 """
 
 from __future__ import annotations

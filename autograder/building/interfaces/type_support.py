@@ -1,11 +1,11 @@
-"""Type supports without generated code: they carry a message as bytes, so that no library has to be built for a type.
+"""Type supports without generated code: they transport a message as bytes, so that no type needs its own library.
 
 rclpy and rmw_fastrtps_cpp know a type by C structures with its name, its hash and functions that convert it. A library
-of rosidl holds them as generated code. Here they are made at run time, for any name, and the functions only move bytes.
-What the bytes mean is up to `messages`. A C pointer to a message is the number of an entry in `_messages`.
+of rosidl contains them as generated code. Here they are created at run time, for any name, and the functions only move
+bytes. `messages` interprets the bytes. A C pointer to a message is the number of an entry in `_messages`.
 
-rmw_fastrtps_cpp hands over the bytes in a `Cdr` of Fast CDR 2, which keeps their end to itself. It is read from where
-it lies, behind places that the functions of `Cdr` tell, too: these prove the reading.
+rmw_fastrtps_cpp passes the bytes in a `Cdr` of Fast CDR 2, whose end is private. This module reads it from memory, at
+an offset from members that public functions of `Cdr` also return, which verifies the layout.
 """
 
 from __future__ import annotations

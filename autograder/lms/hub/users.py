@@ -21,7 +21,7 @@ MARK = "made by make hub"  # in the comment of each user that was made here: oth
 def temporary_users(homes: Path, password: str, groups: Mapping[str, Sequence[str]]) -> Iterator[None]:
     """Make groups and their users, with homes below `homes`; remove them in the end, with their processes and homes.
 
-    What a killed trial left behind is removed first.
+    Remains of a killed trial are removed first.
 
     Raises:
         UsageError: a user of that name was there before.

@@ -1,7 +1,7 @@
-"""The service of a JupyterHub that grades what students hand in, as they hand it in.
+"""The service of a JupyterHub that grades students' submissions as they arrive.
 
     submit(...) -> handlers -> store (on disk, then acknowledged) -> queue (whose turn it is) -> grading -> pages
 
-`queue` and `settings` decide, and touch nothing. `store` alone writes. The process may be killed at any instant: what
-was acknowledged is graded, once.
+`queue` and `settings` are pure, and only `store` writes. The process may be killed at any instant: every acknowledged
+answer is graded, once.
 """

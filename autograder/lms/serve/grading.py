@@ -1,4 +1,4 @@
-"""Grades what waits, one answer after the other, or several at once, in the sandbox of `autograder grade`."""
+"""Grades waiting answers, one after the other or several at once, in the sandbox of `autograder grade`."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Grade = Callable[[Job], Result]
 
 @dataclass(frozen=True)
 class Way:
-    """How answers are graded: how many at once, from which seed, how they are kept apart, and what grades one."""
+    """How answers are graded: how many at once, the seed, the isolation level, and the grading function."""
 
     jobs: int = 1
     seed: int = DEFAULT_SEED
@@ -52,7 +52,7 @@ class Grader:
             self._came.notify_all()
 
     def is_graded_now(self, number: int) -> bool:
-        """Return whether a grading of this number goes on."""
+        """Return whether a grading of this number is running."""
         return number in self._busy.values()
 
     def ahead_of(self, number: int) -> int:
@@ -73,7 +73,7 @@ class Grader:
                 out = self._store.folder(handed_in.number)
                 mark = await asyncio.get_running_loop().run_in_executor(pool, self._grade, handed_in, answer, out)
                 self._store.finish(handed_in.number, mark)
-            except Exception:  # of the machine: what a submission can do wrong has become a result
+            except Exception:  # of the machine: a submission's own failures are already in its result
                 LOG.exception("Number %d was not graded. It waits for the next start.", handed_in.number)
                 self._set_aside.add(handed_in.number)
             finally:
@@ -81,7 +81,7 @@ class Grader:
                 await self.notify()  # the student may have another one
 
     async def _take(self) -> HandIn:
-        """Wait until there is an answer to grade, and return it. From then on, its student is busy."""
+        """Wait for an answer to grade, and return it. From then on, its student is busy."""
         async with self._came:
             while True:
                 waiting = (each for each in self._store.waiting() if each.number not in self._set_aside)

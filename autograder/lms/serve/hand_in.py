@@ -11,7 +11,7 @@ from autograder.result.model import Status
 
 @dataclass(frozen=True)
 class Mark:
-    """What a grading came to."""
+    """The outcome of a grading."""
 
     status: Status
     points: float
@@ -20,7 +20,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class HandIn:
-    """An answer that a student handed in: its number, which counts arrivals from 1, and its mark once it is graded."""
+    """A student's submission: its number, which counts arrivals from 1, and its mark once it is graded."""
 
     number: int
     student: str

@@ -1,4 +1,4 @@
-"""The addresses of the service, below its prefix on the hub. The hub says who asks; nobody else's word counts.
+"""The addresses of the service, below its prefix on the hub. Only the hub authenticates users.
 
     GET  ./                               one's own hand-ins
     GET  ./feedback/NUMBER                the page of one; 403 for another student's
@@ -37,7 +37,7 @@ KEY = r"[0-9a-f]{32}"  # of a hand-in, which its client draws
 
 @dataclass(frozen=True)
 class Service:
-    """What the handlers share. `now` gives the present time, with its zone."""
+    """The handlers' shared state. `now` returns the current time, with its zone."""
 
     settings: Settings
     store: Store
@@ -126,7 +126,7 @@ class Known(HubOAuthenticated, RequestHandler):
             raise Refused(403, "This page is for instructors.")
 
     def places(self, own: list[HandIn]) -> dict[int, pages.Place]:
-        """Return where those of the hand-ins that wait stand in the queue."""
+        """Return the positions of the waiting hand-ins in the queue."""
         grader = self.service.grader
         return {
             one.number: pages.Place(graded_now, 0 if graded_now else grader.ahead_of(one.number))
@@ -137,7 +137,7 @@ class Known(HubOAuthenticated, RequestHandler):
 
 
 class NotThere(Known):
-    """An address that there is not."""
+    """An unknown address."""
 
     async def prepare(self) -> None:
         raise Refused(404, "There is no such page.")

@@ -1,6 +1,6 @@
-"""The service's pages, from templates that escape all text; what a page shows is decided here.
+"""The service's pages, from templates that escape all text. This module chooses what a page shows.
 
-A page is served from the hub's own address, and may hold what a student wrote: it lets no script run but the player's.
+A page is served from the hub's own address, and may contain a student's text: only the player's script may run.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Place:
-    """Where a hand-in stands in the queue."""
+    """The position of a hand-in in the queue."""
 
     is_graded_now: bool
     ahead: int
@@ -61,7 +61,7 @@ class Place:
 def sections(
     settings: Settings, own: Sequence[HandIn], places: dict[int, Place], student: str, now: datetime
 ) -> list[Section]:
-    """Return the assignments of a student, with what was handed in."""
+    """Return a student's assignments, with the hand-ins of each."""
     listed = []
     for name, each in settings.assignments.items():
         hand_ins = [one for one in own if one.assignment == name]
@@ -97,7 +97,7 @@ def rows(
 
 
 def points_text(one: HandIn) -> str:
-    """Return a mark as people read it; empty if there is none."""
+    """Return a mark in readable form, or an empty string without a mark."""
     if one.mark is None or one.mark.status is not Status.GRADED:
         return ""
     return f"{one.mark.points:g} of {one.mark.max_points:g}"

@@ -1,4 +1,4 @@
-"""Whose answer is graded next: round robin among students, whenever they came and however much they handed in."""
+"""Chooses the next answer to grade: round robin among students, independent of the number of their hand-ins."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ class Waiting:
 def in_order(
     waiting: Iterable[Waiting], turns: Mapping[str, int], busy: Collection[str] = frozenset()
 ) -> Iterator[Waiting]:
-    """Give the answers in the order in which they are graded if no other comes.
+    """Yield the answers in the order in which they are graded if no other one arrives.
 
-    The next turn is of the student whose last one is longest ago; of those who never had one, of who came first. Among
-    a student's own answers, the oldest is first. So nobody who waits is overtaken twice by the same student.
+    The next turn goes to the student who never had one and came first, or else to the one whose last turn was longest
+    ago. Among a student's own answers, the oldest comes first. So no student overtakes a waiting one a second time.
 
     Args:
         waiting: the answers, in any order.
-        turns: when each student had the last turn, as a count of turns from 1. Who is not in it never had one.
+        turns: the number of each student's last turn, counted from 1. Students without a turn are missing.
         busy: students with an answer that is being graded now. They come after all others.
     """
     answers: dict[str, deque[Waiting]] = {}
     for answer in sorted(waiting, key=lambda each: each.number):
         answers.setdefault(answer.student, deque()).append(answer)
-    turn = 1 + max(turns.values(), default=0)  # of those who are busy
+    turn = 1 + max(turns.values(), default=0)  # students with a running grading
     last = {**turns, **dict.fromkeys(busy, turn)}
     heap = [(last.get(student, 0), own[0].number, student) for student, own in answers.items()]
     heapq.heapify(heap)
@@ -45,7 +45,7 @@ def in_order(
 
 
 def next_turn(waiting: Iterable[Waiting], turns: Mapping[str, int], busy: Collection[str]) -> Waiting | None:
-    """Return the answer to grade next, None if there is none. A student has one graded at a time."""
+    """Return the answer to grade next, or None. A student has at most one running grading."""
     return next(in_order((each for each in waiting if each.student not in busy), turns), None)
 
 

@@ -21,7 +21,7 @@ from autograder.lms.serve.store import Store
 from autograder.notebook.handing_in import MAX_ANSWER
 from autograder.run.sandbox import require
 
-# What the hub tells a service, by the names of its variables.
+# The variables that the hub sets for a service.
 TOKEN, NAME, URL, PREFIX = (
     "JUPYTERHUB_API_TOKEN",
     "JUPYTERHUB_SERVICE_NAME",
@@ -59,7 +59,7 @@ def serve(settings: Settings, folder: Path, way: Way, place: Address) -> None:
     Raises UsageError if the folder or the address cannot be used, and IsolationError if the sandbox cannot be made.
     """
     require(way.isolation)
-    # Ctrl-C ends the process at once, as any other signal does: what was being graded is graded again.
+    # Ctrl-C ends the process at once, like any other signal. Running gradings are repeated later.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     store = Store(folder)
     asyncio.run(_serve(settings, store, way, place))
@@ -68,7 +68,7 @@ def serve(settings: Settings, folder: Path, way: Way, place: Address) -> None:
 async def _serve(settings: Settings, store: Store, way: Way, place: Address) -> None:
     grader = Grader(settings, store, way)
     service = Service(settings, store, grader, place.prefix)
-    # A cookie of the hub's is of use for as long as this process: who has one logs in again, without a word.
+    # A cookie is valid for the lifetime of this process. After that, the browser logs in again by itself.
     server = HTTPServer(application(service, secrets.token_bytes(32)), max_body_size=4 * MAX_ANSWER)
     try:
         server.listen(place.port, place.host)

@@ -36,7 +36,7 @@ MAX_BYTES = 1024 * 1024
 
 
 class Shown(str, Enum):
-    """What a student sees of a grading before the assignment is due. After it, everything is shown."""
+    """The parts of a grading that a student sees before the assignment is due. After that, everything is shown."""
 
     EVERYTHING = "everything"  # the feedback page
     VISIBLE = "visible"  # the checks that students can run themselves
@@ -64,7 +64,7 @@ class AssignmentSettings:
         return due is None or now <= due
 
     def shown_to(self, student: str, now: datetime) -> Shown:
-        """Return what a student sees of their own gradings."""
+        """Return the parts of their own gradings that a student sees."""
         return self.shown if self.is_open(student, now) else Shown.EVERYTHING
 
 
@@ -77,7 +77,7 @@ class Settings:
     zone: tzinfo = timezone.utc
 
     def tries_left(self, assignment: str, earlier: Iterable[datetime], now: datetime) -> int:
-        """Return how often a student can hand in today, who has handed in at these times."""
+        """Return how often a student, with hand-ins at these times, can hand in today."""
         today = now.astimezone(self.zone).date()
         used = sum(time.astimezone(self.zone).date() == today for time in earlier)
         return max(0, self.assignments[assignment].tries_a_day - used)
@@ -171,7 +171,7 @@ def _zone(read: Reader, node: yaml.Node | None) -> tzinfo:
         return timezone.utc
     try:
         return zoneinfo.ZoneInfo(name)
-    except (OSError, ValueError, KeyError):  # a folder, a path out of the data base, and what is not in it
+    except (OSError, ValueError, KeyError):  # a folder, a path outside the database, and an unknown name
         raise bad(read.path, node, f"there is no time zone {name!r}", "Give one such as Europe/Berlin") from None
 
 

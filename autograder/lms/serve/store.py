@@ -1,4 +1,4 @@
-"""What was handed in, on disk. Each method is one transaction, and durable when it returns.
+"""The hand-ins on disk. Each method is one transaction, and durable when it returns.
 
 The answers and the queue are one SQLite file; the results have a folder beside it for each number. No name of a
 student's is a path. Only one process can have it open.
@@ -43,7 +43,7 @@ _COLUMNS = "number, student, assignment, at, status, points, max_points"
 
 
 class Store:
-    """The hand-ins in a folder, which is made if it does not exist, and which nobody else can read."""
+    """The hand-ins in a private folder, which is created if it does not exist."""
 
     def __init__(self, folder: Path) -> None:
         """Open the store. Raises UsageError if it cannot be opened, or another process has it."""
@@ -113,7 +113,7 @@ class Store:
         return self._gradings / f"{number:06}"
 
     def waiting(self) -> list[Waiting]:
-        """Return what is not graded yet, in the order in which it came."""
+        """Return the ungraded hand-ins in the order of their arrival."""
         rows = self._base.execute("SELECT number, student FROM hand_in WHERE status IS NULL ORDER BY number")
         return [Waiting(*row) for row in rows]
 

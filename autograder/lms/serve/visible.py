@@ -1,4 +1,4 @@
-"""The visible checks on an answer that was handed in: what `check(...)` says of the same files."""
+"""The visible checks on a submission, with the same results as `check(...)` on the same files."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ NOT_RUN = "The visible checks were not run on this answer. Run check(...) in the
 
 @dataclass(frozen=True)
 class VisibleReport:
-    """What became of the visible checks."""
+    """The results of the visible checks."""
 
-    sentence: str  # what kept them from being run, or the packages from being built; empty if nothing did
+    sentence: str  # why they could not run, or the packages were not built; empty otherwise
     checks: tuple[CheckResult, ...] = ()
 
 

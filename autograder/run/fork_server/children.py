@@ -1,13 +1,13 @@
 """Also forks, rather than spawns, the children of a forked program: a child fork server.
 
-What `ros2 launch` starts would import all that the launch was forked with, and what colcon starts would import
-setuptools. Neither can fork them itself: it has threads, and things of its own in memory. So before it does anything
-else it forks the child fork server, which stays as it is, and forks for each command that `subprocess` is given.
-Scripts of this Python are forked. Any other command is started as ever, and so is every command where this Python's
-`subprocess` is another than this knows.
+The children of `ros2 launch` would import the same modules as the launch, and those of colcon would import setuptools.
+The program cannot fork them itself, because it has threads and its own data in memory. So it first forks the child fork
+server, which stays unchanged, and forks for each command that is passed to `subprocess`. Only scripts of this Python
+are forked. All other commands are started as usual, and so is every command if this Python's `subprocess` is of an
+unknown version.
 
-A program's parent is the one who asked: the server's child makes it and ends, and then it is adopted (`prctl(2)`,
-PR_SET_CHILD_SUBREAPER). All of it runs inside the sandbox, and is no less the student's to harm.
+The parent of a program is the process that asked for it: the server's child forks it and ends, and then it is adopted
+(`prctl(2)`, PR_SET_CHILD_SUBREAPER). All of this runs inside the sandbox, where the student's code can interfere.
 """
 
 from __future__ import annotations

@@ -12,8 +12,8 @@ from typing import Any
 
 from autograder.run.fork_server.request import ForkRequest
 
-# What bubblewrap starts in a forked program's place: it says that the sandbox stands, and ends with the status that it
-# is sent.
+# The command that bubblewrap starts in place of a forked program. It reports that the sandbox is ready, and exits with
+# the status that it receives.
 PLACEHOLDER_COMMAND = ["sh", "-c", 'echo >&0; read -r status || status=137; exit "$status"']
 TIMEOUT = 60.0  # s for a server's imports, or for one fork, on a machine that is busy
 _ARGV_BYTES = 2048  # bytes of command line, which a program's own child can overwrite with its own

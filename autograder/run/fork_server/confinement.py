@@ -1,7 +1,7 @@
 """Enters a sandbox that bubblewrap has made, and drops the privileges that bubblewrap would have dropped.
 
-A forked process has to come by itself to what bubblewrap gives: the sandbox's namespaces, no capability and no way to
-any, its descriptors and limits. See setns(2), ioctl_nsfs(2), capabilities(7), prctl(2), seccomp(2).
+A forked process has to set up by itself what bubblewrap sets up: the sandbox's namespaces, an empty and final set of
+capabilities, its descriptors and limits. See setns(2), ioctl_nsfs(2), capabilities(7), prctl(2), seccomp(2).
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ _libc = ctypes.CDLL(None, use_errno=True)
 def join(placeholder: int) -> int:
     """Join the namespaces of the process `placeholder`, except its user namespace; return a descriptor of the latter.
 
-    This process becomes the master of the user namespace that owns the others, which the kernel grants to the user who
-    has made it. Its next child is in the pid namespace, too.
+    This process gets all capabilities in the user namespace that owns the others, because its user has created that
+    namespace. Its next child is also in the pid namespace.
     """
     theirs, ours = Path(f"/proc/{placeholder}/ns"), Path("/proc/self/ns")
     others = [_open(theirs / name) for name in _NAMESPACES if not (theirs / name).samefile(ours / name)]

@@ -123,8 +123,8 @@ def _is_from(folder: str, name: str) -> bool:
 def _load_libraries(folders: Iterable[str]) -> None:
     """Load the libraries of the sandbox's own packages.
 
-    The dynamic linker has read LD_LIBRARY_PATH when this process was started, and looks nowhere else. It does take what
-    is loaded already. A library that needs another one of them is tried again.
+    The dynamic linker read LD_LIBRARY_PATH when this process was started, and does not search other folders. But it
+    uses libraries that are already loaded. A library that needs another one of them is tried again.
     """
     waiting = [path for folder in folders if folder for path in sorted(Path(folder).glob("lib*.so"))]
     while waiting:

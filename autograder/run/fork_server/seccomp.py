@@ -1,9 +1,9 @@
-"""Which system calls a student's program does not get: a filter for the kernel, see seccomp(2) and bpf(4).
+"""A filter of the system calls of students' programs, see seccomp(2) and bpf(4).
 
-Namespaces and limits hold without it. It takes away what they do not count (memory in files that nobody has mapped),
-what they do not part (keys, sockets to a virtual machine's host), and parts of the kernel that no node needs and that
-had gaps before. A forbidden call fails as one that the kernel does not know (ENOSYS): libraries then do without it.
-The filter is for x86-64, as ROS's wheels are.
+Namespaces and limits are effective without it. It blocks resources that the limits do not count (memory in unmapped
+files), that the namespaces do not separate (keys, sockets to a virtual machine's host), and parts of the kernel that no
+node needs and that had vulnerabilities. A blocked call fails like one that the kernel does not know (ENOSYS), so that
+libraries fall back to others. The filter is for x86-64, like ROS's wheels.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""Reads a submission into memory, and finds what counts in it. Nothing in it is executed here.
+"""Reads a submission into memory, and finds the part that counts. Nothing in it is executed here.
 
 A submission is the folder of an assignment (the notebook and `ws/` beside it), a zip or tar archive of such a folder,
-the notebook alone, or a source tree with `src/`. It may lie deeper, in an archive in an archive, under another name and
-beside other files. Links, devices, absolute paths and parent paths are refused, or left out where they are not needed.
-Sizes, counts and depths are limited. What tools leave in folders is ignored.
+the notebook alone, or a source tree with `src/`. It may be nested, in an archive in an archive, under another name and
+beside other files. Links, devices, absolute paths and parent paths are refused, or left out if they are not needed.
+Sizes, counts and depths are limited. Files that tools leave behind are ignored.
 
     path -> reading -> files -> answer (which notebook and source tree) -> counting (files in `ws/src`, else cells)
 """
@@ -67,11 +67,11 @@ class Submission:
     # Files beside the notebook that it may read, with paths relative to the assignment's folder.
     extra: tuple[SubmittedFile, ...]
     sha256: str  # digest of all files' paths and contents, in hexadecimal digits
-    graded_sha256: str  # likewise, of what a grading reads: a folder and a zip of it have the same
+    graded_sha256: str  # digest of the files that a grading reads: a folder and a zip of it have the same
     # The packages that are graded, with paths relative to `ws/src`; None if the notebook has to make some of them.
     packages: tuple[SubmittedFile, ...] | None = None
-    notices: tuple[str, ...] = ()  # sentences for the student about what counts
-    unused: tuple[str, ...] = ()  # what was found and plays no part, by its path
+    notices: tuple[str, ...] = ()  # sentences for the student about the files that count
+    unused: tuple[str, ...] = ()  # files that do not count, by their paths
 
 
 def read_packages(root: Path) -> tuple[SubmittedFile, ...]:
@@ -152,7 +152,7 @@ def with_given_packages(submission: Submission, assignment: str) -> tuple[Submit
 
 
 def what_counts(submission: Submission, written: Sequence[SubmittedFile], assignment: str) -> Counted:
-    """Return what counts of a submission whose notebook has left the packages `written`."""
+    """Return the part of a submission that counts, after its notebook has written the packages `written`."""
     exercises = exercises_of(assignment)
     if exercises is None:
         return Counted(tuple(written))
@@ -180,7 +180,7 @@ def _extra(files: Sequence[SubmittedFile], answer: Answer) -> tuple[SubmittedFil
 def _graded(
     notebook: bytes | None, source: Sequence[SubmittedFile], extra: Sequence[SubmittedFile], assignment: str
 ) -> list[SubmittedFile]:
-    """Return what a grading reads whose notebook runs, in one layout for all submissions."""
+    """Return the files for a grading that runs the notebook, in one layout for all submissions."""
     graded = [*extra, *(replace(file, path=SOURCE / file.path) for file in source)]
     if notebook is not None:
         graded.append(SubmittedFile(PurePosixPath(f"{assignment}.ipynb"), notebook))
@@ -193,7 +193,7 @@ def _unused(
     answer: Answer,
     assignment: str,
 ) -> tuple[str, ...]:
-    """Return the names of what was found and plays no part, with a reason where it was not read."""
+    """Return the names of files that do not count, with a reason if they were not read."""
     notebook = answer.notebook.file.path if answer.notebook is not None else None
     root = notebook.parent if notebook is not None else answer.tree.root if answer.tree is not None else PurePosixPath()
     exercises = exercises_of(assignment)

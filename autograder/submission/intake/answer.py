@@ -1,4 +1,4 @@
-"""Finds the answer in what was handed in: the notebook and the source tree that count, of several that may be there.
+"""Finds the answer in a submission: the notebook and the source tree that count, if there may be several.
 
 A candidate counts if its answers hold those of each other one: an untouched release never wins over an edited copy, and
 of equal ones either counts. Where two candidates answer differently, the submission is unclear.
@@ -39,13 +39,13 @@ class Tree:
     answers: Answers
 
     def holds(self, path: PurePosixPath) -> bool:
-        """Return whether a file of the submission lies in it."""
+        """Return whether a file of the submission is in it."""
         return not (self.packages or {self.home}).isdisjoint((path, *path.parents))
 
 
 @dataclass(frozen=True)
 class Notebook:
-    """A notebook: its file, its cells, and what was written into it. `broken` says why it cannot be read."""
+    """A notebook: its file, its cells, and its answers. `broken` says why it cannot be read."""
 
     file: SubmittedFile
     cells: tuple[Cell, ...]
@@ -60,7 +60,7 @@ class Notebook:
 
 @dataclass(frozen=True)
 class Answer:
-    """What counts of a submission. Either may be missing; `broken` is a notebook that cannot be read."""
+    """The part of a submission that counts. Either may be missing; `broken` is a notebook that cannot be read."""
 
     notebook: Notebook | None
     tree: Tree | None
@@ -72,7 +72,7 @@ def find_answer(
     """Find the answer among the files of a submission.
 
     Raises:
-        StudentError: there is none, it cannot be read, or two candidates answer differently.
+        StudentError: it has none, it cannot be read, or two candidates answer differently.
     """
     trees = _trees(files, assignment, exercises)
     notebooks = _notebooks(files, trees, assignment, exercises)
@@ -114,7 +114,7 @@ def find_answer(
 
 
 def broken_sentence(notebook: Notebook) -> str:
-    """Return what is wrong with a notebook that cannot be read, and what to do."""
+    """Return why a notebook cannot be read, and how to fix it."""
     name = notebook.file.path
     return (
         f"{name} cannot be read as a notebook ({notebook.broken}): open it in JupyterLab, save it and hand it in again."
@@ -122,7 +122,7 @@ def broken_sentence(notebook: Notebook) -> str:
 
 
 def _is_needed(path: PurePosixPath, tree: Tree | None) -> bool:
-    """Return whether what was not read belongs to the source tree, or hides it."""
+    """Return whether an unread file belongs to the source tree, or hides it."""
     if tree is not None:
         return path.is_relative_to(tree.home)
     return path.name in ("ws", "src") or "src" in path.parts
@@ -132,7 +132,7 @@ C = TypeVar("C", Tree, Notebook)
 
 
 def _only(candidates: Sequence[C], preference: Callable[[C], object], what: str) -> C | None:
-    """Return the candidate that counts; None if there is none. Raises StudentError if there are several."""
+    """Return the candidate that counts, or None. Raises StudentError if several could."""
     fullest = [c for c in candidates if not any(c.answers.items() < other.answers.items() for other in candidates)]
     different = [c for c in fullest if c.answers != fullest[0].answers]
     if different:
@@ -188,7 +188,7 @@ def _trees(files: Sequence[SubmittedFile], assignment: str, exercises: Exercises
 
 
 def _home(parts: tuple[str, ...]) -> PurePosixPath | None:
-    """Return the folder of packages in which a file lies: the first `ws/src` of its path, or else the first `src`."""
+    """Return the folder of packages that contains a file: the first `ws/src` of its path, or else the first `src`."""
     for index in range(len(parts) - 2):
         if parts[index : index + 2] == ("ws", "src"):
             return PurePosixPath(*parts[: index + 2])
@@ -214,7 +214,7 @@ def _tree_answers(files: Mapping[PurePosixPath, SubmittedFile], exercises: Exerc
 def _notebooks(
     files: Sequence[SubmittedFile], trees: Sequence[Tree], assignment: str, exercises: Exercises | None
 ) -> list[Notebook]:
-    """Return the notebooks of the assignment, by their name or by their cells; any others where there are none."""
+    """Return the notebooks of the assignment, by name or by cells, or all notebooks if none matches."""
     homes = {tree.home for tree in trees if tree.home.parts}
     named, alike, others = [], [], []
     for file in files:

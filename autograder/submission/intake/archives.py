@@ -1,4 +1,4 @@
-"""Reads archives: zip, and tar with any compression of the standard library. What cannot be read gets a sentence."""
+"""Reads archives: zip, and tar with any compression of the standard library. Errors become sentences."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from autograder.submission.intake.names import reading_rank
 # By their first bytes: archives that the standard library does not open.
 FOREIGN = {b"7z\xbc\xaf\x27\x1c": "7z", b"Rar!\x1a\x07": "RAR", b"\x28\xb5\x2f\xfd": "Zstandard"}
 MAX_DIRECTORY = 32 * 1024 * 1024  # bytes of a zip's list of its files
-MAX_NAME = 1024  # characters; what is longer, or lies deeper, is never an answer, and looking at it takes long
+MAX_NAME = 1024  # characters; longer or deeper paths are never an answer, and examining them is slow
 MAX_FOLDERS = 64
 MAX_DICTIONARY = 128 * 1024 * 1024  # bytes of memory to decompress xz
 _EXECUTABLE = 0o100
@@ -33,7 +33,7 @@ _COMPRESSED: dict[bytes, Callable[[IO[bytes]], Any]] = {
     b"BZh": lambda raw: bz2.BZ2File(raw),
     b"\xfd7zXZ\x00": lambda raw: _decompressed(raw, lzma.LZMADecompressor(memlimit=MAX_DICTIONARY)),
 }
-# `zipfile`, `tarfile` and the decompressors raise these for what is damaged, encrypted or packed by an unknown method.
+# Errors of `zipfile`, `tarfile` and the decompressors for damaged, encrypted or unknown data.
 DAMAGED = (
     *(zipfile.BadZipFile, zipfile.LargeZipFile, tarfile.TarError, zlib.error, lzma.LZMAError, struct.error),
     *(NotImplementedError, EOFError, OSError, RuntimeError, ValueError, OverflowError),
@@ -42,7 +42,7 @@ DAMAGED = (
 
 @dataclass(frozen=True)
 class Member:
-    """A file of an archive. `problem` says what else it is: a link, or no regular file."""
+    """A file of an archive. `problem` names anything else: a link, or a special file."""
 
     path: PurePosixPath
     size: int
@@ -57,7 +57,7 @@ def foreign_kind(head: bytes) -> str:
 
 
 def foreign_sentence(name: str, kind: str) -> str:
-    """Return what to do with an archive that is not opened here."""
+    """Return advice for an archive that is not opened here."""
     return f"{name} is a {kind} archive, which the grader does not open: unpack it, and hand in the folder as a zip"
 
 
@@ -145,7 +145,7 @@ def _inflate(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
 
 
 def _inflate_in_steps(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
-    """Decompress what `zipfile` would decompress at once: 4 KB of bzip2 can become 4 GB."""
+    """Decompress in steps where `zipfile` would decompress at once: 4 KB of bzip2 can become 4 GB."""
     stored = copy.copy(info)
     stored.compress_type, stored.file_size = zipfile.ZIP_STORED, info.compress_size
     del stored.CRC  # of the content, which is compared below
@@ -164,7 +164,7 @@ def _inflate_in_steps(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
 
 
 def _read_tar(opened: Callable[[], IO[bytes]], prefix: PurePosixPath, contents: Contents) -> None:
-    """Read a tar: its names first, as the mark of an environment may come last, then what may be the answer."""
+    """Read a tar: its names first, because the mark of an environment may come last, then the possible answers."""
     with tarfile.open(fileobj=opened(), mode="r|") as archive:
         paths, files = [], []
         for info in archive:
@@ -227,7 +227,7 @@ class _Counted(io.RawIOBase):
 
 
 def _decompressed(raw: IO[bytes], decompressor: Any, head: bytes = b"") -> IO[bytes]:
-    """Return a stream of what a decompressor makes of `head` and what follows, in steps."""
+    """Return a stream that decompresses `head` and the rest of the file in steps."""
     return io.BufferedReader(_Decompressed(raw, decompressor, head))
 
 

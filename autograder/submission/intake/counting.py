@@ -1,4 +1,4 @@
-"""What counts of a submission: the files in `ws/src`, as `check` sees them.
+"""Merges the files of a submission that count: those in `ws/src`, as `check` sees them.
 
 A file that is missing, or still as it was released, is taken from the cell of the notebook that writes it. Where files
 are made by other code, the notebook has to run.
@@ -21,10 +21,10 @@ Files = Mapping[PurePosixPath, SubmittedFile]
 
 @dataclass(frozen=True)
 class Cells:
-    """What the code cells of a notebook do.
+    """The effects of a notebook's code cells.
 
     Attributes:
-        texts: the text of each file below `ws/src` that a cell only writes; the last cell counts that is no stub.
+        texts: the text of each file below `ws/src` that a cell only writes; the last cell without a stub counts.
         others: whether a cell that is not the course's own does anything else.
     """
 
@@ -41,7 +41,7 @@ class Counted:
 
 
 def read_code(cells: Sequence[Cell], exercises: Exercises) -> Cells:
-    """Return what the code cells of a submitted notebook do."""
+    """Return the effects of the code cells of a submitted notebook."""
     texts: dict[PurePosixPath, str] = {}
     others = False
     for cell in cells:
@@ -69,7 +69,7 @@ def with_given(source: Files, exercises: Exercises) -> dict[PurePosixPath, Submi
 
 
 def count(source: Files, cells: Cells, exercises: Exercises) -> Counted:
-    """Return what counts of a source tree and a notebook, without running the notebook."""
+    """Return the files that count of a source tree and a notebook, without running the notebook."""
     counting = {path for path, file in source.items() if not exercises.is_as_released(path, file.data)}
     missing = (exercises.targets.keys() | exercises.makes) - counting
     if exercises.unknown or (missing and (cells.others or missing & exercises.makes)):
@@ -94,7 +94,7 @@ def count(source: Files, cells: Cells, exercises: Exercises) -> Counted:
 
 
 def merge(source: Files, written: Sequence[SubmittedFile], exercises: Exercises) -> Counted:
-    """Return what counts of a source tree and of the tree that the notebook has left: what `check` saw comes first."""
+    """Return the files that count of a source tree and of the notebook's tree: those that `check` saw come first."""
     ran = {file.path: file for file in written}
     counting = {path: file for path, file in source.items() if not exercises.is_as_released(path, file.data)}
     files = dict(counting)
@@ -122,7 +122,7 @@ def _from_cell(path: PurePosixPath, *, there: bool) -> str:
 
 
 def _add_what_fits(files: dict[PurePosixPath, SubmittedFile], more: Iterable[SubmittedFile]) -> None:
-    """Add files to a tree, but none that is called like a folder there, or lies below a file."""
+    """Add files to a tree, except those that conflict with a folder or file there."""
     folders = {folder for path in files for folder in path.parents}
     for file in more:
         if file.path not in folders and not any(folder in files for folder in file.path.parents):

@@ -1,4 +1,4 @@
-"""What the students of a chapter write: its exercise cells, the files that these make, and how they were released."""
+"""The exercises of a chapter: its exercise cells, the files that they create, and their released form."""
 
 from __future__ import annotations
 
@@ -148,7 +148,7 @@ def _released(cell: Cell) -> str:
 
 
 def _below(top: Path) -> Iterator[tuple[PurePosixPath, Path]]:
-    """Yield the files below a folder of the course, without what tools left there."""
+    """Yield the files below a folder of the course, without those that tools left there."""
     for folder, folders, files in os.walk(top):
         folders[:] = [name for name in folders if not is_ignored(name)]
         for name in files:

@@ -36,11 +36,11 @@ class SubmittedFile:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """What was found in a submission and not read: its path, and the reason, which follows the path in a sentence."""
+    """A file of a submission that was not read: its path, and the reason, which follows the path in a sentence."""
 
     path: PurePosixPath
     why: str
-    whole: str = ""  # the reason as a sentence of its own, where the path says nothing
+    whole: str = ""  # the reason as a whole sentence, if the path is of no help
     may_hold_answer: bool = False  # whether it is an archive or a notebook
 
     @property
@@ -51,13 +51,13 @@ class LeftOut:
 
 @dataclass
 class Contents:
-    """The files of a submission, and what was left out. It counts bytes before they are read."""
+    """The files of a submission, and those that were left out. It counts bytes before they are read."""
 
     files: list[SubmittedFile] = field(default_factory=list)
     left_out: list[LeftOut] = field(default_factory=list)
     kept: int = 0  # bytes in memory
     read: int = 0  # bytes that were read or decompressed
-    unpacked: int = 0  # bytes that were decompressed, also of what is skipped
+    unpacked: int = 0  # decompressed bytes, including those of skipped files
     scanned: int = 0
     archives: int = 0
 
@@ -78,7 +78,7 @@ class Contents:
         del self.files[first:]
 
     def omit(self, path: PurePosixPath, why: str, whole: str = "") -> None:
-        """Note what is not read."""
+        """Record a file that is not read."""
         may_hold_answer = is_archive(path.name) or is_notebook(path.name)
         self.left_out.append(LeftOut(path, why, whole, may_hold_answer))
 

@@ -1,4 +1,4 @@
-"""The files and folders beside an answer that tools leave there: nobody hands them in on purpose."""
+"""The files and folders that tools leave beside an answer, and that no student submits on purpose."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 
 from autograder.submission.intake.files import MAX_DEPTH, unsafe
 
-# What colcon builds, what Python, Jupyter, editors and version control keep, and what systems add to folders.
+# The output of colcon, files of Python, Jupyter, editors and version control, and files that systems add to folders.
 IGNORED = frozenset(
     {"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".pytest_cache", ".mypy_cache", ".ruff_cache"}
     | {".hypothesis", ".tox", ".nox", ".cache", ".git", ".svn", ".hg", ".venv", "venv", "node_modules", ".Trash"}
@@ -17,7 +17,7 @@ IGNORED = frozenset(
 _APPLE_DOUBLE = "._"
 # A folder with one of these is an environment of Python or conda, whatever it is called.
 _ENVIRONMENT_MARKS = frozenset({"pyvenv.cfg", "conda-meta"})
-# What an environment puts into its folder, where somebody made it in the assignment's own.
+# The files of a virtual environment in its folder, if that is the assignment's own.
 _ENVIRONMENT_PARTS = frozenset(
     {"bin", "lib", "lib64", "include", "share", "etc", "pyvenv.cfg", "conda-meta", "Scripts", "Lib", "Include"}
 )
@@ -53,10 +53,10 @@ class _Folder:
 
 
 class IgnoredPaths:
-    """Says of each path of an archive whether it is part of the submission.
+    """Decides for each path of an archive whether it is part of the submission.
 
-    A path is walked once, down to where no answer lies. Raises StudentError if there are more environments than
-    anybody has.
+    Each path is walked once, only as deep as answers can be. Raises StudentError if it has more environments than
+    is plausible.
     """
 
     def __init__(self, paths: Iterable[PurePosixPath]) -> None:

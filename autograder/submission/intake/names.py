@@ -1,10 +1,10 @@
-"""What the name of a file says: a notebook, an archive, the assignment, its student."""
+"""Interprets the name of a file: a notebook, an archive, the assignment, its student."""
 
 from __future__ import annotations
 
 from pathlib import PurePosixPath
 
-NOTEBOOKS = (".ipynb", ".ipynb.txt", ".ipynb.json")  # browsers add an ending to what they show as text
+NOTEBOOKS = (".ipynb", ".ipynb.txt", ".ipynb.json")  # browsers add a suffix to files that they show as text
 # Also of archives that the grader does not open: it says so.
 ARCHIVES = (
     *(".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tbz2", ".tbz", ".tar.xz", ".txz"),
@@ -35,7 +35,7 @@ def stem(name: str) -> str:
 
 
 def reading_rank(path: PurePosixPath) -> int:
-    """Return when a file is read: what may be the answer comes before what lies beside it."""
+    """Return the reading order of a file: possible answers come before other files."""
     if "src" in path.parts or is_notebook(path.name):
         return 0
     return 1 if is_archive(path.name) else 2

@@ -18,7 +18,7 @@ MAX_STRINGS = 1_000_000
 MAX_STRUCTURE = 8 * 1024 * 1024  # bytes outside of strings
 MAX_VALUES = 2_000_000  # commas and brackets outside of strings: three bytes can take sixty in memory
 MAX_CELLS = 20_000
-MAX_METADATA = 10_000  # characters of what a cell says of itself, as JSON; it is left out where it says more
+MAX_METADATA = 10_000  # characters of a cell's metadata as JSON; longer ones are left out
 _COUNTING = ("nbgrader", "course")
 _ID = re.compile(r"[a-zA-Z0-9_-]{1,64}")
 
@@ -108,7 +108,7 @@ def _cell(cell: object, number: int, ids: set[str]) -> Cell:
 
 
 def _metadata(metadata: object) -> dict[str, Any]:
-    """Return what counts of a cell's metadata: other tools' would be kept in memory for nothing."""
+    """Return the relevant metadata of a cell. Other tools' metadata would only use memory."""
     if not isinstance(metadata, dict):
         return {}
     counts = {name: metadata[name] for name in _COUNTING if name in metadata}

@@ -16,7 +16,7 @@ from autograder.submission.intake.files import MAX_DEPTH, Contents, SubmittedFil
 from autograder.submission.intake.ignored import environment_parts, is_ignored
 from autograder.submission.intake.names import is_archive, is_notebook, reading_rank
 
-MAX_ARCHIVES = 20  # that lie in a submission, at any depth
+MAX_ARCHIVES = 20  # in a submission, at any depth
 MAX_NESTING = 3
 _EXECUTABLE = 0o100
 
@@ -97,7 +97,7 @@ def _read_folder(root: Path, contents: Contents, *, unpack: bool = False) -> Non
 
 
 def _info(path: Path) -> os.stat_result | None:
-    """Return what the system says of a path, None if it is too long for it to say anything."""
+    """Return the status of a path, or None if it is too long for the system."""
     try:
         return path.lstat()
     except OSError as error:
