@@ -39,7 +39,8 @@ _HELP = """A 2D lidar simulator.
 python -m sim WORLD                  run it as the ROS 2 node `simulator`
 python -m sim picture WORLD OUT.png  draw a world
 python -m sim plot RUN.npz OUT.svg   draw a recorded run
-python -m sim export RUN.npz OUT     write it as .gif, .html or .mcap
+python -m sim export RUN.npz OUT     write it as .gif, .mp4, .html or .mcap
+python -m sim teleop                 drive a robot by the keys of this terminal
 """
 
 
@@ -122,11 +123,24 @@ def plot(recording: Path, picture: Path, colour: Any, mark: float | None, note: 
 @main.command(name="export")
 @click.argument("recording", type=_EXISTING)
 @click.argument("out", type=click.Path(path_type=Path))
-def export_(recording: Path, out: Path) -> None:
-    """Write a saved RECORDING as OUT: .gif, .html, or .mcap for a rosbag2 folder of that name."""
+@click.option("--speed", type=float, help="Of a .gif or .mp4: simulated seconds in a second.  [default: 1]")
+@click.option("--fps", type=float, help="Of a .gif or .mp4: frames a second.  [default: 10 or 25]")
+def export_(recording: Path, out: Path, **options: float | None) -> None:
+    """Write a saved RECORDING as OUT: .gif, .mp4, .html, or .mcap for a rosbag2 folder of that name."""
     from sim.export import export
 
-    click.echo(export(load_recording(recording), out))
+    given = {name: value for name, value in options.items() if value is not None}
+    click.echo(export(load_recording(recording), out, **given))
+
+
+@main.command()
+@click.option("--robot", "namespace", default="", metavar="NAMESPACE", help="The robot's namespace.")
+@click.option("--stamped", is_flag=True, help="Send TwistStamped instead of Twist.")
+def teleop(namespace: str, stamped: bool) -> None:
+    """Drive a robot by the keys of this terminal, over ROS."""
+    from sim.bridge.teleop import drive
+
+    drive(namespace, stamped=stamped)
 
 
 def _save(drawn: Any, path: Path) -> None:

@@ -12,13 +12,14 @@ from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import Quaternion, TwistStamped
-from nav_msgs.msg import Odometry
+from geometry_msgs.msg import Quaternion, TransformStamped, TwistStamped
+from nav_msgs.msg import OccupancyGrid, Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
 
 from sim.lidar import Scan
-from sim.pose import Command
+from sim.maps.grid import Grid
+from sim.pose import Command, Pose
 from sim.state import RobotState
 
 NANOSECONDS = 1_000_000_000
@@ -80,6 +81,53 @@ def odom_to_msg(robot: RobotState, time_ns: int, frame_id: str = "odom", child_f
     msg.pose.covariance[_PLANAR] = robot.covariance
     msg.twist.twist.linear.x = float(robot.velocity.linear)
     msg.twist.twist.angular.z = float(robot.velocity.angular)
+    return msg
+
+
+def truth_to_msg(robot: RobotState, time_ns: int, child_frame_id: str = "base_link") -> Any:
+    """Return where a robot truly is as nav_msgs/Odometry in frame `map`, with no covariance."""
+    msg = Odometry()
+    msg.header.stamp = time_to_msg(time_ns)
+    msg.header.frame_id = "map"
+    msg.child_frame_id = child_frame_id
+    msg.pose.pose.position.x = float(robot.pose.x)
+    msg.pose.pose.position.y = float(robot.pose.y)
+    msg.pose.pose.orientation = yaw_to_quaternion(robot.pose.theta)
+    msg.twist.twist.linear.x = float(robot.velocity.linear)
+    msg.twist.twist.angular.z = float(robot.velocity.angular)
+    return msg
+
+
+def transform_to_msg(pose: Pose, time_ns: int, frame_id: str, child_frame_id: str) -> Any:
+    """Return geometry_msgs/TransformStamped: `pose` is that of the child frame in the frame `frame_id`."""
+    msg = TransformStamped()
+    msg.header.stamp = time_to_msg(time_ns)
+    msg.header.frame_id = frame_id
+    msg.child_frame_id = child_frame_id
+    msg.transform.translation.x = float(pose.x)
+    msg.transform.translation.y = float(pose.y)
+    msg.transform.rotation = yaw_to_quaternion(pose.theta)
+    return msg
+
+
+def map_to_odom(robot: RobotState) -> Pose:
+    """Return the pose of frame odom in frame map that corrects the drift: with it, base_link is where the robot is."""
+    turn = robot.pose.theta - robot.odometry.theta
+    cosine, sine = math.cos(turn), math.sin(turn)
+    x, y = robot.odometry.x, robot.odometry.y
+    return Pose(robot.pose.x - cosine * x + sine * y, robot.pose.y - sine * x - cosine * y, turn)
+
+
+def grid_to_msg(grid: Grid, time_ns: int = 0) -> Any:
+    """Return `grid` as nav_msgs/OccupancyGrid in frame `map`."""
+    msg = OccupancyGrid()
+    msg.header.stamp = msg.info.map_load_time = time_to_msg(time_ns)
+    msg.header.frame_id = "map"
+    msg.info.resolution = float(grid.resolution)
+    msg.info.height, msg.info.width = grid.cells.shape
+    msg.info.origin.position.x = float(grid.x)
+    msg.info.origin.position.y = float(grid.y)
+    msg.data = array.array("b", grid.cells.tobytes())
     return msg
 
 

@@ -38,9 +38,15 @@ RECORD_NS = 50_000_000
 CLOCK_QOS = QoSProfile(depth=1, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.RELIABLE)
 """Reliable, so that it matches every subscription; one deep, for only the newest time is worth having."""
 
+RELIABLE_QOS = QoSProfile(depth=5, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.RELIABLE)
+"""As the lidar's own, but reliable: it matches subscriptions of both kinds."""
+
 
 class SimulatorNode(Node):
-    """Publishes `scan`, `odom` and `/clock`, obeys `cmd_vel`; services `~/pause`, `~/step`, `~/reset`."""
+    """Publishes `scan`, `odom` and `/clock`, obeys `cmd_vel`; services `~/pause`, `~/step`, `~/reset`.
+
+    By option it also sends frames, a map and the true pose: see `sim.bridge.localization`.
+    """
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("simulator", **kwargs)
@@ -58,14 +64,20 @@ class SimulatorNode(Node):
         self._scans: dict[str, Any] = {}
         self._odometry: dict[str, Any] = {}
         twist = TwistStamped if values["stamped_cmd_vel"] else Twist
+        scan_qos = RELIABLE_QOS if values["scan_qos"] == "reliable" else qos_profile_sensor_data
         for spec in self._driver.simulation.robots:
             prefix = f"{spec.namespace}/" if spec.namespace else ""
-            self._scans[spec.name] = self.create_publisher(LaserScan, f"{prefix}scan", qos_profile_sensor_data)
+            self._scans[spec.name] = self.create_publisher(LaserScan, f"{prefix}scan", scan_qos)
             self._odometry[spec.name] = self.create_publisher(Odometry, f"{prefix}odom", 10)
             self.create_subscription(twist, f"{prefix}cmd_vel", self._listener(spec.name), 10)
         self._prefixes = {
             spec.name: f"{spec.namespace}/" if spec.namespace else "" for spec in self._driver.simulation.robots
         }
+        self._localization: Any = None
+        if values["tf"] != "none" or values["publish_map"] or values["ground_truth"]:
+            from sim.bridge.localization import Localization  # it needs tf2_msgs, which few runs do
+
+            self._localization = Localization(self, self._driver.simulation, self._prefixes, values)
 
         self.create_service(SetBool, "~/pause", self._on_pause)
         self.create_service(Trigger, "~/step", self._on_step)
@@ -131,6 +143,8 @@ class SimulatorNode(Node):
         """Send the clock first: whoever gets the data then knows a time that is not before its stamp."""
         time_ns = sent.state.time_ns
         self._clock_publisher.publish(clock_to_msg(time_ns))
+        if self._localization is not None:  # before the scans, whose frames it gives
+            self._localization.publish(sent.state, sent.odometry, sent.scans)
         for robot in sent.state.robots:
             prefix = self._prefixes[robot.name]
             if robot.name in sent.odometry:

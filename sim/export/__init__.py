@@ -1,9 +1,9 @@
-"""A recording for others: a GIF for a slide, an HTML page for a browser, a rosbag2 (mcap) for ROS tools.
+"""A recording for others: a GIF or MP4 for a slide, an HTML page for a browser, a rosbag2 (mcap) for ROS tools.
 
-    >>> from sim.export import to_gif, to_html, to_mcap
+    >>> from sim.export import to_gif, to_html, to_mcap, to_mp4
     >>> to_html(recording, "run.html")
 
-`to_mcap` needs the extra `export`. All three give the same bytes for the same recording.
+`to_mcap` needs the extra `export`, and `to_mp4` the program ffmpeg. All but it give the same bytes for the same run.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pathlib import Path
 from sim.export.exceptions import ExportError
 from sim.recording import Recording
 
-__all__ = ["ExportError", "export", "to_gif", "to_html", "to_mcap"]
+__all__ = ["ExportError", "export", "to_gif", "to_html", "to_mcap", "to_mp4"]
 
 
 def to_gif(recording: Recording, path: str | Path, *, speed: float = 1.0, fps: float = 10.0) -> Path:
@@ -32,6 +32,23 @@ def to_gif(recording: Recording, path: str | Path, *, speed: float = 1.0, fps: f
     from sim.export.gif import write_gif
 
     return write_gif(recording, Path(path), speed, fps)
+
+
+def to_mp4(recording: Recording, path: str | Path, *, speed: float = 1.0, fps: float = 25.0) -> Path:
+    """Write the live view's frames as an MP4; return the path.
+
+    Args:
+        recording: the run.
+        path: of the MP4.
+        speed: simulated seconds in a second.
+        fps: frames a second.
+
+    Raises:
+        ExportError: there is no ffmpeg, or it fails, or the speed or the frame rate makes no sense.
+    """
+    from sim.export.video import write_video
+
+    return write_video(recording, Path(path), speed, fps)
 
 
 def to_html(recording: Recording, path: str | Path) -> Path:
@@ -52,16 +69,24 @@ def to_mcap(recording: Recording, path: str | Path) -> Path:
     return write_bag(recording, Path(path))
 
 
-def export(recording: Recording, path: str | Path) -> Path:
-    """Write `recording` as the ending of `path` says: .gif, .html, or .mcap for a rosbag2 folder without that ending.
+def export(recording: Recording, path: str | Path, **options: float) -> Path:
+    """Write `recording` as the ending of `path` says: .gif, .mp4, .html, or .mcap for a rosbag2 folder without it.
+
+    Args:
+        recording: the run.
+        path: of what is written.
+        options: `speed` and `fps` of a GIF or an MP4.
 
     Raises:
-        ExportError: for another ending.
+        ExportError: for another ending, or options that it has no use for.
     """
-    kinds: dict[str, Callable[[Recording, Path], Path]] = {".gif": to_gif, ".html": to_html, ".mcap": to_mcap}
+    films: dict[str, Callable[..., Path]] = {".gif": to_gif, ".mp4": to_mp4}
+    kinds: dict[str, Callable[..., Path]] = {**films, ".html": to_html, ".mcap": to_mcap}
     path = Path(path)
     write = kinds.get(path.suffix.lower())
     if write is None:
         ending = path.suffix or "a name without an ending"
-        raise ExportError(f"{path}: can't export to {ending!r}: use .gif, .html or .mcap")
-    return write(recording, path)
+        raise ExportError(f"{path}: can't export to {ending!r}: use .gif, .mp4, .html or .mcap")
+    if options and path.suffix.lower() not in films:
+        raise ExportError(f"{path}: only a .gif or .mp4 has {' and '.join(sorted(options))}: leave it out")
+    return write(recording, path, **options)

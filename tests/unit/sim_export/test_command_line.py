@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
+from PIL import Image
 
 from sim import Recording
 from sim.__main__ import main
@@ -22,7 +23,7 @@ def test_help_says_how_to_start() -> None:
     result = call("--help")
     assert result.exit_code == 0
     assert "python -m sim WORLD" in result.output
-    assert {"run", "picture", "plot", "export"} <= set(result.output.split())
+    assert {"run", "picture", "plot", "export", "teleop"} <= set(result.output.split())
     assert "--ros-args" in call("run", "--help").output
 
 
@@ -41,6 +42,9 @@ def test_plot_and_export_take_a_saved_recording(recording: Recording, tmp_path: 
     result = call("export", tmp_path / "run.npz", tmp_path / "run.html")
     assert result.exit_code == 0
     assert result.output.strip() == str(tmp_path / "run.html")
+    assert call("export", tmp_path / "run.npz", tmp_path / "run.gif", "--speed", "4", "--fps", "5").exit_code == 0
+    with Image.open(tmp_path / "run.gif") as image:
+        assert image.n_frames == 1 + int(recording.times[-1] / 4.0 * 5.0)  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize(
@@ -53,6 +57,7 @@ def test_plot_and_export_take_a_saved_recording(recording: Recording, tmp_path: 
         (["picture", LAB, "nowhere/out.png"], 1, "No such file"),
         (["plot", LAB, "out.png"], 1, "not a recording"),
         (["export", LAB, "out.gif"], 1, "not a recording"),
+        (["teleop"], 1, "run it in a terminal"),
         (["picture", str(ROOT / "LICENSE"), "out.png"], 1, "LICENSE"),
     ],
 )

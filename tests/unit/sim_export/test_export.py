@@ -6,6 +6,8 @@ import hashlib
 import json
 import math
 import re
+import shutil
+import subprocess
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
@@ -17,7 +19,7 @@ from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
 from sim import Recording, SimError, World, run
-from sim.export import ExportError, export, to_gif, to_html, to_mcap
+from sim.export import ExportError, export, to_gif, to_html, to_mcap, to_mp4
 from sim.simulation import Simulation
 
 
@@ -47,6 +49,29 @@ def test_an_endless_gif_is_refused(recording: Recording, tmp_path: Path) -> None
         to_gif(recording, tmp_path / "run.gif", speed=0.01)
 
 
+def test_a_video_without_ffmpeg_says_what_to_do(
+    recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(ExportError, match=r"needs the program ffmpeg: install it, or export a \.gif or \.html"):
+        to_mp4(recording, tmp_path / "run.mp4")
+    with pytest.raises(ExportError, match="makes no sense"):
+        to_mp4(recording, tmp_path / "run.mp4", speed=0.0)
+
+
+@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="no ffmpeg on this machine")
+def test_a_video_has_a_frame_for_each_of_its_instants(recording: Recording, tmp_path: Path) -> None:
+    path = to_mp4(recording, tmp_path / "run.mp4", speed=2.0, fps=10.0)
+    command = ["ffmpeg", "-loglevel", "error", "-i", str(path), "-f", "rawvideo", "-pix_fmt", "gray", "-"]
+    decoded = subprocess.run(command, capture_output=True, check=True).stdout
+    frames = 1 + int((recording.times[-1] - recording.times[0]) / 2.0 * 10.0)
+    assert len(decoded) % frames == 0
+    first, last = decoded[: len(decoded) // frames], decoded[-len(decoded) // frames :]
+    assert sum(abs(one - other) > 60 for one, other in zip(first, last, strict=True)) > 100
+    with pytest.raises(ExportError, match="ffmpeg ended with status"):
+        to_mp4(recording, tmp_path / "an-ending.nobody-knows")
+
+
 class _Page(HTMLParser):
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -60,7 +85,8 @@ class _Page(HTMLParser):
 def test_a_page_holds_the_run_and_loads_nothing(recording: Recording, tmp_path: Path) -> None:
     text = to_html(recording, tmp_path / "run.html").read_text(encoding="utf-8")
     page = _Page(text)
-    assert not [attrs for _, attrs in page.tags if "src" in attrs or "href" in attrs]
+    addresses = [attrs[name] or "" for _, attrs in page.tags for name in ("src", "href") if name in attrs]
+    assert [address[:22] for address in addresses] == ["data:image/png;base64,"]  # the picture where no script runs
     assert not re.search(r"url\(|@import|https?://(?!www\.w3\.org/2000/svg)", text)
     stored = re.search(r'<script type="application/json">(.*?)</script>', text, re.DOTALL)
     assert stored is not None
@@ -124,8 +150,12 @@ def test_the_ending_of_the_file_name_selects_the_format(recording: Recording, tm
     assert export(recording, tmp_path / "a" / "run.html").is_file()
     assert (export(recording, tmp_path / "b" / "run.mcap") / "metadata.yaml").is_file()
     assert export(recording, tmp_path / "c" / "run.gif").is_file()
+    with Image.open(export(recording, tmp_path / "d" / "run.gif", speed=3.0)) as image:
+        assert image.n_frames < 12  # type: ignore[attr-defined]
+    with pytest.raises(ExportError, match=r"only a \.gif or \.mp4 has fps and speed: leave it out"):
+        export(recording, tmp_path / "run.html", speed=2.0, fps=5.0)
     for name in ("run.avi", "run"):
-        with pytest.raises(ExportError, match=r"use \.gif, \.html or \.mcap"):
+        with pytest.raises(ExportError, match=r"use \.gif, \.mp4, \.html or \.mcap"):
             export(recording, tmp_path / name)
     assert issubclass(ExportError, SimError)
 

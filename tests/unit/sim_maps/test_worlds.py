@@ -13,7 +13,7 @@ from sim import Pose, RobotSpec, Simulation, World
 from sim.engine import arrays
 from sim.engine.index import layout
 from sim.maps import load
-from sim.view.artists import movers_at
+from sim.view.shapes import movers_at
 
 WORLDS = Path(__file__).resolve().parents[3] / "assets" / "worlds"
 NAMES = sorted(path.stem for path in WORLDS.glob("*.yaml"))

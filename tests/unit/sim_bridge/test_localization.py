@@ -1,0 +1,144 @@
+"""Frames, the map, the true pose and reliable scans of the node, received by a node of another context."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rclpy
+from nav_msgs.msg import OccupancyGrid, Odometry
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, qos_profile_sensor_data
+from rclpy.signals import SignalHandlerOptions
+from sensor_msgs.msg import LaserScan
+from tf2_msgs.msg import TFMessage
+
+from sim import Command, load_world
+from sim.bridge import Bridge
+from sim.bridge.localization import LATCHED, TF_QOS
+from sim.maps.grid import grid_of
+
+ROOT = Path(__file__).resolve().parents[3]
+WORLD = ROOT / "assets" / "worlds" / "empty_room.yaml"
+PATIENCE = 60.0
+RELIABLE = QoSProfile(depth=10)
+"""What a subscription has whose author wrote a number."""
+
+
+class Listener:
+    """A node that keeps what comes on some topics."""
+
+    def __init__(self, domain: int) -> None:
+        self._context = Context()
+        rclpy.init(context=self._context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
+        self._node = Node("listener", context=self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+
+    def hear(self, kind: Any, topic: str, qos: QoSProfile) -> list[Any]:
+        """Return the list that fills with the topic's messages."""
+        heard: list[Any] = []
+        self._node.create_subscription(kind, topic, heard.append, qos)
+        return heard
+
+    def until(self, condition: Callable[[], bool]) -> None:
+        deadline = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < deadline, "waited in vain"
+            self._executor.spin_once(timeout_sec=0.05)
+
+    def stop(self) -> None:
+        self._executor.shutdown()
+        self._node.destroy_node()
+        self._context.try_shutdown()
+
+
+@pytest.fixture
+def listener(ros_domain: int) -> Iterator[Listener]:
+    listening = Listener(ros_domain)
+    yield listening
+    listening.stop()
+
+
+@contextmanager
+def driven(domain: int, **settings: Any) -> Iterator[Bridge]:
+    """A bridge whose robot drives a curve, with odometry that drifts."""
+    with Bridge(WORLD, domain_id=domain, engine="numpy", speed=2.0, **settings) as bridge:
+        bridge.driver.command("robot", Command(0.3, 0.4))
+        yield bridge
+
+
+def planar(transform: Any) -> np.ndarray[Any, Any]:
+    """A transform as a matrix, (3, 3)."""
+    place, turn = transform.transform.translation, transform.transform.rotation
+    assert turn.z**2 + turn.w**2 == pytest.approx(1.0)
+    angle = 2.0 * math.atan2(turn.z, turn.w)
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return np.array([[cosine, -sine, place.x], [sine, cosine, place.y], [0.0, 0.0, 1.0]])
+
+
+def stamp(header: Any) -> tuple[int, int]:
+    return header.stamp.sec, header.stamp.nanosec
+
+
+def test_a_reliable_scan_serves_reliable_and_best_effort_subscriptions(ros_domain: int, listener: Listener) -> None:
+    reliable = listener.hear(LaserScan, "/scan", RELIABLE)
+    best_effort = listener.hear(LaserScan, "/scan", qos_profile_sensor_data)
+    with driven(ros_domain, scan_qos="reliable"):
+        listener.until(lambda: bool(reliable) and bool(best_effort))
+    assert len(reliable[0].ranges) == 360
+
+
+def test_each_scan_has_a_way_through_the_frames_to_the_map_at_its_own_time(ros_domain: int, listener: Listener) -> None:
+    scans = listener.hear(LaserScan, "/scan", qos_profile_sensor_data)
+    moving, standing = listener.hear(TFMessage, "/tf", TF_QOS), listener.hear(TFMessage, "/tf_static", LATCHED)
+    truth = listener.hear(Odometry, "/ground_truth", RELIABLE)
+    settings = {"tf": "map", "ground_truth": True, "lidar_x": 0.1, "lidar_yaw": 0.5, "drift_linear": 0.1}
+    with driven(ros_domain, **settings):
+        listener.until(lambda: len(scans) > 3 and len(moving) > 20 and bool(standing) and len(truth) > 20)
+    parents: dict[str, set[str]] = {}
+    at: dict[tuple[int, int], dict[str, Any]] = {}
+    for message in (*moving, *standing):
+        for transform in message.transforms:
+            parents.setdefault(transform.child_frame_id, set()).add(transform.header.frame_id)
+            at.setdefault(stamp(transform.header), {})[transform.child_frame_id] = transform
+    assert parents == {"laser": {"base_link"}, "base_link": {"odom"}, "odom": {"map"}}  # one parent each: a tree
+    known = [scan for scan in scans if stamp(scan.header) in at]
+    assert known
+    true_poses = {stamp(odometry.header): odometry for odometry in truth}
+    laser = standing[0].transforms[0]
+    assert planar(laser)[:2, 2] == pytest.approx([0.1, 0.0])
+    for scan in known:
+        frames = at[stamp(scan.header)]
+        assert scan.header.frame_id == "laser"
+        base = planar(frames["odom"]) @ planar(frames["base_link"])
+        pose = true_poses[stamp(scan.header)].pose.pose
+        assert base[:2, 2] == pytest.approx([pose.position.x, pose.position.y], abs=1e-9)
+        assert true_poses[stamp(scan.header)].header.frame_id == "map"
+
+
+def test_who_comes_late_gets_the_map(ros_domain: int, listener: Listener) -> None:
+    with driven(ros_domain, publish_map=True, map_resolution=0.1):
+        maps = listener.hear(OccupancyGrid, "/map", LATCHED)
+        listener.until(lambda: bool(maps))
+    grid, (received,) = grid_of(load_world(WORLD), 0.1), maps
+    assert (received.info.height, received.info.width) == grid.cells.shape
+    assert received.header.frame_id == "map"
+    assert received.info.resolution == pytest.approx(0.1)
+    assert (received.info.origin.position.x, received.info.origin.position.y) == (grid.x, grid.y)
+    assert received.info.origin.orientation.w == 1.0
+    assert np.array_equal(np.array(received.data, dtype=np.int8).reshape(grid.cells.shape), grid.cells)
+
+
+def test_without_the_options_nothing_is_sent_but_scan_odom_and_clock(ros_domain: int) -> None:
+    with driven(ros_domain) as bridge:
+        topics = {name for name, _ in bridge._node.get_publisher_names_and_types_by_node("simulator", "/")}
+    assert topics == {"/clock", "/odom", "/scan", "/parameter_events", "/rosout"}
