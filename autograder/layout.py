@@ -63,13 +63,13 @@ class Course:
             data: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
             course = cls(root, **{**data, "released": tuple(data.get("released", ()))})
         except OSError:
-            raise UsageError(f"{root} is no course: it has no {COURSE_FILE}; --course names another folder") from None
+            raise UsageError(f"{root} is not a course: it has no {COURSE_FILE}; --course names another one") from None
         except (yaml.YAMLError, AttributeError, TypeError) as error:
             lines = ", ".join(field.name for field in fields(cls)[1:])
             raise UsageError(f"{path}: {error}; the lines of this file are {lines}") from None
         for part in course.parts:
             if not isinstance(part, str) or not (root / part).resolve().is_relative_to(root):
-                raise UsageError(f"{path}: {part!r} is no path in the course's folder")
+                raise UsageError(f"{path}: {part!r} is not a path in the course's folder")
         for part in filter(course.shows_answers, (course.worlds, *course.released)):
             raise UsageError(f"{path}: {part!r} goes to students, and would show them answers or hidden checks")
         return course

@@ -60,7 +60,7 @@ def first_error(log: str) -> str:
     if match := _DEFINITION.search(bounded):
         return f"{match['file']}, {' '.join(match['text'].split())}: {' '.join(match['why'].split())}"
     if match := _DEPENDENCY.search(bounded):
-        return f"CMakeLists.txt: rosidl_generate_interfaces does not name {match['package']} behind DEPENDENCIES"
+        return f"CMakeLists.txt: rosidl_generate_interfaces does not name {match['package']} after DEPENDENCIES"
     text = readable(log)
     if match := _CMAKE_ERROR.search(text):
         own = _CMAKE_LINE.search(match["rest"])

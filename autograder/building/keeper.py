@@ -72,7 +72,7 @@ def attend(
             elif message.get("do") == "done":
                 return files, message
             else:
-                raise MessageError("a worker asks for what nobody offers")
+                raise MessageError("a worker sent an unknown request")
         except (EOFError, ConnectionError):
             return files, {}
 

@@ -117,7 +117,7 @@ def _in_worker_sandbox(reader: str, path: Path, assignment: str) -> Any:
             raise StudentError(structure(Diagnosis, answer["refused"]))
         return answer["read"]
     except (LookupError, ValueError, RecursionError, TypeError, AttributeError):
-        sentence = f"What was handed in cannot be read: its reader ended ({report.exit_reason.value})."
+        sentence = f"The submission cannot be read: its reader ended ({report.exit_reason.value})."
         raise StudentError(Diagnosis(Kind.UNREADABLE, sentence)) from None
 
 

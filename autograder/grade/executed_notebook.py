@@ -36,7 +36,7 @@ def decode(data: bytes) -> list[NotebookNode]:
     notebook = read_json(data, NOTEBOOK_VALUES, is_strict=False)
     cells = notebook.get("cells") if isinstance(notebook, dict) else None
     if not isinstance(cells, list) or not all(isinstance(cell, dict) for cell in cells):
-        raise ValueError("it is no notebook")
+        raise ValueError("it is not a notebook")
     return [_code_cell(cell) for cell in cells if cell.get("cell_type") == "code"]
 
 
@@ -52,5 +52,5 @@ def _code_cell(cell: dict[str, Any]) -> NotebookNode:
     if not isinstance(source, str) or not isinstance(outputs, list) or not isinstance(metadata, dict):
         raise ValueError("it has a cell without a text or outputs")
     if not all(isinstance(output, dict) for output in outputs):
-        raise ValueError("it has outputs that are no objects")
+        raise ValueError("it has outputs that are not objects")
     return NotebookNode({**cell, "source": source, "metadata": NotebookNode(metadata)})

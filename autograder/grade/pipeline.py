@@ -109,7 +109,7 @@ def not_graded(job: Job, why: str, log: str) -> tuple[Result, Mapping[str, bytes
     check, and results become feedback.
     """
     sentence = (
-        f"{why} This is no zero: an instructor has to grade it again. {LOG}, beside the result, says what happened."
+        f"{why} This is not a zero: an instructor has to grade it again. {LOG}, beside the result, says what happened."
     )
     result = refused(job, Diagnosis(Kind.NOT_GRADED, sentence))
     checks = tuple(replace(check, message="not graded") for check in result.checks)

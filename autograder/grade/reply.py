@@ -99,7 +99,7 @@ def _require_picture(data: bytes) -> None:
 
 def _require_run(data: bytes) -> None:
     if not isinstance(read_json(data, RUN_VALUES), dict):
-        raise ValueError("it is no run")
+        raise ValueError("it is not a run")
 
 
 def _require_notebook(data: bytes) -> None:

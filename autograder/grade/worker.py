@@ -136,7 +136,7 @@ class Grading:
                 self._clear()
                 counted = intake.what_counts(submission, written, self._job.assignment)
                 packages, self._notices = counted.packages, counted.notices
-        assert packages is not None, "only a notebook makes packages that were not handed in"
+        assert packages is not None, "only a notebook creates packages that were not submitted"
         source = self._workspace.root / "src"
         with reading("Your submission"):
             write_tree(packages, source)

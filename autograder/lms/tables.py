@@ -70,7 +70,7 @@ def read_rows(path: Path, needed: Collection[str], find: FindStudent, *, one_of:
     seen: dict[str, Row] = {}
     for row in rows:
         if row.student in seen:
-            raise row.error(f"{row.student} stands in {seen[row.student].place}, too: remove one of the two rows")
+            raise row.error(f"{row.student} is in {seen[row.student].place}, too: remove one of the two rows")
         seen[row.student] = row
     return rows
 

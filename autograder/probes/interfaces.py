@@ -174,7 +174,7 @@ class _Comparison:
         extra = [name for name in actual if name not in expected and name not in constants]
         for name in (name for name in expected if name not in actual):
             if name in self._elsewhere:
-                yield self._difference(Aspect.FIELDS, f"{name} stands in the {self._elsewhere[name]}, it belongs here")
+                yield self._difference(Aspect.FIELDS, f"{name} is in the {self._elsewhere[name]}, it belongs here")
             elif near := _near(name, [other for other in extra if other not in self._strayed]):
                 extra.remove(near)
                 yield self._difference(Aspect.FIELDS, f"a field is called {near}, it should be {name}")
@@ -209,7 +209,7 @@ class _Comparison:
                     yield self._difference(Aspect.CONSTANTS, f"the constant {name} is {says}, it should be {should}")
             elif name in self._elsewhere:
                 where = self._elsewhere[name]
-                yield self._difference(Aspect.CONSTANTS, f"the constant {name} stands in the {where}, it belongs here")
+                yield self._difference(Aspect.CONSTANTS, f"the constant {name} is in the {where}, it belongs here")
             elif name.lower() in fields:
                 sentence = f"{name.lower()} is a field; a constant is written {constant.type} {name} = VALUE"
                 yield self._difference(Aspect.CONSTANTS, sentence)

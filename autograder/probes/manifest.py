@@ -59,7 +59,7 @@ def read_leniently(package: Path) -> Manifest:
         try:
             root = ElementTree.fromstring(text)
         except ElementTree.ParseError as error:
-            raise CheckFailed(f"{where} is no well-formed XML: {error}") from None
+            raise CheckFailed(f"{where} is not well-formed XML: {error}") from None
         return _of_tags(root)
 
 
@@ -88,7 +88,7 @@ def parse(text: str, where: str = MANIFEST) -> Manifest:
     except InvalidPackage as error:
         raise CheckFailed(f"ROS refuses {where}: {_reason(error)}") from None
     except Exception as error:  # expat's and catkin_pkg's own, such as TypeError for a file of bytes
-        raise CheckFailed(f"{where} is no well-formed XML: {error}") from None
+        raise CheckFailed(f"{where} is not well-formed XML: {error}") from None
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DeprecationWarning)  # of pyparsing, in catkin_pkg

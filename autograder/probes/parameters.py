@@ -185,7 +185,7 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
         try:
             file = student_yaml.load(text)
         except (yaml.YAMLError, ValueError, RecursionError) as error:  # a ValueError: it reads 2026-13-01 as a date
-            raise CheckFailed(f"{path.name} is no YAML: {shortened(reason(error))}.") from None
+            raise CheckFailed(f"{path.name} is not YAML: {shortened(reason(error))}.") from None
         if not isinstance(file, dict):
             raise CheckFailed(f"{path.name} names no node: it begins with a node's name or with /**, and a colon.")
         return {str(node): _values(path.name, shortened(str(node)), below) for node, below in file.items()}
@@ -199,12 +199,12 @@ def for_node(file: Mapping[str, Mapping[str, Value]], name: str) -> dict[str, Va
 
 def _values(file: str, node: str, below: object) -> dict[str, Value]:
     if node == "ros__parameters":
-        raise CheckFailed(f"In {file}, ros__parameters stands at the left margin: it belongs below a node, indented.")
+        raise CheckFailed(f"In {file}, ros__parameters is at the left margin: it belongs below a node, indented.")
     if not isinstance(below, dict) or not below:
         raise CheckFailed(f"In {file}, nothing is below {node}: indent ros__parameters under it.")
     if set(below) != {"ros__parameters"}:
         near = _listed(name for name in below if name != "ros__parameters")
-        raise CheckFailed(f"In {file}, {near} stands directly below {node}: ROS reads what is below ros__parameters.")
+        raise CheckFailed(f"In {file}, {near} is directly below {node}: ROS reads what is below ros__parameters.")
     values = below["ros__parameters"]
     if not isinstance(values, dict) or not values:
         raise CheckFailed(f"In {file}, {node} has no values: indent them under its ros__parameters.")

@@ -31,12 +31,12 @@ def _size(node: yaml.Node, known: dict[int, int]) -> int:
     """Return the number of values in a node. `known` has those of other nodes, 0 for a node that is being counted."""
     size = known.get(id(node))
     if size == 0:
-        raise yaml.YAMLError("an alias stands inside of what it repeats")
+        raise yaml.YAMLError("an alias is inside the value that it repeats")
     if size is None:
         known[id(node)] = 0
         inside = node.value if isinstance(node, yaml.CollectionNode) else ()
         parts = [part for item in inside for part in (item if isinstance(item, tuple) else (item,))]
         size = known[id(node)] = 1 + sum(_size(part, known) for part in parts)
     if size > MAX_VALUES:
-        raise yaml.YAMLError(f"its aliases stand for more than {MAX_VALUES} values")
+        raise yaml.YAMLError(f"its aliases expand to more than {MAX_VALUES} values")
     return size

@@ -65,7 +65,7 @@ class Workspace:
         raise StudentError(
             Diagnosis(
                 Kind.MISSING_EXECUTABLE,
-                f"The package {package} installs no program {name}; {installed}. Is the name misspelt? The names stand "
+                f"The package {package} installs no program {name}; {installed}. Is the name misspelt? The names are "
                 "in console_scripts in setup.py, and the programs' folder in setup.cfg.",
             )
         )

@@ -205,7 +205,7 @@ def hint(*texts: str) -> Callable[[F], F]:
 
     def add(function: F) -> F:
         if check_of(function):
-            raise GraderError(f"check {function.__name__!r}: its hints must stand below `check`, not above")
+            raise GraderError(f"check {function.__name__!r}: its hints must be below `check`, not above")
         function.__hints__ = (*texts, *getattr(function, "__hints__", ()))  # type: ignore[attr-defined]
         return function
 

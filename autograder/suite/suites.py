@@ -170,5 +170,5 @@ def _require_order(assignment: str, checks: list[Check]) -> None:
             raise GraderError(f"{assignment}: two checks are called {check.id!r}")
         unmet = set(check.dependencies) - seen
         if unmet:
-            raise GraderError(f"{assignment}: {check.id!r} names {sorted(unmet)}, which must stand before it")
+            raise GraderError(f"{assignment}: {check.id!r} names {sorted(unmet)}, which must come before it")
         seen.add(check.id)

@@ -152,7 +152,7 @@ def test_a_submission_that_kills_two_workers_is_not_graded_and_the_others_are(to
         grade_on(client, todo, results.append, report=pytest.fail, grade=answered)
         alice, bob, carol = sorted(results, key=lambda result: result.student)
     assert (alice.status, bob.status, carol.status) == (Status.GRADED, Status.NOT_GRADED, Status.GRADED)
-    assert bob.diagnosis.sentence.startswith("2 workers died while they graded this submission. This is no zero")
+    assert bob.diagnosis.sentence.startswith("2 workers died while they graded this submission. This is not a zero")
     assert "KilledWorker" in (todo[1].out / "grader.log").read_text()
 
 

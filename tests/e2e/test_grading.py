@@ -264,7 +264,7 @@ def test_a_failure_of_the_grader_gives_not_graded_and_never_zero(
     worker(code)
     result = _grade(reference, tmp_path / "out")
     assert (result.status, result.diagnosis.kind) == (Status.NOT_GRADED, Kind.NOT_GRADED)
-    assert "This is no zero" in result.diagnosis.sentence
+    assert "This is not a zero" in result.diagnosis.sentence
     assert {check.outcome for check in result.checks} == {Outcome.NOT_CHECKED}
     assert result.max_score == suites.hidden(ASSIGNMENT).max_score
     assert "CANARY" not in (tmp_path / "out" / "result.json").read_text()

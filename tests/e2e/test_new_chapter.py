@@ -157,7 +157,7 @@ def test_every_command_of_the_tutorial_prints_what_the_page_says(tmp_path: Path)
     "A package called `launch` would hide ROS's own",
     "`%%writefile` makes the folder `launch`.",
     "a release that does not build is not as expected",
-    "`course check` finds a text that stands nowhere in the reference",
+    "`course check` finds a text that does not occur in the reference",
 )
 @pytest.mark.nightly
 def test_every_command_of_the_tutorial_about_launch_prints_what_the_page_says(tmp_path: Path) -> None:

@@ -101,7 +101,7 @@ def test_a_course_folder_without_course_yaml_is_refused(tmp_path: Path) -> None:
     done = run("autograder", "--course", "nowhere", "course", "check", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (
         2,
-        f"autograder: {tmp_path / 'nowhere'} is no course: it has no course.yaml; --course names another folder\n",
+        f"autograder: {tmp_path / 'nowhere'} is not a course: it has no course.yaml; --course names another one\n",
     )
 
 

@@ -40,12 +40,12 @@ def _folders() -> Iterator[Finding]:
     known = layout.assignments()
     for folder in sorted(path for path in layout.CHAPTERS.glob("*") if path.is_dir() and path.name[:1] not in "._"):
         if folder.name not in known and (books := sorted(path.name for path in folder.glob("*.ipynb"))):
-            message = f"is no chapter: it has no {folder.name}.ipynb, and it has {', '.join(books)}"
+            message = f"is not a chapter: it has no {folder.name}.ipynb, and it has {', '.join(books)}"
             yield Finding(shown(folder), None, message)
     for folder in sorted(path for path in layout.CHECKS.glob("ch*") if path.is_dir()):
         name = folder.name.removeprefix("ch")
         if name not in known and any((folder / kind).is_dir() for kind in KINDS):
-            yield Finding(shown(folder), None, f"holds checks of {name!r}, and there is no such chapter")
+            yield Finding(shown(folder), None, f"contains checks of {name!r}, and there is no such chapter")
 
 
 def _worlds() -> Iterator[Finding]:

@@ -71,7 +71,7 @@ def unproven_checks(folder: Path, shown: str, checks: Collection[str]) -> Iterat
 def _read_mutants(folder: Path, shown: str) -> YamlFile:
     if (path := folder / MUTANTS).is_file():
         return read_yaml(path, f"{shown}/{MUTANTS}")
-    missing = Finding(f"{shown}/{MUTANTS}", None, "is missing: it holds flawed versions of the reference", 1)
+    missing = Finding(f"{shown}/{MUTANTS}", None, "is missing: it contains flawed versions of the reference", 1)
     return YamlFile(missing.file, None, {}, (missing,))
 
 
@@ -116,7 +116,7 @@ def _edits(file: YamlFile, place: Place, entry: dict[str, Any], sources: Collect
         elif isinstance(find, str) and isinstance(put, str):
             if text.count(find) != 1:
                 times = f"{text.count(find)} times" if text.count(find) else "nowhere"
-                yield file.finding((*here, "find"), f"{find!r} stands {times} in {name}, and has to stand there once")
+                yield file.finding((*here, "find"), f"{find!r} occurs {times} in {name}, and must occur once")
             elif find == put:
                 yield file.finding((*here, "replace"), f"the edit puts {put!r} in the place of itself")
             texts[name] = text.replace(find, put)

@@ -132,7 +132,7 @@ def _checks(file: PythonFile, places: dict[str, tuple[str, int]], has_tables: bo
             if function.name.startswith(PREFIX):
                 places.setdefault(function.name.removeprefix(PREFIX), (file.shown, function.lineno))
                 message = (
-                    f"`{function.name}` is no check, and its points count for nothing: put @check(points=...) above"
+                    f"`{function.name}` is not a check, and its points count for nothing: put @check(points=...) above"
                 )
                 yield file.finding(function, message)
             continue
@@ -143,7 +143,7 @@ def _checks(file: PythonFile, places: dict[str, tuple[str, int]], has_tables: bo
             yield file.finding(function, f"the check `{id}` has no docstring, the sentence that the student reads")
         for word in call.keywords:
             if word.arg not in ARGUMENTS:
-                message = f"`{word.arg}` is no argument of @check: {meant(str(word.arg), ARGUMENTS)}"
+                message = f"`{word.arg}` is not an argument of @check: {meant(str(word.arg), ARGUMENTS)}"
                 yield file.finding(word.value, message)
         points = literal(argument(call, "points"))
         if argument(call, "points") is None:
@@ -152,7 +152,7 @@ def _checks(file: PythonFile, places: dict[str, tuple[str, int]], has_tables: bo
             yield file.finding(call, f"the check `{id}` is worth {points}: points are above 0")
         above = function.decorator_list[: function.decorator_list.index(call)]
         if any(decorator_name(each) == "hint" for each in above):
-            yield file.finding(above[0], f"the hints of the check `{id}` must stand below @check, not above")
+            yield file.finding(above[0], f"the hints of the check `{id}` must be below @check, not above")
         if id in places:
             other = "{}:{}".format(*places[id])
             yield file.finding(function, f"two checks are called `{id}`: the other one is in {other}")
@@ -173,9 +173,7 @@ def _dependencies(
         elif id is not None:
             for other in _texts(names):
                 if other not in places and not has_tables:
-                    message = (
-                        f"the check `{id}` names `{other}` in `{name}`, and no check of this name stands before it"
-                    )
+                    message = f"the check `{id}` names `{other}` in `{name}`, and no check of this name precedes it"
                     yield file.finding(argument(call, name), message)
 
 

@@ -61,7 +61,7 @@ def read_yaml(path: Path, shown: str, schema: str = "") -> YamlFile:
     lines: dict[Place, int] = {}
     repeated = [] if top is None else list(_walk(top, (), lines))
     read = YamlFile(shown, data, lines)
-    findings = [read.finding(place, f"`{place[-1]}` stands twice: only the last one would count") for place in repeated]
+    findings = [read.finding(place, f"`{place[-1]}` occurs twice: only the last one would count") for place in repeated]
     findings += [
         read.finding(place, message) for place, message in broken_schema(data, file_schema(schema or path.name))
     ]

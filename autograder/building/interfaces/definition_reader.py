@@ -49,7 +49,7 @@ def require_package_name(name: str) -> None:
     """Raise a DefinitionError unless a package's name is one that ROS takes for interfaces."""
     if not _PACKAGE.fullmatch(name) or keyword.iskeyword(name):
         raise DefinitionError(
-            "package.xml", f"{name[:80]!r} is no package name: begin with a letter, use a-z, 0-9 and single underscores"
+            "package.xml", f"{name[:80]!r} is not a package name: start with a letter, use a-z, 0-9, single underscores"
         )
 
 
@@ -130,11 +130,11 @@ class _Reader:
     def _clean(self, line: str) -> str:
         code = line.replace("\t", " ").partition("#")[0].rstrip()
         if not _PRINTABLE.fullmatch(code):
-            raise self._error("outside comments only plain ASCII characters can stand", ascii(code))
+            raise self._error("only plain ASCII characters are allowed outside comments", ascii(code))
         if "\\" in code:
-            raise self._error("a backslash cannot stand in a definition: take it out", code)
+            raise self._error("a backslash is not allowed in a definition: remove it", code)
         if code == "---" and line != "---":
-            raise self._error("the separator --- stands alone, without comment or space", line)
+            raise self._error("the separator --- must be alone on its line, without comment or space", line)
         return code
 
     def _split(self) -> list[list[str]]:

@@ -102,7 +102,7 @@ def _texts(folder: Path) -> dict[str, str]:
         for path in sorted((folder / kind).glob(f"*.{kind}")):
             name = f"{kind}/{path.name}"
             if path.is_symlink() or not path.is_file():
-                raise DefinitionError(name, "it is no plain file")
+                raise DefinitionError(name, "it is not a plain file")
             if len(texts) >= MAX_FILES:
                 raise DefinitionError(name, f"more than {MAX_FILES} definitions")
             with path.open("rb") as file:

@@ -46,7 +46,7 @@ def attacks() -> tuple[Attack, ...]:
             CHAPTER.write(files={FILE: OBJECT}),
             OF_FILE,
             exactly=True,
-            says="fleet_params.yaml is no YAML",
+            says="fleet_params.yaml is not YAML",
         ),
         Attack(
             "values of no type",

@@ -105,7 +105,7 @@ def _composed(path: Path) -> yaml.MappingNode:
     try:
         data = path.read_bytes()
         if len(data) > MAX_BYTES:
-            raise UsageError(f"{path}: the file is larger than {MAX_BYTES // 2**20} MiB: these are no settings")
+            raise UsageError(f"{path}: larger than {MAX_BYTES // 2**20} MiB, which is too large for settings")
         node = yaml.compose(data.decode("utf-8-sig"), Loader=yaml.SafeLoader)
     except OSError as error:
         raise UsageError(f"{path}: the settings cannot be read ({error.strerror})") from None
@@ -139,7 +139,7 @@ def _extensions(read: Reader, node: yaml.Node | None, zone: tzinfo) -> dict[str,
     if node is None:
         return {}
     if not isinstance(node, yaml.MappingNode):
-        raise bad(read.path, node, "extensions are no mapping", "Give {ada: 2026-10-19 23:59}")
+        raise bad(read.path, node, "extensions are not a mapping", "Give {ada: 2026-10-19 23:59}")
     names = [_text(read, key, "a student") for key, _ in node.value]
     fields = read.fields(node, "extensions", (), names)
     return {name: _time(read, value, f"the extension of {name}", zone) for name, value in fields.items()}

@@ -131,7 +131,7 @@ def _read_file(path: Path, size: int) -> bytes:
     """Read a plain file of at most `size` bytes, and nothing that has taken its place since it was listed."""
     with os.fdopen(os.open(path, _UNFOLLOWED), "rb") as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise TreeError(f"{path.name} is no plain file any more")
+            raise TreeError(f"{path.name} is no longer a plain file")
         data = file.read(size + 1)
     if len(data) > size:
         raise TreeError(f"{path.name} grows")

@@ -155,4 +155,4 @@ def test_a_package_that_cmakelists_does_not_name_is_reported_in_a_sentence() -> 
         f'  File "{folder}/__init__.py", line 160, in generate_type_hash\n    pkg_dir = include_map[pkg]\n'
         "              ~~~~~~~~~~~^^^^^\nKeyError: 'std_msgs'\ngmake[2]: *** [build.make:79: A.json] Error 1\n---\n"
     )
-    assert first_error(log) == "CMakeLists.txt: rosidl_generate_interfaces does not name std_msgs behind DEPENDENCIES"
+    assert first_error(log) == "CMakeLists.txt: rosidl_generate_interfaces does not name std_msgs after DEPENDENCIES"

@@ -147,7 +147,7 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
         "a huge picture": (answer(with_picture(result, "turns.png"), **{"turns.png": large.getvalue()}), "pixels"),
         "a run that is none": (
             answer(with_run(result, "turns.run.json"), **picture, **{"turns.run.json": b"[]"}),
-            "it is no run",
+            "it is not a run",
         ),
         "a run outside": (
             answer(with_run(result, "../x.run.json"), **picture, **{"../x.run.json": b"{}"}),
@@ -171,7 +171,7 @@ def test_a_submission_that_is_given_up_is_not_graded_instead_of_zero(job: Job) -
         job, *not_graded(job, "2 workers died while they graded this submission.", "KilledWorker\n")
     )
     assert given_up.status is Status.NOT_GRADED
-    assert given_up.diagnosis.sentence.startswith("2 workers died while they graded this submission. This is no zero")
+    assert given_up.diagnosis.sentence.startswith("2 workers died while they graded this submission. This is not a")
     assert (job.out / "grader.log").read_text() == "KilledWorker\n"
 
 

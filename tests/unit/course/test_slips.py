@@ -42,7 +42,7 @@ SLIPS = [
         "find: min(filter",
         "find: min(filer",
         "7",
-        "'min(filer' stands nowhere in mapping/mapping/nearest.py, and",
+        "'min(filer' occurs nowhere in mapping/mapping/nearest.py, and",
     ),
     (
         MUTANTS,
@@ -108,7 +108,7 @@ SLIPS = [
         "the hidden check 'silent' covers 'silence', which no cell names",
     ),
     (READINGS, "silent(robot:", "silent(robt:", "38", "`test_silent` asks for a fixture `robt`: did you mean `robot`?"),
-    (READINGS, "check(points=1", "check(point=1", "36", "`point` is no argument of @check: did you mean `points`?"),
+    (READINGS, "check(points=1", "check(point=1", "36", "`point` is not an argument of @check: did you mean `points`?"),
     (
         READINGS,
         '    """It publishes nothing',
@@ -141,8 +141,8 @@ SLIPS = [
         "127, cell 'nearest'",
         "the metadata are invalid: `course` has an unknown key `hid`",
     ),
-    (NOTEBOOK, '"nbformat": 4,', '"nbformat": 4', "328", "is not JSON: Expecting ',' delimiter"),
-    (NOTEBOOK, '"exercise": "exercise"', '"exercise": "exercises"', "310", "there is no cell 'exercises'"),
+    (NOTEBOOK, '"nbformat": 4,', '"nbformat": 4', "331", "is not JSON: Expecting ',' delimiter"),
+    (NOTEBOOK, '"exercise": "exercise"', '"exercise": "exercises"', "313", "there is no cell 'exercises'"),
     ("worlds/hall.yaml", None, "name: hall\nboxs: []\n", "2", "the world has no field 'boxs'. Did you mean 'boxes'?"),
 ]
 

@@ -134,7 +134,7 @@ def test_a_submission_that_used_up_its_budget_is_not_tried_again_and_gets_no_zer
     result = grade(tmp_path, worker, seconds=0.4)
     assert worker.left == []
     assert result.status is Status.NOT_GRADED
-    assert "The grader failed on this submission. This is no zero" in result.diagnosis.sentence
+    assert "The grader failed on this submission. This is not a zero" in result.diagnosis.sentence
 
 
 def numbered(result: Result) -> enumerate[CheckResult]:

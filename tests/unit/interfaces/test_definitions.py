@@ -65,7 +65,7 @@ WRONG = {
     "an indented line": ("msg/A.msg", "  int32 a\n", "  int32 a", "space"),
     "a service without a response": ("srv/A.srv", "int32 a\n", "", "0 separator lines ---, 1 are needed"),
     "an action with one separator": ("action/A.action", "int32 a\n---\n", "", "goal --- result --- feedback"),
-    "a comment at a separator": ("srv/A.srv", "int32 a\n--- # then\n", "--- # then", "stands alone"),
+    "a comment at a separator": ("srv/A.srv", "int32 a\n--- # then\n", "--- # then", "must be alone"),
     "a path that leads out": ("msg/../../A.msg", "int32 a\n", "", "msg/Name.msg"),
     "a name in small letters": ("msg/status.msg", "int32 a\n", "", "CamelCase"),
     "a file in the wrong folder": ("msg/A.srv", "---\n", "", "msg/Name.msg"),
@@ -90,7 +90,7 @@ def test_arrays_are_counted_through_nested_messages() -> None:
 
 @pytest.mark.parametrize("name", ["", "../x", "My_msgs", "a__b", "a_", "class", "a/b", "a" * 200])
 def test_a_package_name_that_ros_would_not_take_is_refused(name: str) -> None:
-    with pytest.raises(DefinitionError, match="no package name"):
+    with pytest.raises(DefinitionError, match="not a package name"):
         read(name, {"msg/A.msg": "int32 a\n"})
 
 

@@ -40,9 +40,9 @@ def test_a_course_file_names_the_folders_and_the_files_that_students_get(tmp_pat
     [
         ("name: small\n", "title"),
         (LINES + "colour: red\n", "colour"),
-        (LINES + "worlds: ../worlds\n", "'../worlds' is no path in the course's folder"),
-        (LINES + "released: [/etc/passwd]\n", "'/etc/passwd' is no path in the course's folder"),
-        (LINES + "checks: 3\n", "3 is no path in the course's folder"),
+        (LINES + "worlds: ../worlds\n", "'../worlds' is not a path in the course's folder"),
+        (LINES + "released: [/etc/passwd]\n", "'/etc/passwd' is not a path in the course's folder"),
+        (LINES + "checks: 3\n", "3 is not a path in the course's folder"),
         (LINES + "worlds: .\n", "'.' goes to students, and would show them answers or hidden checks"),
         (LINES + "released: [solutions/robot]\n", "'solutions/robot' goes to students"),
         (LINES + "released: [chapters/01_first]\n", "'chapters/01_first' goes to students"),
@@ -58,7 +58,7 @@ def test_a_wrong_line_of_a_course_file_is_named(tmp_path: Path, lines: str, said
 
 
 def test_a_folder_without_the_file_is_not_a_course(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"is no course: it has no course\.yaml"):
+    with pytest.raises(UsageError, match=r"is not a course: it has no course\.yaml"):
         Course.read(tmp_path)
 
 
@@ -95,7 +95,7 @@ def test_no_module_of_the_autograder_reads_the_course_when_it_is_imported(tmp_pa
         text=True,
         check=False,
     )
-    assert (done.stdout, "is no course" in done.stderr) == ("0\n", True), done.stderr
+    assert (done.stdout, "is not a course" in done.stderr) == ("0\n", True), done.stderr
 
 
 def test_each_path_that_the_course_file_names_exists() -> None:

@@ -143,7 +143,7 @@ def test_without_the_option_the_missing_points_are_named(assessed: Path) -> None
         ("student,q2-answer\nzoe@x.edu,nan\n", "manual.csv, line 2: nan points"),
         ('student,q2-answer\nzoe@x.edu,"4,5"\n', "manual.csv, line 2: '4,5' is not a number of points"),
         ("student,q2-answer\nzoe@x.edu,6\njane@x.edu\n", "manual.csv, line 3: 1 cells, but 2 headings"),
-        ("student,q2-answer\nzoe@x.edu,6\nZoë Müller,6\n", "line 3: zoe@x.edu stands in .*, line 2, too"),
+        ("student,q2-answer\nzoe@x.edu,6\nZoë Müller,6\n", "line 3: zoe@x.edu is in .*, line 2, too"),
         ("student,q2-answer\nbob@x.edu,2\n", "points for bob@x.edu, who has no result"),
         ("", "the table is empty; its columns are student, q2-answer"),
         ('student,q2-answer\n"zoe', "manual.csv: cannot be read as CSV"),

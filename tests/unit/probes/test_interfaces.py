@@ -99,9 +99,9 @@ def test_another_order_is_named_once() -> None:
 
 def test_a_field_or_constant_in_the_wrong_part_is_named_once() -> None:
     field = f"{REQUEST}bool possible\n---\nstring<=80 reason\n"
-    assert said(field) == [(Aspect.FIELDS, f"{PATH}, response: possible stands in the request, it belongs here.")]
+    assert said(field) == [(Aspect.FIELDS, f"{PATH}, response: possible is in the request, it belongs here.")]
     constant = "float64[<=8] legs\nint32 reserve 20\n---\nfloat64 MOST = 5.0\n" + RESPONSE
-    sentence = f"{PATH}, request: the constant MOST stands in the response, it belongs here."
+    sentence = f"{PATH}, request: the constant MOST is in the response, it belongs here."
     assert said(constant) == [(Aspect.CONSTANTS, sentence)]
 
 

@@ -54,7 +54,7 @@ def test_all_that_can_be_set_is_read(tmp_path: Path) -> None:
         ("tries_a_day: 3", "trys_a_day: 3", "6: 02_nodes has no field 'trys_a_day'. Did you mean 'tries_a_day'?"),
         ("shown: points", "shown: all", "7: shown is 'all'. Give everything or visible or points or nothing"),
         ("counts: best", "counts: mean", "8: counts is 'mean'. Give best or last"),
-        ("extensions: {ada: 2026-10-19 23:59}", "extensions: [ada]", "9: extensions are no mapping"),
+        ("extensions: {ada: 2026-10-19 23:59}", "extensions: [ada]", "9: extensions are not a mapping"),
         ("ada: 2026-10-19 23:59", "ada: later", "9: the extension of ada is 'later'"),
         ("  02_nodes:", "  02_node:", "4: assignments has no field '02_node'. Did you mean '02_nodes'?"),
         ("  01_package_structure:", "  02_nodes:", "10: assignments has the field '02_nodes' twice"),

@@ -56,7 +56,7 @@ def test_checks_of_a_group_inherit_its_page_and_dependencies_unless_they_declare
 
 
 def test_hints_above_the_declaration_are_an_error() -> None:
-    with pytest.raises(GraderError, match="'test_turns': its hints must stand below `check`"):
+    with pytest.raises(GraderError, match="'test_turns': its hints must be below `check`"):
 
         @hint("never seen")
         @check(points=1, group="g")

@@ -82,10 +82,10 @@ def test_an_unknown_assignment_is_a_usage_error_that_names_the_known_ones(home: 
     ("first", "second", "reason"),
     [
         (_check("a"), _check("a"), "two checks are called 'a'"),
-        (_check("a", '("b",)'), _check("b"), r"'a' names \['b'\], which must stand before it"),
+        (_check("a", '("b",)'), _check("b"), r"'a' names \['b'\], which must come before it"),
         (_check("a", '("a",)'), _check("b"), r"'a' names \['a'\]"),
         (_check("a"), _check("b", '("none",)'), r"'b' names \['none'\]"),
-        (_check("a", after='("b",)'), _check("b"), r"'a' names \['b'\], which must stand before it"),
+        (_check("a", after='("b",)'), _check("b"), r"'a' names \['b'\], which must come before it"),
         (_check("a", points=0), _check("b"), "points must be above 0"),
     ],
 )
