@@ -89,7 +89,7 @@ class Host:
         Context.init = lambda context, args=None, **options: self.init(context, args, **options)
         Executor.wait_for_ready_callbacks = lambda executor, *args, **kwargs: self.wait(executor, *args, **kwargs)
         Executor.can_execute = lambda executor, entity: (
-            _can_execute(executor, entity) and not self.counts.holds_back(entity)
+            not self.counts.is_silent(entity) and _can_execute(executor, entity)
         )
         time_source.__init__ = lambda source, *, node=None: self.init_time_source(source, node=node)
         time_source._subscribe_to_clock_topic = lambda source: None  # the grader steps the clock, nobody else
@@ -234,7 +234,9 @@ class Host:
             if not all(map(self._is_stepped, threading.enumerate())):
                 self.note("thread")  # whatever it waits for now, it may go on when this program is idle
             state = {"sent": self._sent, "lost": self.arrivals.lost, "changed": self.hooks.changed}
-            state |= {"wake": min(filter(None, self.wakes), default=None), "due": self._due(), "notes": self._notes}
+            due = self._due()
+            self.counts.are_all = due != EVERY_INSTANT
+            state |= {"wake": min(filter(None, self.wakes), default=None), "due": due, "notes": self._notes}
             self.pipes.send(event="done", **state)
         while True:
             command: dict[str, Any] = {"op": "quit"} if self._quit else self.pipes.receive()
@@ -246,6 +248,7 @@ class Host:
             elif command["op"] == "match":
                 self.counts.match(self._prefix(), command["kept"], command["early"])
                 self.counts.flush()
+                self.counts.are_all = False  # rclpy looks at all once: it may have to report what was discovered
                 self.pipes.send(event="matched")
             else:
                 break
@@ -262,7 +265,8 @@ class Host:
         self.counts.received(pending)
 
     def _due(self) -> int | None:
-        if self._notes or self.hooks.unpredictable or self.counts.behind or self.arrivals.may_come_late:
+        is_counted = self.counts.is_exact and not (self.arrivals.may_come_late or self.hooks.unpredictable)
+        if self._notes or self.counts.behind or not is_counted:
             return EVERY_INSTANT
         return next_due(self.nodes(), self._executors, self.wakes)
 

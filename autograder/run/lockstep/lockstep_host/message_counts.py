@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Iterable
 from typing import Any
 
+from rclpy.event_handler import EventHandler
 from rclpy.exceptions import InvalidHandle
 from rclpy.impl.implementation_singleton import rclpy_implementation
 
@@ -30,6 +31,7 @@ class Reader:
         transient_local: whether it gets what transient-local writers hold.
         unread: messages that were sent to it and that it has not taken; counted once it is matched.
         matched_ns: when it was matched with its writers, in ns of system time; 0 before.
+        held_back: whether what has come and is not counted yet waits until it is.
         depth: how many messages its queue holds; 0 where nothing is dropped.
     """
 
@@ -49,6 +51,7 @@ class Reader:
         self.transient_local = transient_local
         self.unread = 0
         self.matched_ns = 0
+        self.held_back = False
 
     @property
     def entity(self) -> Any:
@@ -65,6 +68,8 @@ class MessageCounts:
         fresh: messages that were sent since the grader was last told, by channel.
         kept: messages that transient-local writers hold for readers that come late, by channel.
         behind: the readers that have unread messages.
+        is_exact: whether no reader ever took a message that was not counted.
+        are_all: whether nothing but timers and the messages that are counted moves the program.
     """
 
     def __init__(self) -> None:
@@ -73,11 +78,15 @@ class MessageCounts:
         self.kept: Counter[str] = Counter()
         self.behind: set[Reader] = set()
         self._by_channel: dict[str, list[Reader]] = {}
-        self._held_back: dict[int, Reader] = {}  # by the id of the subscription
+        self._held_back: list[Reader] = []
+        self.is_exact = True
+        self.are_all = False
 
     def add(self, handle: Any, reader: Reader) -> None:
         """Add a new reader, which belongs to a C object."""
         self.readers[(handle.pointer, reader.part[0])] = reader
+        if not reader.part[0]:
+            reader.entity.lockstep_reader = reader
 
     def sent(self, channel: str, depth: int = 0) -> None:
         """Count a message that this program has sent; `depth` is how many a transient-local writer holds."""
@@ -93,19 +102,25 @@ class MessageCounts:
 
     def hold_back(self, channels: Iterable[str]) -> None:
         """From now on hold back messages on these channels, and on no others, that are not counted yet."""
-        readers = [reader for channel in channels for reader in self._by_channel.get(channel, ())]
-        self._held_back = {id(reader.entity): reader for reader in readers if reader.depth and not reader.part[0]}
+        for reader in self._held_back:
+            reader.held_back = False
+        self._held_back = [reader for channel in channels for reader in self._by_channel.get(channel, ())]
+        for reader in self._held_back:
+            reader.held_back = True
 
-    def holds_back(self, entity: Any) -> bool:
-        """Return whether what has come for an entity is not counted yet, and held back until it is."""
-        reader = self._held_back.get(id(entity))
-        return reader is not None and reader.unread <= 0
+    def is_silent(self, entity: Any) -> bool:
+        """Return whether rclpy need not look at an entity: it has no message, or none that it is to take yet."""
+        reader = getattr(entity, "lockstep_reader", None)
+        if reader is None:
+            return self.are_all and type(entity) is EventHandler
+        return bool(reader.unread <= 0 and (reader.held_back or (self.are_all and reader.matched_ns)))
 
     def took(self, handle: Any, part: str) -> None:
         """Count a message that one part of a C object has taken."""
         reader = self.readers.get((handle.pointer, part))
         if reader is not None and reader.matched_ns:
             reader.unread -= 1
+            self.is_exact &= reader.unread >= 0
             if reader.unread <= 0:
                 self.behind.discard(reader)
 
