@@ -92,7 +92,8 @@ def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
     write_run(SOURCE / "_extra" / "run.html")
     write_preview(SOURCE / "_extra" / "preview.png")
     shutil.copy(layout.WORLDS / "doorway.yaml", SOURCE / "api")
-    run_examples(SOURCE / "api" / "sim.md")
+    for name in ("api/sim.md", "simulator.md"):
+        run_examples(SOURCE / name)
     sphinx = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going", "-d", str(SITE / "doctrees")]
     return subprocess.run([*sphinx, str(SOURCE), str(HTML)], capture_output=True, text=True, check=False)
 

@@ -1,0 +1,44 @@
+"""The guide to the simulator: its examples run, and it names each parameter of the node and only verbs that exist."""
+
+from __future__ import annotations
+
+import re
+import runpy
+import shutil
+from pathlib import Path
+
+import click
+import pytest
+
+from sim.__main__ import main
+from sim.bridge.settings import SETTINGS
+
+DOCS = Path(__file__).resolve().parents[3] / "docs"
+TEXT = (DOCS / "simulator.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_the_examples_run_and_draw_the_pictures_that_the_guide_shows(tmp_path: Path) -> None:
+    for name in ("simulator.md", "kitchen.yaml"):
+        shutil.copy(DOCS / name, tmp_path)
+    runpy.run_path(str(DOCS / "build_site.py"))["run_examples"](tmp_path / "simulator.md")
+    pictures = re.findall(r"!\[[^\]]+\]\((\S+)\)", TEXT)
+    assert pictures
+    assert all((tmp_path / name).is_file() for name in pictures)
+
+
+def test_each_parameter_of_the_node_is_named_and_no_other() -> None:
+    known = {setting.name for setting in SETTINGS}
+    assert known - set(re.findall(r"[`\s](\w+)(?:`|:=)", TEXT)) == set()
+    assert set(re.findall(r"-p (\w+):=", TEXT)) <= known
+
+
+def test_the_commands_are_verbs_with_the_options_that_they_are_given() -> None:
+    commands = re.findall(r"^\$ python -m sim (.*?)(?: --ros-args.*)?$", TEXT, re.MULTILINE)
+    assert len(commands) > 8
+    verbs: dict[str, click.Command] = main.commands
+    for command in commands:
+        first, *rest = command.split()
+        verb = verbs.get(first, verbs["run"])
+        options = {option for parameter in verb.params for option in parameter.opts}
+        assert {word for word in rest if word.startswith("--")} <= options, command
