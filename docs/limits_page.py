@@ -28,7 +28,7 @@ user that the table does not list, such as pipe memory and epoll watches. Root g
 user.
 """
 ARGUMENTS, SANDBOX, WALLS, INSTALLED = "test_bubblewrap", "test_sandbox", "test_walls", "test_installed"
-ANSWER = "test_answer"
+ANSWER = "test_reply"
 
 
 def current() -> str:
