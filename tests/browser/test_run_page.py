@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,6 +22,7 @@ pytestmark = pytest.mark.browser
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 120_000.0  # milliseconds: a deadline, not an expectation
 MAX_BYTES = 300_000
+STORED = re.compile(r'<script type="application/json">(.*?)</script>', re.DOTALL)
 AHEAD, ROUND = Command(0.4, 0.2), Command(0.3, 0.5)
 RULES = {"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}}
 
@@ -87,6 +90,24 @@ def test_a_run_opens_at_its_end_with_all_that_its_picture_shows(
     late, own = count(canvas, LATE, LIGHT.robot)
     assert late < 5  # what is to come is thin, in the robot's own colour
     assert own > 5
+    assert complaints == []
+
+
+def test_a_run_of_an_earlier_version_is_drawn(page: Page, complaints: list[str], tmp_path: Path) -> None:
+    text = page_of(drive("lab", 6.0))
+    (stored,) = STORED.findall(text)
+    data = json.loads(stored)
+    for name in ("title", "summary", "moment"):
+        del data[name]
+    for name in ("inside", "routes"):
+        del data["world"][name]
+    data["collisions"] = [event[:4] for event in data["collisions"]]
+    path = tmp_path / "run.html"
+    path.write_text(text.replace(stored, json.dumps(data)), encoding="utf-8")
+    page.goto(path.as_uri())
+    expect(page.locator(".run-hit")).to_contain_text("met", timeout=PATIENCE)
+    expect(page.locator(".run-title")).to_have_text("the lab")
+    assert missing(page.locator(".run-player canvas")) == []
     assert complaints == []
 
 
