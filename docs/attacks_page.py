@@ -8,7 +8,7 @@ import yaml
 
 from autograder.author.course.markdown_table import table
 from autograder.author.verification.cases import attacks
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 from autograder.suite import suites
 
 ROWS: list[dict[str, Any]] = yaml.safe_load((ROOT / "docs" / "attacks.yaml").read_text(encoding="utf-8"))

@@ -21,7 +21,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.markdown_table import table
 from autograder.author.course.sync import Chapter, chapters
@@ -32,15 +32,15 @@ from autograder.suite import suites
 from sim import Command, RobotSpec, Scan, Simulation, State, load_world, run
 from sim.export import to_html
 
-DOCS = layout.ROOT / "docs"
-SITE = layout.BUILD / "site"
+DOCS = course_paths.ROOT / "docs"
+SITE = course_paths.BUILD / "site"
 SOURCE, HTML = SITE / "source", SITE / "html"
 KEPT_BACK = ("cluster", "*.py", "__pycache__")
 # Of the robot on the start page: it turns when something is nearer than ROOM within AHEAD of its bow.
 AHEAD, ROOM = math.radians(50.0), 0.6
 FOLDER_OF_A_LINK = re.compile(r"\]\((?:docs|\.\./chapters)/")
 FROM_ELSEWHERE = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "chapters/ros2-commands.md", "chapters/glossary.md")
-ROBOT = layout.ROOT / "assets" / "figures" / "robot.png"
+ROBOT = course_paths.ROOT / "assets" / "figures" / "robot.png"
 EXAMPLE = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 ENTRY = re.compile(r"^(?P<words>[^\n:]+)\n: (?P<text>.+(?:\n  .+)*)", re.MULTILINE)
 # What is no prose: code, headings, links and pictures, tables, choices of a question, tags.
@@ -76,7 +76,7 @@ def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
         text = runpy.run_path(str(script))["current"]()
         (SOURCE / script.name.replace("_page.py", ".md")).write_text(text, encoding="utf-8")
     for name in FROM_ELSEWHERE:
-        shutil.copy(layout.ROOT / name, SOURCE)
+        shutil.copy(course_paths.ROOT / name, SOURCE)
     for page in SOURCE.glob("*.md"):  # the site has the pages of all folders in one
         page.write_text(FOLDER_OF_A_LINK.sub("](", page.read_text(encoding="utf-8")), encoding="utf-8")
     words = write_glossary(SOURCE / "glossary.md")
@@ -91,7 +91,7 @@ def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
     (SOURCE / "made" / "verification.md").write_text(verification_table(), encoding="utf-8")
     write_run(SOURCE / "_extra" / "run.html")
     write_preview(SOURCE / "_extra" / "preview.png")
-    shutil.copy(layout.WORLDS / "doorway.yaml", SOURCE / "api")
+    shutil.copy(course_paths.WORLDS / "doorway.yaml", SOURCE / "api")
     for name in ("api/sim.md", "simulator.md"):
         run_examples(SOURCE / name)
     sphinx = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going", "-d", str(SITE / "doctrees")]
@@ -141,7 +141,7 @@ def write_chapter(chapter: Chapter, folder: Path, words: frozenset[str] = frozen
     downloads = folder.parent / "notebooks"
     downloads.mkdir(exist_ok=True)
     nbformat.write(notebook, downloads / chapter.notebook_path.name)
-    report = layout.BUILD / "notebooks" / f"{chapter.assignment}-{Form.RELEASED.value}.ipynb"
+    report = course_paths.BUILD / "notebooks" / f"{chapter.assignment}-{Form.RELEASED.value}.ipynb"
     if report.is_file():
         executed = nbformat.read(report, as_version=nbformat.NO_CONVERT)
         if [cell.source for cell in executed.cells] == [cell.source for cell in notebook.cells]:
@@ -179,7 +179,7 @@ def verification_table() -> str:
 def write_run(path: Path) -> None:
     """Write the page that plays the run of the start page: a robot wanders in the lab by its lidar."""
     path.parent.mkdir(parents=True)
-    simulation = Simulation(load_world(layout.WORLDS / "lab.yaml"), (RobotSpec(),))
+    simulation = Simulation(load_world(course_paths.WORLDS / "lab.yaml"), (RobotSpec(),))
     to_html(run(simulation, wander, seconds=40.0), path)
 
 

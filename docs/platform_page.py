@@ -12,7 +12,7 @@ import yaml
 from packaging.requirements import Requirement
 
 from autograder.author.course.markdown_table import table
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 from autograder.ros.distribution import DISTRIBUTION as ROS
 from autograder.ros.distribution import PlatformPackage
 from autograder.ros.launch_packages import SOURCES, Source

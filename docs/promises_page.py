@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from autograder.author.course.markdown_table import table
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 
 PAGES = (
     "README.md",

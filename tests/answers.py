@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.release import write_released
 from autograder.author.course.sync import Chapter
 
@@ -48,9 +48,9 @@ class Answer:
 def make_answer(scratch: Path) -> Answer:
     """Return the reference as a student's answer; `scratch` is an empty folder."""
     folder = scratch / CHAPTER
-    write_released(Chapter(layout.chapter(CHAPTER)), folder)
+    write_released(Chapter(course_paths.chapter(CHAPTER)), folder)
     released = {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-    text = (layout.SOLUTIONS / TARGET.removeprefix("ws/src/")).read_text()
+    text = (course_paths.SOLUTIONS / TARGET.removeprefix("ws/src/")).read_text()
     return Answer({**released, TARGET: text.encode(), BOOK: filled(released[BOOK], text)}, released)
 
 

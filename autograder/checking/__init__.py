@@ -8,6 +8,7 @@ what a chapter's `attacks.py` needs. The rest of the autograder may change witho
 """
 
 from autograder.building.interfaces import load_interfaces
+from autograder.course_paths import solution_path, world_path
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.harness import (
@@ -24,7 +25,6 @@ from autograder.harness import (
 )
 from autograder.harness.drive import COMMAND_TOPICS, SCAN_SECONDS, SENSOR_TOPICS
 from autograder.harness.launch import LaunchHarness, RunningProgram
-from autograder.layout import solution_path, world_path
 from autograder.result.artifacts import Artifacts
 from autograder.run.sandbox import Process
 from autograder.run.time_record import LOCKSTEP, REAL

@@ -16,8 +16,8 @@ Visible checks and support import nothing hidden, and no conftest imports anothe
 `hidden` folder. Every chapter has the fixtures of `autograder.grade.plugin`.
 """
 
-from autograder import layout
+from autograder import course_paths
 
 # The chapters of a course that lies elsewhere are imported under the same names, as autograder.checks.chID.
-if str(layout.CHECKS) not in __path__:
-    __path__.insert(0, str(layout.CHECKS))
+if str(course_paths.CHECKS) not in __path__:
+    __path__.insert(0, str(course_paths.CHECKS))

@@ -55,7 +55,7 @@ class Verbs(click.Group):
 
 
 def _choose(context: click.Context, option: click.Parameter, course: Path | None) -> None:
-    """Set the course for all later imports and child processes, which read it through `autograder.layout`."""
+    """Set the course for all later imports and child processes, which read it through `autograder.course_paths`."""
     if course is not None:
         os.environ["AUTOGRADER_COURSE"] = str(course.resolve())
 

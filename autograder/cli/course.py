@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.chapter_rules import read_chapter, require_checks
 from autograder.author.course.course_rules import broken_course, broken_course_file
 from autograder.author.course.sync import chapters, sync_chapter
@@ -57,12 +57,12 @@ def check(names: tuple[str, ...]) -> None:
 @course.command()
 def tables() -> None:
     """Write the pages for instructors, and the titles of hidden checks for students."""
-    require_checks(layout.assignments())
+    require_checks(course_paths.assignments())
     page, problems = course_page()
     for finding in problems:
         echo(str(finding))
-    course = layout.course()
-    pages = {layout.CHAPTERS / "README.md": page, course.root / course.guide: checks_page()}
+    course = course_paths.course()
+    pages = {course_paths.CHAPTERS / "README.md": page, course.root / course.guide: checks_page()}
     for path, text in {**titles(), **pages}.items():
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")

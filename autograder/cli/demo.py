@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.verification.mutants import mutants, write_mutant, write_reference
 from autograder.cli.grade import Progress, report
 from autograder.cli.options import isolation_option, jobs_option, json_option
@@ -28,8 +28,8 @@ def demo(jobs: int, isolation: str, json_file: Path | None) -> None:
 
     The exit status is 0 if only the reference gets full marks, and 1 otherwise.
     """
-    out = layout.BUILD / "demo"
-    assignment = layout.course().demo or suites.graded_assignments()[0]
+    out = course_paths.BUILD / "demo"
+    assignment = course_paths.course().demo or suites.graded_assignments()[0]
     sources = suites.hidden(assignment).sources
     demo_mutants = [mutant for mutant in mutants(assignment) if mutant.demo]
     with tempfile.TemporaryDirectory(prefix="demo-") as folder:

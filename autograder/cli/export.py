@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from autograder import layout
+from autograder import course_paths
 from autograder.cli.late_options import judge_class, late_options, read_policy
 from autograder.cli.options import json_option
 from autograder.cli.terminal import echo, on_line
@@ -141,7 +141,7 @@ def _with_manual(stored: Sequence[Result], manual: Path | None, find: FindStuden
 def _assignments() -> set[str]:
     """Return the assignments of the course, or nothing if there is no course. Export does not need one."""
     try:
-        return set(layout.assignments())
+        return set(course_paths.assignments())
     except UsageError:
         return set()
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from autograder import layout
+from autograder import course_paths
 from autograder.cli.options import jobs_option, json_option
 from autograder.cli.terminal import echo
 from autograder.result.model import write_json
@@ -45,7 +45,7 @@ def notebooks(
 
     def run(chapter_and_form: tuple[Chapter, Form]) -> Execution:
         chapter, form = chapter_and_form
-        report = layout.BUILD / "notebooks" / f"{chapter.assignment}-{form.value}.ipynb"
+        report = course_paths.BUILD / "notebooks" / f"{chapter.assignment}-{form.value}.ipynb"
         return run_notebook(chapter, form, report=report)
 
     runs = map_parallel(run, to_run, jobs=jobs, on_done=_print_result)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.release import write_release
 from autograder.cli.options import json_option
 from autograder.cli.submissions import find_submissions, roster_option
@@ -62,7 +62,7 @@ def similar(
 
     with tempfile.TemporaryDirectory() as name:
         write_release(Path(name) / "given", (assignment,))
-        given = code(read_submission(Path(name) / "given" / layout.course().chapters / assignment, assignment))
+        given = code(read_submission(Path(name) / "given" / course_paths.course().chapters / assignment, assignment))
     with find_submissions(paths, assignment, roster, verb="compared") as (submissions, all_fit):
         codes, all_read = _codes(submissions, assignment)
     comparison = compare(codes, given, least / 100, in_part)

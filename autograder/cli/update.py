@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.student_release import read_manifest, update_release
 from autograder.cli.terminal import echo
 from autograder.exceptions import UsageError
@@ -20,12 +20,12 @@ def update(release: Path | None) -> None:
     Your work is kept: files and cells in `chapters` that you have changed or added. If you have changed a file of the
     course elsewhere, your version is kept with the suffix `.yours`.
     """
-    course = read_manifest(layout.ROOT).course
+    course = read_manifest(course_paths.ROOT).course
     if release is None and not course:
         raise UsageError("this release does not know where to find a newer one: unpack one and give its folder")
-    done = update_release(layout.ROOT, release or Path(course))
+    done = update_release(course_paths.ROOT, release or Path(course))
     for name in done.kept:
         echo(f"Kept unchanged: {name}")
     for name, copy in done.set_aside.items():
         echo(f"You had changed {name}: your version is now {copy}.")
-    echo(f"{len(done.written)} files updated. This is now the release {read_manifest(layout.ROOT).version}.")
+    echo(f"{len(done.written)} files updated. This is now the release {read_manifest(course_paths.ROOT).version}.")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import click
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.chapter_rules import read_checks
 from autograder.author.verification import costs
 from autograder.author.verification.cases import cases
@@ -59,7 +59,7 @@ HEADINGS = ("submission", "marks", "verdict")
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),
-    default=lambda: layout.BUILD / "verify",
+    default=lambda: course_paths.BUILD / "verify",
     help="The folder for the results.",
 )
 @jobs_option

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from autograder import layout
+from autograder import course_paths
 from autograder.run.fork_server import seccomp
 from autograder.run.sandbox import ExitReason, Limits
 from autograder.run.sandbox.limits import GIB, MIB
@@ -34,7 +34,7 @@ class Escape:
     @property
     def program(self) -> str:
         """The code, preceded by HIDDEN: the folders of the course that no program may read."""
-        return f"HIDDEN = {[*map(str, (*layout.check_folders(), layout.SOLUTIONS))]}\n{self.code}"
+        return f"HIDDEN = {[*map(str, (*course_paths.check_folders(), course_paths.SOLUTIONS))]}\n{self.code}"
 
 
 _READ = """
@@ -107,7 +107,7 @@ except OSError:
 """
 _WRITE = f"""
 import os
-for folder in ("/", "/usr", "/etc", "/dev", "/proc", "/proc/sys/kernel", {str(layout.ROOT / "autograder")!r}):
+for folder in ("/", "/usr", "/etc", "/dev", "/proc", "/proc/sys/kernel", {str(course_paths.ROOT / "autograder")!r}):
     try:
         open(folder + "/probe", "w").close()
         print("OUT", folder)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.student_release import MANIFEST
 from autograder.doctor.finding import Finding, Status
 from autograder.doctor.system import System
@@ -151,7 +151,7 @@ def _forbidden(system: System) -> tuple[str, str]:
 
 def release(system: System) -> tuple[Finding, ...]:
     """Check whether a newer student release is available. The course itself is not a release."""
-    own = json.loads(system.read(layout.ROOT / MANIFEST) or "{}")
+    own = json.loads(system.read(course_paths.ROOT / MANIFEST) or "{}")
     newest = json.loads((system.read(Path(own["course"], MANIFEST)) if own.get("course") else None) or "{}")
     if not own:
         return ()

@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.bootstrap import closed_to_other_users
 from autograder.ros import find
 from autograder.ros.launch_packages import describe_launch
@@ -102,7 +102,7 @@ class System:
 
     def closed_to_other_users(self) -> str | None:
         """Say why other users cannot run what root has set up here; None if they can, or this user is not root."""
-        return closed_to_other_users(Path(sys.executable).resolve(), layout.ROOT) if os.geteuid() == 0 else None
+        return closed_to_other_users(Path(sys.executable).resolve(), course_paths.ROOT) if os.geteuid() == 0 else None
 
     def package(self, name: str) -> str | None:
         """Return an installed distribution's version, or None."""

@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from autograder import layout
+from autograder import course_paths
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import AutograderError, StudentError
 from autograder.grade.bounded_json import RESULT_VALUES, read_json
@@ -108,7 +108,7 @@ def _read(reader: str, path: Path, assignment: str, isolation: Isolation) -> Any
 
 def _in_worker_sandbox(reader: str, path: Path, assignment: str) -> Any:
     command = [sys.executable, "-m", "autograder.grade.apart", reader, str(path), assignment]
-    chapter = layout.CHAPTERS / assignment  # a course directory of nbgrader may have others
+    chapter = course_paths.CHAPTERS / assignment  # a course directory of nbgrader may have others
     view = View(shown=(chapter,) if chapter.is_dir() else (), submitted=(path,))
     report = run_in_worker_sandbox(lambda scratch: command, Isolation.BUBBLEWRAP, READING_WORKER, view=view)
     try:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from multiprocessing import Pipe
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.building.keeper import attend
 from autograder.grade.job import Job
 from autograder.run.sandbox.limits import GRADING_WORKER
@@ -44,7 +44,7 @@ def in_own_sandbox(job: Job) -> WorkerReport:
 
 def view(job: Job) -> View:
     """Return the view of a job's worker: the submission, its chapter, and the files that its suite reads."""
-    chapter = layout.chapter(job.assignment)
+    chapter = course_paths.chapter(job.assignment)
     own = fingerprint.places(job.assignment, job.suite.reads)
     built = (Path(job.options.built),) if job.options.built else ()
     return View(shown=(chapter, *own, *built), submitted=(job.path,))

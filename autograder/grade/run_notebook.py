@@ -20,7 +20,7 @@ from nbformat.v4 import new_code_cell, new_notebook
 
 import autograder
 import sim
-from autograder import layout
+from autograder import course_paths
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.grade import submitted_notebook
@@ -156,16 +156,16 @@ def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
     environment = {
         **plain.environment,
         GRADING_VARIABLE: "1",
-        layout.COURSE_VARIABLE: str(layout.course().root),
+        course_paths.COURSE_VARIABLE: str(course_paths.course().root),
         "USER": "student",  # the sandbox has no /etc/passwd, and ros2 pkg create asks for the user's name
         "IPYTHONDIR": str(workspace.scratch / "ipython"),
         "MPLCONFIGDIR": str(workspace.scratch / "matplotlib"),
         "JUPYTER_RUNTIME_DIR": str(workspace.scratch / "jupyter"),
         "MPLBACKEND": "module://matplotlib_inline.backend_inline",
     }
-    environment["PYTHONPATH"] = os.pathsep.join([*filter(None, [environment["PYTHONPATH"]]), str(layout.ROOT)])
+    environment["PYTHONPATH"] = os.pathsep.join([*filter(None, [environment["PYTHONPATH"]]), str(course_paths.ROOT)])
     code = (Path(autograder.__file__).parent, Path(sim.__file__).parent)
-    worlds = filter(Path.is_dir, {layout.SHARED_WORLDS, layout.WORLDS})
-    readable = (RUNNER, *code, *worlds, layout.course().root / layout.COURSE_FILE)
+    worlds = filter(Path.is_dir, {course_paths.SHARED_WORLDS, course_paths.WORLDS})
+    readable = (RUNNER, *code, *worlds, course_paths.course().root / course_paths.COURSE_FILE)
     mounts = (*plain.mounts, *map(Mount, readable), Mount(folder, writable=True))
     return replace(plain, workdir=folder, mounts=mounts, environment=environment, network=False)

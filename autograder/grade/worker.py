@@ -18,7 +18,7 @@ from datetime import datetime, timezone
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import GraderError, StudentError
 from autograder.grade.job import Job
@@ -129,7 +129,7 @@ class Grading:
                 write_tree(submission.extra, self._folder)
                 start = intake.with_given_packages(submission, self._job.assignment)
                 write_tree(start, self._folder / "ws" / "src")
-                original = layout.source_notebook(self._job.assignment)
+                original = course_paths.source_notebook(self._job.assignment)
                 run_notebook.run(submission.notebook, original, self._folder, self._workspace, self._job.out / NOTEBOOK)
                 # The notebook could write links and devices to all of this. Only plain files of it are taken.
                 written = intake.read_packages(self._folder / "ws")

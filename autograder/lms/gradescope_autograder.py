@@ -11,13 +11,13 @@ import tempfile
 import zipfile
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.release import copy_course, copy_tool
 from autograder.exceptions import UsageError
 from autograder.run.sandbox import Isolation
 from autograder.suite import suites
 
-SCRIPTS = layout.ROOT / "assets" / "gradescope"  # both are executable, also in the zip
+SCRIPTS = course_paths.ROOT / "assets" / "gradescope"  # both are executable, also in the zip
 # Required for grading in addition to the course with its hidden checks and reference.
 COPIED = ("autograder", "sim", "assets", "pyproject.toml", "requirements.lock", "Makefile")
 
@@ -33,7 +33,7 @@ def write_autograder(assignment: str, out: Path, isolation: Isolation) -> None:
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         copy_tool(COPIED, folder / "course")
-        copy_course(layout.course().parts, folder / "course")
+        copy_course(course_paths.course().parts, folder / "course")
         for script in SCRIPTS.iterdir():
             text = (
                 script.read_text(encoding="utf-8")

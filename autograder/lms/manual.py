@@ -16,9 +16,9 @@ from pathlib import Path
 
 from autograder.author.course.cells import is_manually_graded
 from autograder.author.course.sync import Chapter
+from autograder.course_paths import chapter
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
-from autograder.layout import chapter
 from autograder.lms.tables import FindStudent, Row, read_rows
 from autograder.result.model import CheckResult, Result, Status
 from autograder.suite import Outcome, Visibility

@@ -18,7 +18,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from autograder import layout
+from autograder import course_paths
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.notebook.worker_client import EARLY_FILE, RECORDING, REPLY_FILE
@@ -63,7 +63,7 @@ def main() -> None:
 def _fill(workspace: Workspace, source: Path, arguments: dict[str, Any]) -> None:
     """Put a source tree into the workspace, or the packages of an answer as it was handed in."""
     if source.is_dir():
-        shutil.copytree(source, workspace.root / "src", ignore=layout.NOT_COPIED)
+        shutil.copytree(source, workspace.root / "src", ignore=course_paths.NOT_COPIED)
         return
     packages = intake.read_submission(source, arguments["assignment"]).packages
     if packages is None:

@@ -10,7 +10,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from autograder import layout
+from autograder import course_paths
 from autograder.exceptions import UsageError
 from autograder.notebook.cells_and_files import differences
 from autograder.notebook.exercises import KINDS, Exercise, exercises, find
@@ -210,7 +210,7 @@ def _report(part: Part, workspace: Path, answer: dict[str, Any], since: str = ""
     if diagnosis["kind"] != "ok":
         trouble = Notice(diagnosis["sentence"], diagnosis["detail"], TROUBLE)
     lines = tuple(structure(CheckResult, result) for result in answer["checks"])
-    path = layout.hidden_titles(part.assignment)
+    path = course_paths.hidden_titles(part.assignment)
     later = json.loads(path.read_text(encoding="utf-8")) if path.is_file() and not part.name else ()
     notices = differences(part.assignment, workspace, answer["sources"], part.later)
     return CheckReport(part.assignment, lines, trouble, tuple(later), notices, part.name, since)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import yaml
 
-from autograder import layout
+from autograder import course_paths
 from autograder.diagnosis import Kind
 from autograder.exceptions import UsageError
 from autograder.notebook.notices import TROUBLE, Notice
@@ -132,7 +132,7 @@ def drive(
     if grading():
         return Notice("The robot stays in its dock while the notebook is graded.")
     robot = RobotSpec(radius=RADIUS, faults=_faults(faults))
-    world = world if isinstance(world, World) else load(layout.world_path(world))
+    world = world if isinstance(world, World) else load(course_paths.world_path(world))
     simulation = Simulation(world, (robot,), seed=seed)
     with run_in_worker(
         "drive",

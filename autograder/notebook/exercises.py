@@ -15,7 +15,7 @@ from typing import Any
 
 import mistune
 
-from autograder import layout
+from autograder import course_paths
 from autograder.exceptions import UsageError
 from autograder.submission.intake.writefile import written_file
 from autograder.suite.declaration import Check
@@ -57,7 +57,7 @@ def exercises(assignment: str) -> tuple[Exercise, ...]:
     Raises:
         UsageError: there is no such chapter, or its notebook cannot be read.
     """
-    path = layout.source_notebook(assignment)
+    path = course_paths.source_notebook(assignment)
     try:
         notebook = json.loads(path.read_bytes())
         return tuple(_read(notebook["cells"], notebook["metadata"].get("course", {}).get("objectives", ())))

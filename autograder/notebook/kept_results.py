@@ -19,7 +19,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from autograder import layout
+from autograder import course_paths
 from autograder.building.interfaces import Cache
 from autograder.building.interfaces.prefix import identity
 from autograder.result.model import structure, write_json
@@ -83,7 +83,7 @@ def take_inputs(assignment: str, source: Path, reads: Iterable[str] = ()) -> Inp
     digest, stamp = hashlib.sha256(), hashlib.sha256()
     digest.update(json.dumps(_environment(), sort_keys=True, default=str).encode())
     try:
-        notebook = layout.source_notebook(assignment)
+        notebook = course_paths.source_notebook(assignment)
         digest.update(_cells(notebook))
         read = (path for path in fingerprint.files(assignment, reads) if path != notebook)
         for path in (*read, *sorted(Path(__file__).parent.glob("*.py")), *_files(source)):
@@ -138,7 +138,7 @@ def _files(source: Path) -> Iterator[Path]:
     """
     os.scandir(source).close()
     for folder, folders, names in os.walk(source):
-        ignored = layout.NOT_COPIED(folder, [*folders, *names])
+        ignored = course_paths.NOT_COPIED(folder, [*folders, *names])
         folders[:] = sorted(set(folders) - ignored)
         for path in (Path(folder, name) for name in (*folders, *sorted(set(names) - ignored))):
             if path.is_symlink():

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder import layout
+from autograder import course_paths
 from autograder.notebook.driving import RADIUS
 from autograder.notebook.notices import Notice
 from autograder.notebook.terminal import running
@@ -56,7 +56,7 @@ def simulator(
     Raises:
         UsageError: there is no such world.
     """
-    path = layout.world_path(world)
+    path = course_paths.world_path(world)
     session = SimulatorSession()
     if grading():
         yield session

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.exceptions import GraderError, UsageError
 from autograder.notebook.checking import Part, run_part
 from autograder.notebook.kept_results import stamp_of
@@ -68,4 +68,4 @@ def _wait(assignment: str, workspace: Path, seen: str, pause: Callable[[float], 
 def _stamp(assignment: str, workspace: Path) -> str:
     """Return a digest of when the files that a student or an author saves were last written."""
     checks = fingerprint.places(assignment, parts=("visible",))
-    return stamp_of((workspace / "src", layout.source_notebook(assignment), *checks))
+    return stamp_of((workspace / "src", course_paths.source_notebook(assignment), *checks))

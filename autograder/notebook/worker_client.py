@@ -11,7 +11,7 @@ from multiprocessing import Pipe
 from pathlib import Path
 from typing import Any
 
-from autograder import layout
+from autograder import course_paths
 from autograder.building import keeper
 from autograder.exceptions import GraderError, UsageError
 from autograder.run.sandbox import Isolation, best_isolation
@@ -86,7 +86,9 @@ def run_on(
 
         visible_paths = places(assignment, parts=("visible",)) if (assignment := arguments.get("assignment")) else []
         if source.is_file():
-            visible_paths.append(layout.chapter(arguments["assignment"]))  # from which its reader knows what was given
+            visible_paths.append(
+                course_paths.chapter(arguments["assignment"])
+            )  # from which its reader knows what was given
         view = View(shown=tuple(visible_paths), submitted=(source,), writable=(Path(folder),))
         with (
             theirs,

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import yaml
 
-from autograder import layout
+from autograder import course_paths
 from autograder.exceptions import UsageError
 
 SHOWN = "shown.yaml"
@@ -36,7 +36,7 @@ def other_answers(assignment: str) -> tuple[OtherAnswer, ...]:
     Raises:
         UsageError: there are none, or `shown.yaml` names a variant that does not exist.
     """
-    folder = layout.CHECKS / f"ch{assignment}" / "variants"
+    folder = course_paths.CHECKS / f"ch{assignment}" / "variants"
     path = folder / SHOWN
     try:
         texts = yaml.safe_load(path.read_text(encoding="utf-8"))

@@ -20,7 +20,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from autograder import layout
+from autograder import course_paths
 from autograder.suite.quotation import quote
 
 
@@ -45,7 +45,7 @@ def contract(assignment: str) -> dict[str, Requirement]:
     Raises:
         UsageError: the chapter does not exist.
     """
-    notebook = json.loads(layout.source_notebook(assignment).read_text(encoding="utf-8"))
+    notebook = json.loads(course_paths.source_notebook(assignment).read_text(encoding="utf-8"))
     return requirements(notebook["cells"])
 
 

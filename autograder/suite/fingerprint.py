@@ -15,7 +15,7 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 
 # The version of the grader and the simulator, which the checks of all chapters use. Raise it by one with each change
 # by which a submission can get another mark with the same seed, or another reason for it: see CONTRIBUTING.md. Marks of
@@ -53,23 +53,25 @@ def digest(assignment: str, reads: Iterable[str] = ()) -> str:
 
 def files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
     """Return the sorted paths of all files that a grading reads; the arguments are as in `version`."""
-    home = layout.ROOT
+    home = course_paths.ROOT
     shared = _below(home, (home / name for name in ("autograder", "sim", "assets/worlds")))
     read = (path for path in shared if _is_read(path.relative_to(home).parts))
-    course = layout.course()
+    course = course_paths.course()
     return sorted({*read, *_below(course.root, (course.root / course.worlds,)), *chapter_files(assignment, reads)})
 
 
 def chapter_files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
     """Return the sorted paths of a chapter's files and of the files that its checks read; arguments as in `version`."""
-    return sorted(_below(layout.course().root, places(assignment, reads)))
+    return sorted(_below(course_paths.course().root, places(assignment, reads)))
 
 
 def _digest(paths: Iterable[Path]) -> str:
     """Return a digest of the names and contents of files, as 12 hexadecimal digits."""
     sha256 = hashlib.sha256()
     for path in paths:
-        name = path.relative_to(layout.course().root if path.is_relative_to(layout.course().root) else layout.ROOT)
+        name = path.relative_to(
+            course_paths.course().root if path.is_relative_to(course_paths.course().root) else course_paths.ROOT
+        )
         sha256.update(f"{name}\0{path.stat().st_size}\0".encode() + path.read_bytes())
     return sha256.hexdigest()[:12]
 
@@ -85,7 +87,7 @@ def places(assignment: str, reads: Iterable[str] = (), *, parts: Iterable[str] =
         reads: files and folders that its checks read beside their own, as paths in the course's folder.
         parts: which of its suites.
     """
-    course = layout.course()
+    course = course_paths.course()
     checks, chapter = course.root / course.checks, course.root / course.chapters / assignment
     suite = checks / f"ch{assignment}"
     unread = VERIFICATION | {"__pycache__"} | {"visible", "hidden"}.difference(parts)

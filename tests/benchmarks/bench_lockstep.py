@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.worker_sandbox import run_in_worker_sandbox
 

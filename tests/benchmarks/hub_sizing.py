@@ -17,7 +17,7 @@ from time import monotonic
 
 import nbformat
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import Chapter
 from autograder.lms.hub.trial import Hub, serving
@@ -49,12 +49,12 @@ def run_the_chapter(hub: Hub, name: str) -> float:
     """Log in, run each code cell of the solved chapter in a kernel, and return the seconds that the cells took."""
     user = User(hub, name).log_in()
     user.ask("PUT", f"api/contents/{ASSIGNMENT}", json={"type": "directory"})
-    notebook = in_form(Chapter(layout.chapter(ASSIGNMENT)).read(), Form.SOLVED)
+    notebook = in_form(Chapter(course_paths.chapter(ASSIGNMENT)).read(), Form.SOLVED)
     path = f"{ASSIGNMENT}/{ASSIGNMENT}.ipynb"
     user.ask("PUT", f"api/contents/{path}", json={"type": "notebook", "content": nbformat.from_dict(notebook)})
     cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
     begin = monotonic()
-    user.run(path, f"!cp -r {layout.chapter(ASSIGNMENT)}/ws .", *cells)
+    user.run(path, f"!cp -r {course_paths.chapter(ASSIGNMENT)}/ws .", *cells)
     return monotonic() - begin
 
 
@@ -63,7 +63,7 @@ def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 2
     with tempfile.TemporaryDirectory(dir="/tmp") as scratch:
         Path(scratch).chmod(0o755)
-        with serving(Path(scratch), layout.ROOT) as hub, ThreadPoolExecutor(count) as pool:
+        with serving(Path(scratch), course_paths.ROOT) as hub, ThreadPoolExecutor(count) as pool:
             names, pause = hub.students[:count], Event()
             runs = {name: pool.submit(run_the_chapter, hub, name) for name in names}
             most = dict.fromkeys(names, (0.0, 0.0))

@@ -23,9 +23,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from autograder.author.verification.mutants import write_reference
+from autograder.course_paths import ROOT
 from autograder.grade import grade_submission
 from autograder.grade.job import Job
-from autograder.layout import ROOT
 from autograder.result.model import Outcome
 from autograder.suite import suites
 

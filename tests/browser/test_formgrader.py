@@ -16,7 +16,7 @@ import pytest
 from nbformat import NotebookNode
 from playwright.sync_api import Browser, expect
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import Chapter
 from autograder.author.verification.mutants import mutants, write_mutant, write_reference
@@ -69,7 +69,7 @@ def hand_in(room: Classroom, student: Student) -> None:
     path = handed_in / f"{ASSIGNMENT}.ipynb"
     notebook = nbformat.read(path, as_version=4)
     if student.points is not None:
-        solved = in_form(Chapter(layout.chapter(ASSIGNMENT)).read(), Form.SOLVED)
+        solved = in_form(Chapter(course_paths.chapter(ASSIGNMENT)).read(), Form.SOLVED)
         cell_of(notebook, CHOICES).source = cell_of(solved, CHOICES).source
         cell_of(notebook, QUESTION).source = f"The words of {student.name} about `package.xml`."
     nbformat.write(notebook, path)

@@ -16,10 +16,10 @@ from playwright.sync_api import Browser, Page, expect
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import chapters
 from autograder.author.verification.mutants import mutants, write_mutant
+from autograder.course_paths import ROOT
 from autograder.diagnosis import Kind
 from autograder.grade import DEFAULT_SEED
 from autograder.grade.batch import grade_all
-from autograder.layout import ROOT
 from autograder.report import feedback
 from autograder.result.model import CheckResult
 from autograder.suite import Outcome, suites

@@ -14,7 +14,7 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell
 from nbgrader.api import Gradebook
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.cells import is_solution
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import Chapter
@@ -35,8 +35,10 @@ class Classroom:
         self.place, self.assignment = place, assignment
         self.course, self.exchange = place / "course", place / "exchange"
         self.exchange.mkdir(parents=True)
-        shutil.copytree(layout.chapter(assignment), self.course / "chapters" / assignment, ignore=layout.NOT_COPIED)
-        shutil.copy(layout.ROOT / "nbgrader_config.py", self.course)
+        shutil.copytree(
+            course_paths.chapter(assignment), self.course / "chapters" / assignment, ignore=course_paths.NOT_COPIED
+        )
+        shutil.copy(course_paths.ROOT / "nbgrader_config.py", self.course)
 
     def run(self, folder: Path, *command: str) -> str:
         """Run a command that must succeed; return what it said."""
@@ -89,7 +91,7 @@ class Classroom:
 
 def fill_in(released: NotebookNode, assignment: str) -> None:
     """Give a released notebook the reference's answers."""
-    solved = in_form(Chapter(layout.chapter(assignment)).read(), Form.SOLVED)
+    solved = in_form(Chapter(course_paths.chapter(assignment)).read(), Form.SOLVED)
     answers = {cell.id: cell.source for cell in solved.cells if is_solution(cell)}
     for cell in released.cells:
         cell.source = answers.get(cell.id, cell.source)
@@ -114,7 +116,7 @@ def write_down(notebook: NotebookNode, assignment: str, src: Path) -> None:
 def changes(assignment: str, src: Path) -> Iterator[tuple[str, str | None]]:
     """Yield the files that differ from the reference's, by name, with their text; None for one that is gone."""
     sources = suites.hidden(assignment).sources
-    reference = {name: (layout.SOLUTIONS / name).read_text() for name in files(layout.SOLUTIONS, sources)}
+    reference = {name: (course_paths.SOLUTIONS / name).read_text() for name in files(course_paths.SOLUTIONS, sources)}
     there = {name: (src / name).read_text() for name in files(src, sources)}
     for name in sorted(reference.keys() | there.keys()):
         if reference.get(name) != there.get(name):

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from autograder.building.build import build
+from autograder.course_paths import SOLUTIONS
 from autograder.harness import Workspace
-from autograder.layout import SOLUTIONS
 from autograder.ros import environment
 from autograder.run.sandbox import Mount, Sandbox
 from autograder.run.sandbox.launcher import launch

@@ -16,7 +16,7 @@ from xml.etree import ElementTree
 
 import yaml
 
-from autograder import layout
+from autograder import course_paths
 
 RECORD = Path(__file__).with_name("created_packages.yaml")
 ROS2 = (sys.executable, "-m", "autograder.ros.ros2", "pkg", "create", "--license", "Apache-2.0")
@@ -28,8 +28,8 @@ PYTHON, CMAKE = "ament_python", "ament_cmake"
 def create(folder: Path, package: str) -> Path:
     """Create a package in `folder` as the author of the reference package of this name would; return its folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    reference = ElementTree.parse(layout.SOLUTIONS / package / "package.xml")
-    build_type = CMAKE if (layout.SOLUTIONS / package / "CMakeLists.txt").is_file() else PYTHON
+    reference = ElementTree.parse(course_paths.SOLUTIONS / package / "package.xml")
+    build_type = CMAKE if (course_paths.SOLUTIONS / package / "CMakeLists.txt").is_file() else PYTHON
     options = ["--build-type", build_type, "--description", reference.findtext("description") or ""]
     if needs := [one.text or "" for one in reference.iter("depend")]:
         options += ["--dependencies", *needs]
@@ -48,7 +48,7 @@ def fill_in(made: Path, target: Path, given: Collection[str] = ()) -> None:
             copy = target / file.relative_to(made)
             copy.parent.mkdir(parents=True, exist_ok=True)
             copy.write_bytes(file.read_bytes())
-    reference = layout.SOLUTIONS / made.name
+    reference = course_paths.SOLUTIONS / made.name
     _declare(target / "package.xml", reference / "package.xml")
     if (target / "setup.py").is_file():
         _install(target / "setup.py", (reference / "setup.py").read_text())

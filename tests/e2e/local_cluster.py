@@ -15,7 +15,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 
 DASK = str(Path(sys.executable).with_name("dask"))
 SCHEDULER, CLIENT = "scheduler", "client"
@@ -121,7 +121,7 @@ def local_cluster(folder: Path) -> Iterator[LocalCluster]:
     made = LocalCluster(folder / "client", can_make_namespaces(), folder / "cluster-certificates", folder / "machines")
     made.place.mkdir()
     made.machines.mkdir()
-    subprocess.run(["make", "-f", layout.ROOT / "Makefile", made.certificates.name], cwd=folder, check=True)
+    subprocess.run(["make", "-f", course_paths.ROOT / "Makefile", made.certificates.name], cwd=folder, check=True)
     with ExitStack() as stack:
         if made.apart:
             _connect(made, stack)

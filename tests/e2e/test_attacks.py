@@ -13,7 +13,7 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.verification.cases import attacks
 from autograder.author.verification.leaks import STOLEN, hidden_text_in, texts_of
 from autograder.author.verification.payloads import CANARY
@@ -77,7 +77,7 @@ def test_an_attack_gains_no_point_and_learns_nothing(
 
     if (tmp_path / "out" / NOTEBOOK).is_file():
         notebook = nbformat.read(tmp_path / "out" / NOTEBOOK, as_version=4)
-        source = nbformat.read(layout.source_notebook(assignment), as_version=4)
+        source = nbformat.read(course_paths.source_notebook(assignment), as_version=4)
         graded_cells = [cell for cell in notebook.cells if grade_id(cell)]
         wanted = {grade_id(cell): cell for cell in source.cells if grade_id(cell)}
         assert sorted(map(grade_id, graded_cells)) == sorted(wanted)

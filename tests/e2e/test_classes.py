@@ -17,7 +17,7 @@ from autograder.author.course.sync import Chapter
 from autograder.author.verification.cases import cases
 from autograder.author.verification.mutants import Mutant, mutants, write_mutant
 from autograder.author.verification.verdicts import CaseKind, verify_mutant, verify_zero
-from autograder.layout import chapter
+from autograder.course_paths import chapter
 from autograder.report.export import load
 from autograder.result.model import Result
 from autograder.suite import suites

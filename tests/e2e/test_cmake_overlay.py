@@ -11,8 +11,8 @@ import pytest
 
 from autograder.building.build import build
 from autograder.building.cmake_overlay import COMPILED, LEFT_OUT, write_overlay
+from autograder.course_paths import SOLUTIONS
 from autograder.harness import Workspace
-from autograder.layout import SOLUTIONS
 from autograder.ros import activate
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.building.colcon import RUNNER
 from autograder.harness import Workspace
 from autograder.ros import environment
@@ -52,7 +52,7 @@ FROM_RUN_TO_RUN = re.compile(r"\[-?[0-9.]+m?s[^]]*\]|<<<|>>>|0x[0-9a-f]+")
 def bring(workspace: Workspace, package: str, *lines: str) -> None:
     """Put a reference package there, and lines at the beginning of its setup.py."""
     folder = workspace.root / "src" / package
-    shutil.copytree(layout.SOLUTIONS / package, folder, ignore=layout.NOT_COPIED)
+    shutil.copytree(course_paths.SOLUTIONS / package, folder, ignore=course_paths.NOT_COPIED)
     setup = folder / "setup.py"
     setup.write_text("\n".join([*lines, setup.read_text()]))
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.verification.mutants import write_reference
 from autograder.cli import group
 from autograder.suite import suites
@@ -81,7 +81,7 @@ def test_the_zip_contains_everything_for_setup_and_no_build_products(home: Path)
     names = set(zipfile.ZipFile(home / "upload.zip").namelist())
     assert {"setup.sh", "run_autograder", "course/Makefile", "course/requirements.lock"} <= names
     assert not [name for name in names if "__pycache__" in name or name.startswith("course/tests")]
-    script = (layout.ROOT / "assets" / "gradescope" / "setup.sh").read_text()
+    script = (course_paths.ROOT / "assets" / "gradescope" / "setup.sh").read_text()
     assert "make setup" in script
     subprocess.run(["bash", "-n", str(home / "source" / "setup.sh")], check=True)
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.bootstrap import closed_to_other_users
 from autograder.lms.hub.trial import Hub, serving
 from autograder.suite import suites
@@ -28,7 +28,7 @@ ABOUT = (
     "import os, sys; print(os.path.basename(os.getcwd()), os.environ['ROS_DOMAIN_ID'], os.access(sys.prefix, os.W_OK))"
 )
 
-CLOSED = closed_to_other_users(Path(sys.executable).resolve(), layout.ROOT)
+CLOSED = closed_to_other_users(Path(sys.executable).resolve(), course_paths.ROOT)
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.timeout(1800),
@@ -102,7 +102,7 @@ def check_a_class(hub: Hub, *, with_reference: bool) -> None:
     "`autograder`, `ros2` and `colcon` work in each terminal.",
 )
 def test_students_log_in_and_hand_in_and_the_teacher_grades_on_a_hub(place: Path) -> None:
-    with serving(place, layout.ROOT) as hub:
+    with serving(place, course_paths.ROOT) as hub:
         check_a_class(hub, with_reference=False)
     users = Path("/etc/passwd").read_text()
     assert not any(name in users for name in (*hub.students, hub.teacher))

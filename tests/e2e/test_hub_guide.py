@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.lms.hub.trial import Hub, running
 from autograder.lms.hub.users import MARK, remove_users
 from autograder.ros.environment import find, without_wheel_bootstrap
@@ -26,7 +26,7 @@ pytestmark = [
     pytest.mark.timeout(7200),
     pytest.mark.skipif(os.geteuid() != 0, reason="only root can make users and start their servers"),
 ]
-GUIDE = layout.ROOT / "docs" / "jupyterhub.md"
+GUIDE = course_paths.ROOT / "docs" / "jupyterhub.md"
 SYSTEM_PATH = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
 
 
@@ -45,7 +45,7 @@ def made_by_the_guide(place: Path) -> Iterator[tuple[Hub, str]]:
     names = {name: f"{name}-{suffix}" for name in ("ada", "ben", "tess")}
     script = commands_of_the_guide("Local users")
     own = {"/srv/ros2": str(place / "srv"), "ros2-students": students, "ros2-teachers": teachers, "PASSWORD": password}
-    for text, by in {**own, "URL-OF-THE-REPOSITORY": str(layout.ROOT)}.items():
+    for text, by in {**own, "URL-OF-THE-REPOSITORY": str(course_paths.ROOT)}.items():
         script = script.replace(text, by)
     script = script.replace("useradd ", f"useradd --comment {MARK!r} ")  # by which they are removed
     for name, by in names.items():

@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from autograder.building.build import build
+from autograder.course_paths import SOLUTIONS
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
-from autograder.layout import SOLUTIONS
 from autograder.ros import activate
 
 INTERFACES, NODES = "my_robot_interfaces", "my_robot_package"

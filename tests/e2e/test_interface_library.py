@@ -25,7 +25,7 @@ LINK = "target_sources(${PROJECT_NAME}__rosidl_generator_c PRIVATE payload.c)\n"
 
 def talk(scratch: Path) -> dict[str, Any]:
     """Build messages with code in their library, and talk to a node that uses them; return what ran where."""
-    from autograder import layout
+    from autograder import course_paths
     from autograder.author.verification.mutants import write_reference
     from autograder.building.build import build
     from autograder.checks.ch03_interfaces.support.reporter import Reporter
@@ -38,7 +38,7 @@ def talk(scratch: Path) -> dict[str, Any]:
     workspace = Workspace(scratch / "ws", activate(), scratch / "home")
     write_reference(PACKAGES, workspace.root)
     folder = workspace.root / "src" / PACKAGES[0]
-    hidden = layout.CHECKS / "ch03_interfaces" / "hidden" / "status.py"
+    hidden = course_paths.CHECKS / "ch03_interfaces" / "hidden" / "status.py"
     (folder / "payload.c").write_text(PAYLOAD % (hidden, scratch / "result.json"))
     cmake, message = folder / "CMakeLists.txt", folder / "msg" / "RobotStatus.msg"
     cmake.write_text(cmake.read_text().replace("ament_export", f"{LINK}ament_export", 1))

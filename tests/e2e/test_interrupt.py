@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.layout import SOLUTIONS
+from autograder.course_paths import SOLUTIONS
 
 STUDENTS = ("alice", "bob", "carol")
 

@@ -12,7 +12,7 @@ import pytest
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell
 
-from autograder import layout
+from autograder import course_paths
 from autograder.report.export import load
 from autograder.result.model import Result
 from autograder.suite import Outcome, suites
@@ -118,7 +118,7 @@ def test_the_release_holds_no_solution_and_nothing_of_the_hidden_suite(graded: C
     text = "\n".join(path.read_text(encoding="utf-8", errors="replace") for path in files)
     notebook = nbformat.read(graded.course / "release" / ASSIGNMENT / f"{ASSIGNMENT}.ipynb", as_version=4)
     text += "\n".join(cell.source for cell in notebook.cells)
-    source = nbformat.read(layout.source_notebook(ASSIGNMENT), as_version=4)
+    source = nbformat.read(course_paths.source_notebook(ASSIGNMENT), as_version=4)
     solution = next(cell.source for cell in source.cells if cell.id == SOLUTION)
     taught = "\n".join(cell.source for cell in source.cells if cell.id != SOLUTION)  # the chapter's own idioms
     hidden = [part.split("# END SOLUTION")[0] for part in solution.split("# BEGIN SOLUTION")[1:]]

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from autograder import layout
+from autograder import course_paths
 
-DOCS = layout.ROOT / "docs"
+DOCS = course_paths.ROOT / "docs"
 BLOCKS = re.compile(r"^```(sh|text)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 

@@ -20,7 +20,7 @@ from autograder.author.course.sync import chapters
 from autograder.author.verification.mutants import mutants, write_mutant, write_reference
 from autograder.building import keeper
 from autograder.building.interfaces import Cache
-from autograder.layout import SOLUTIONS
+from autograder.course_paths import SOLUTIONS
 from autograder.notebook import check, drive, kept_results, ros
 from autograder.notebook.checking import CheckReport
 from autograder.notebook.driving import FAULTS, DriveReport

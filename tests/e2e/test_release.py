@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import chapters
 from autograder.cli import group
@@ -47,7 +47,7 @@ def test_the_release_contains_no_caches_or_build_folders(release: Path) -> None:
     left = [path for name in ("__pycache__", ".mypy_cache", ".pytest_cache") for path in release.rglob(name)]
     assert left == []
     names = ["src", "build", "__pycache__", ".mypy_cache", ".ruff_cache", ".devcontainer"]
-    assert layout.NOT_COPIED(str(release), names) == {"build", "__pycache__", ".mypy_cache", ".ruff_cache"}
+    assert course_paths.NOT_COPIED(str(release), names) == {"build", "__pycache__", ".mypy_cache", ".ruff_cache"}
 
 
 @pytest.mark.promise("Students start it with `make lab`.")
@@ -63,13 +63,15 @@ def test_the_release_contains_no_line_of_a_hidden_suite(release: Path) -> None:
     shown = text_of(release)
     hidden = {
         line.strip()
-        for path in layout.CHECKS.glob("ch*/**/*")
+        for path in course_paths.CHECKS.glob("ch*/**/*")
         if path.suffix in (".py", ".yaml") and not {"support", "visible"} & set(path.parts)
         for line in path.read_text().splitlines()
         if line.startswith(("def test_", "    expect(", "  - id: ")) and len(line.strip()) > 30
     }
-    public = "".join(text_of(path) for path in layout.CHECKS.glob("ch*/*") if path.name in ("support", "visible"))
-    public += text_of(layout.SOLUTIONS)  # given tests are in the reference, and in a variant made from the notebook
+    public = "".join(text_of(path) for path in course_paths.CHECKS.glob("ch*/*") if path.name in ("support", "visible"))
+    public += text_of(
+        course_paths.SOLUTIONS
+    )  # given tests are in the reference, and in a variant made from the notebook
     assert len(hidden) > 300
     assert [line for line in sorted(hidden) if line in shown and line not in public] == []
     assert not (release / "solutions").exists()

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.run.sandbox import Isolation
 
-SECOND = layout.ROOT / "tests" / "second_course"
+SECOND = course_paths.ROOT / "tests" / "second_course"
 RIGHT = {"01_greeting": "greeting", "02_beat": "beat"}  # each assignment with the package that answers it
 Run = Callable[..., "subprocess.CompletedProcess[str]"]
 
@@ -30,7 +30,7 @@ def run(*command: str, cwd: Path, **variables: str) -> subprocess.CompletedProce
 def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The second course in a folder of its own, brought up to date."""
     course = tmp_path_factory.mktemp("second") / "course"
-    shutil.copytree(SECOND, course, ignore=layout.NOT_COPIED)
+    shutil.copytree(SECOND, course, ignore=course_paths.NOT_COPIED)
     for verb in ("sync", "tables"):
         done = run("autograder", "--course", "course", "course", verb, cwd=course.parent)
         assert done.returncode == 0, done.stdout + done.stderr

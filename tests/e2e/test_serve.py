@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.notebook import submit
 from autograder.notebook.handing_in import SERVICE, TOKEN, Receipt
 from autograder.notebook.notices import Notice
@@ -55,7 +55,7 @@ def as_ada(classroom: Classroom, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("as_ada")
 def test_a_student_hands_in_from_the_notebook_and_sees_the_visible_checks(classroom: Classroom, tmp_path: Path) -> None:
     for package in suites.hidden(CHAPTER).packages:
-        shutil.copytree(layout.SOLUTIONS / package, tmp_path / "ws" / "src" / package)
+        shutil.copytree(course_paths.SOLUTIONS / package, tmp_path / "ws" / "src" / package)
     receipt = submit(CHAPTER, tmp_path)
     assert isinstance(receipt, Receipt)
     assert f"{CHAPTER} is handed in as number {receipt.number}" in repr(receipt)

@@ -15,9 +15,9 @@ from xml.etree import ElementTree
 import pytest
 from std_msgs.msg import String
 
+from autograder.course_paths import SOLUTIONS
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
-from autograder.layout import SOLUTIONS
 from autograder.probes import launch_probe
 from autograder.ros import environment
 from autograder.submission.packages import find_packages

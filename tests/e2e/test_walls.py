@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.building import keeper
 from autograder.exceptions import StudentError
 from autograder.grade import apart, grade_submission, own_sandbox
@@ -121,12 +121,20 @@ def test_a_compromised_worker_sees_only_its_submission_and_its_chapter(
     classroom: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("A_KEY", "secret")
-    others = [folder for folder in layout.check_folders() if folder.name != f"ch{ASSIGNMENT}"]
+    others = [folder for folder in course_paths.check_folders() if folder.name != f"ch{ASSIGNMENT}"]
     hidden = [folder / part for folder in others for part in ("hidden", "mutants.yaml", "variants", "attacks.py")]
-    own = [layout.CHECKS / f"ch{ASSIGNMENT}" / name for name in ("mutants.yaml", "variants", "attacks.py")]
-    chapters = [folder for folder in layout.CHAPTERS.iterdir() if folder.name != ASSIGNMENT]
+    own = [course_paths.CHECKS / f"ch{ASSIGNMENT}" / name for name in ("mutants.yaml", "variants", "attacks.py")]
+    chapters = [folder for folder in course_paths.CHAPTERS.iterdir() if folder.name != ASSIGNMENT]
     homes = ["/root", "/home", "/var", "/run", "/etc/passwd", "/etc/shadow", Path.home() / ".cache"]
-    secrets = [*hidden, *own, *chapters, *homes, layout.SOLUTIONS, layout.ROOT / "tests", layout.ROOT / ".git"]
+    secrets = [
+        *hidden,
+        *own,
+        *chapters,
+        *homes,
+        course_paths.SOLUTIONS,
+        course_paths.ROOT / "tests",
+        course_paths.ROOT / ".git",
+    ]
     secrets += [classroom / "bob", classroom / "results", classroom / "alice" / ".." / "bob"]
     seen = [path for path in map(str, secrets) if not str(sys.prefix).startswith(path)]  # a Python may lie in a home
     taken_over(monkeypatch, LOOK, SECRETS=seen, SECRET=SECRET)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 
 CHAPTER, PACKAGE = "02_nodes", "my_robot_package"
 
@@ -27,7 +27,7 @@ def run(*command: str | Path, cwd: Path) -> str:
 @pytest.mark.timeout(1200)
 def test_a_student_checks_a_chapter_by_the_installed_wheel(tmp_path: Path) -> None:
     bundle, fresh = tmp_path / "bundle", tmp_path / "fresh"
-    run(sys.executable, "-m", "autograder", "release", CHAPTER, "--out", bundle, cwd=layout.ROOT)
+    run(sys.executable, "-m", "autograder", "release", CHAPTER, "--out", bundle, cwd=course_paths.ROOT)
     run(sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "-w", "dist", bundle, cwd=tmp_path)
     (wheel,) = (tmp_path / "dist").glob("*.whl")
     run(sys.executable, "-m", "venv", fresh, cwd=tmp_path)
@@ -38,8 +38,10 @@ def test_a_student_checks_a_chapter_by_the_installed_wheel(tmp_path: Path) -> No
                 shutil.rmtree(part) if part.is_dir() else part.unlink()
     shutil.rmtree(bundle / "assets" / "worlds")
     chapter = bundle / "chapters" / CHAPTER
-    names = "from autograder import layout; print(*(layout.world_path(name) for name in ('maze', 'office')))"
+    names = (
+        "from autograder import course_paths; print(*(course_paths.world_path(name) for name in ('maze', 'office')))"
+    )
     for world in run(fresh / "bin" / "python", "-c", names, cwd=chapter).split():
         assert Path(world).is_relative_to(fresh)
-    shutil.copytree(layout.SOLUTIONS / PACKAGE, chapter / "ws" / "src" / PACKAGE, dirs_exist_ok=True)
+    shutil.copytree(course_paths.SOLUTIONS / PACKAGE, chapter / "ws" / "src" / PACKAGE, dirs_exist_ok=True)
     assert "visible checks passed" in run(fresh / "bin" / "autograder", "check", CHAPTER, cwd=chapter)

@@ -17,7 +17,7 @@ from _pytest.mark import ParameterSet
 from autograder.author.course.execute import run_notebook
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import Chapter, chapters
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 from autograder.submission.intake.exercises import SOURCE, exercises_of
 from autograder.submission.intake.writefile import written_file
 from autograder.suite import suites

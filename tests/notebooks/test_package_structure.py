@@ -10,7 +10,7 @@ import pytest
 
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import Chapter
-from autograder.layout import SOLUTIONS, chapter
+from autograder.course_paths import SOLUTIONS, chapter
 from autograder.probes import imports, manifest
 
 CHAPTER = Chapter(chapter("01_package_structure"))

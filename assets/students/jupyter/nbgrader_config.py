@@ -2,9 +2,9 @@
 
 import os
 
-from autograder import layout
+from autograder import course_paths
 
 c = get_config()  # noqa: F821 (traitlets defines it for a configuration file)
-c.CourseDirectory.course_id = layout.course().name
+c.CourseDirectory.course_id = course_paths.course().name
 if exchange := os.environ.get("NBGRADER_EXCHANGE"):
     c.Exchange.root = exchange

@@ -19,7 +19,7 @@ from typing import Any
 from jsonschema import Draft202012Validator
 from nbformat import NotebookNode
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding
 from autograder.author.course.schema_sentences import broken_schema
@@ -112,7 +112,7 @@ def broken_metadata(name: str, notebook: NotebookNode) -> Iterator[Finding]:
 
 def read_solution(source: PurePosixPath) -> str:
     """Return the text of a reference file. Raises CourseError if the file does not exist."""
-    path = layout.SOLUTIONS / source
+    path = course_paths.SOLUTIONS / source
     if not path.is_file():
         raise CourseError(f"the reference has no file {source}; look in solutions/")
     return path.read_text(encoding="utf-8")

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from nbformat import NotebookNode
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.cells import broken_metadata, is_graded
 from autograder.author.course.contract_rules import broken_cells, broken_holding
 from autograder.author.course.exceptions import CourseError
@@ -67,7 +67,7 @@ class ReadChapter:
 def read_chapter(chapter: Chapter) -> ReadChapter:
     """Read a chapter, its checks and its reference, and apply all rules to them."""
     notebook, unreadable = _notebook(chapter)
-    folder = layout.CHECKS / f"ch{chapter.assignment}"
+    folder = course_paths.CHECKS / f"ch{chapter.assignment}"
     graded = (folder / suites.HIDDEN).is_dir() or (notebook is not None and any(map(is_graded, notebook.cells)))
     read = read_checks(chapter.assignment) if graded else ReadChecks((), (), None, {})
     name, path = chapter.notebook_path.name, shown(chapter.notebook_path)
@@ -87,7 +87,7 @@ def read_chapter(chapter: Chapter) -> ReadChapter:
 
 def read_checks(assignment: str) -> ReadChecks:
     """Read the checks of a chapter, the mutants and variants beside them, and the packages that they grade."""
-    folder = layout.CHECKS / f"ch{assignment}"
+    folder = course_paths.CHECKS / f"ch{assignment}"
     read = {kind: read_suite(assignment, kind) for kind in KINDS}
     findings = [finding for kind in KINDS for finding in read[kind].findings]
     findings += broken_python(folder)
@@ -100,7 +100,7 @@ def read_checks(assignment: str) -> ReadChecks:
         findings += [] if findings else [_import_error(error, folder)]  # earlier findings are more precise
     written = read[suites.HIDDEN]
     sources = written.sources
-    if not all((layout.SOLUTIONS / source).is_dir() for source in sources):
+    if not all((course_paths.SOLUTIONS / source).is_dir() for source in sources):
         sources = ()  # one of the names is wrong, which was already reported
     known = None if checks is None else [check.id for check in checks if check.visibility is Visibility.HIDDEN]
     ids = [*written.places] if known is None and written.is_complete else known
@@ -120,7 +120,7 @@ def require_checks(assignments: Iterable[str]) -> None:
 
 def _outdated_titles(assignment: str) -> Iterator[Finding]:
     """Yield that the list of hidden checks is out of date, which students read when all visible checks pass."""
-    path = layout.hidden_titles(assignment)
+    path = course_paths.hidden_titles(assignment)
     if not path.is_file() or path.read_text(encoding="utf-8") != titles_of(assignment):
         yield Finding(shown(path), None, "is not the list of the hidden checks: run `autograder course tables`", 1)
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.chapter_rules import KINDS, ReadChapter, placed
 from autograder.author.course.findings import Finding
 from autograder.author.course.suite_rules import shown
@@ -19,8 +19,8 @@ from sim import WorldError, load_world
 
 def broken_course_file() -> tuple[Finding, ...]:
     """Return the problems in the current `course.yaml`, without which no other part of the course can be read."""
-    root = Path(os.environ.get(layout.COURSE_VARIABLE) or layout.ROOT)
-    path = root / layout.COURSE_FILE
+    root = Path(os.environ.get(course_paths.COURSE_VARIABLE) or course_paths.ROOT)
+    path = root / course_paths.COURSE_FILE
     return read_yaml(path, str(path)).findings if path.is_file() else ()
 
 
@@ -37,19 +37,21 @@ def broken_course(read: Mapping[str, ReadChapter], *, whole: bool) -> list[Findi
 
 def _folders() -> Iterator[Finding]:
     """Yield a finding for each folder that looks like a chapter but would be ignored because of its name."""
-    known = layout.assignments()
-    for folder in sorted(path for path in layout.CHAPTERS.glob("*") if path.is_dir() and path.name[:1] not in "._"):
+    known = course_paths.assignments()
+    for folder in sorted(
+        path for path in course_paths.CHAPTERS.glob("*") if path.is_dir() and path.name[:1] not in "._"
+    ):
         if folder.name not in known and (books := sorted(path.name for path in folder.glob("*.ipynb"))):
             message = f"is not a chapter: it has no {folder.name}.ipynb, and it has {', '.join(books)}"
             yield Finding(shown(folder), None, message)
-    for folder in sorted(path for path in layout.CHECKS.glob("ch*") if path.is_dir()):
+    for folder in sorted(path for path in course_paths.CHECKS.glob("ch*") if path.is_dir()):
         name = folder.name.removeprefix("ch")
         if name not in known and any((folder / kind).is_dir() for kind in KINDS):
             yield Finding(shown(folder), None, f"contains checks of {name!r}, and there is no such chapter")
 
 
 def _worlds() -> Iterator[Finding]:
-    for path in sorted(layout.WORLDS.glob("*.yaml")) if layout.WORLDS.is_dir() else ():
+    for path in sorted(course_paths.WORLDS.glob("*.yaml")) if course_paths.WORLDS.is_dir() else ():
         try:
             if "image:" not in path.read_text(encoding="utf-8"):  # a map for map_server
                 load_world(path)
@@ -59,7 +61,7 @@ def _worlds() -> Iterator[Finding]:
 
 def _coverage(read: Mapping[str, ReadChapter], whole: bool) -> Iterator[Finding]:
     """Yield the differences between the syllabus and the readable chapters."""
-    path = layout.course().root / layout.course().syllabus
+    path = course_paths.course().root / course_paths.course().syllabus
     if not path.is_file():
         yield Finding(shown(path), None, "is missing: it names the objectives of the course")
         return
@@ -74,8 +76,8 @@ def _coverage(read: Mapping[str, ReadChapter], whole: bool) -> Iterator[Finding]
     complete = whole and all(each.notebook and each.hidden is not None for each in read.values())
     lines = {place[-1]: line for place, line in file.lines.items() if len(place) == 2}
     for finding in covered.findings:
-        if finding.file != layout.course().syllabus:
-            chapter = Chapter(layout.CHAPTERS / finding.file.removesuffix(".ipynb"))
+        if finding.file != course_paths.course().syllabus:
+            chapter = Chapter(course_paths.CHAPTERS / finding.file.removesuffix(".ipynb"))
             text = chapter.notebook_path.read_text(encoding="utf-8")
             yield replace(placed(finding, text), file=shown(chapter.notebook_path))
         elif complete:

@@ -18,7 +18,7 @@ from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernel
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import Chapter
 from autograder.plain_text import clean
@@ -67,7 +67,7 @@ def run_notebook(
     with working_copy(chapter.folder) as folder, Domain() as domain:
         failure = execute(notebook, folder, timeout, domain.number)
         if packages is not None and (folder / "ws" / "src").is_dir():
-            shutil.copytree(folder / "ws" / "src", packages, ignore=layout.NOT_COPIED, dirs_exist_ok=True)
+            shutil.copytree(folder / "ws" / "src", packages, ignore=course_paths.NOT_COPIED, dirs_exist_ok=True)
     seconds = time.monotonic() - started
     if report is not None:
         report.parent.mkdir(parents=True, exist_ok=True)
@@ -80,7 +80,7 @@ def working_copy(folder: Path) -> Iterator[Path]:
     """Yield a temporary copy of a chapter's folder without build products."""
     with tempfile.TemporaryDirectory(prefix=f"{folder.name}-") as scratch:
         copy = Path(scratch) / folder.name
-        shutil.copytree(folder, copy, ignore=layout.NOT_COPIED)
+        shutil.copytree(folder, copy, ignore=course_paths.NOT_COPIED)
         yield copy
 
 

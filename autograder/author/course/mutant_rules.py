@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding
 from autograder.author.course.schema_sentences import Place, meant
@@ -102,7 +102,7 @@ def _edits(file: YamlFile, place: Place, entry: dict[str, Any], sources: Collect
             yield file.finding(here, "says no `file`, and there is none for all mutants at the top of the file")
             continue
         at = (*here, "file") if "file" in edit else ("file",)
-        path = layout.SOLUTIONS / name
+        path = course_paths.SOLUTIONS / name
         if sources and name.partition("/")[0] not in sources:
             yield file.finding(at, f"`{name}` is in no package of the suite: {meant(name, [*sources])}")
             continue
@@ -112,7 +112,7 @@ def _edits(file: YamlFile, place: Place, entry: dict[str, Any], sources: Collect
         if "write" in edit:
             texts[name] = str(edit["write"])
         elif text is None:
-            yield file.finding(at, f"the reference has no file {layout.course().solutions}/{name}")
+            yield file.finding(at, f"the reference has no file {course_paths.course().solutions}/{name}")
         elif isinstance(find, str) and isinstance(put, str):
             if text.count(find) != 1:
                 times = f"{text.count(find)} times" if text.count(find) else "nowhere"

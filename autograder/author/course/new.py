@@ -11,14 +11,14 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.package_names import is_package_name, taken_by
 from autograder.author.course.sync import Chapter, sync_chapter
 from autograder.author.course.tables import titles
 from autograder.author.course.workload import effort, time_sentence
 from autograder.exceptions import UsageError
 
-TEMPLATES = layout.ROOT / "assets" / "new"
+TEMPLATES = course_paths.ROOT / "assets" / "new"
 NAME = re.compile(r"\d\d_(.+)")
 OBJECTIVES = "objectives:\n"
 NODE = "nearest"
@@ -48,7 +48,11 @@ def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple
         raise UsageError(
             f"a node {node!r} would have the class {node_class}, which its module also imports. Choose another name"
         )
-    folders = (layout.CHAPTERS / assignment, layout.CHECKS / f"ch{assignment}", layout.SOLUTIONS / package)
+    folders = (
+        course_paths.CHAPTERS / assignment,
+        course_paths.CHECKS / f"ch{assignment}",
+        course_paths.SOLUTIONS / package,
+    )
     words = {
         "NEW_CHAPTER": assignment,
         "NEW_PACKAGE": package,
@@ -59,7 +63,7 @@ def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple
     _require_new(*folders)
     for part, folder in zip(("chapter", "checks", "solution"), folders, strict=True):
         _write(TEMPLATES / "chapter" / part, folder, words)
-    syllabus = layout.course().root / layout.course().syllabus
+    syllabus = course_paths.course().root / course_paths.course().syllabus
     listed = syllabus.read_text(encoding="utf-8") if syllabus.is_file() else OBJECTIVES
     objective = f"{OBJECTIVES}  {package}: {title}\n"
     syllabus.write_text(listed.replace(OBJECTIVES, objective, 1), encoding="utf-8")
@@ -114,5 +118,5 @@ def _complete(chapter: Chapter) -> None:
     first = notebook.cells[0]
     first.source = first.source.replace("NEW_MINUTES", time_sentence(effort(notebook)))
     chapter.write(notebook)
-    later = layout.hidden_titles(chapter.assignment)
+    later = course_paths.hidden_titles(chapter.assignment)
     later.write_text(titles()[later], encoding="utf-8")

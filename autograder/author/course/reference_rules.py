@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.findings import Finding
 from autograder.author.course.python_files import read_python
 from autograder.author.course.schema_sentences import meant
@@ -18,7 +18,7 @@ MANIFEST = "package.xml"
 def broken_packages(packages: Collection[str]) -> Iterator[Finding]:
     """Yield the problems in these folders of the reference. A folder without a manifest is not a ROS package."""
     for name in packages:
-        folder = layout.SOLUTIONS / name
+        folder = course_paths.SOLUTIONS / name
         if (folder / MANIFEST).is_file():
             yield from _manifest(folder / MANIFEST, name)
         for path in sorted(folder.rglob("*.py")):

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import nbformat
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import Chapter, chapters
 from autograder.author.student_release import write_manifest
@@ -23,7 +23,7 @@ from autograder.exceptions import UsageError
 # Files and folders that are copied in addition to the course.
 IMAGE = (".binder", ".devcontainer")
 COPIED = ("sim", "autograder", "assets/worlds", "pyproject.toml", "requirements.lock", "LICENSE", *IMAGE)
-STUDENT_FILES = layout.ROOT / "assets" / "students"  # the README and the Makefile of a student release
+STUDENT_FILES = course_paths.ROOT / "assets" / "students"  # the README and the Makefile of a student release
 # The parts of a chapter's folder of checks that students get.
 STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})
 # The command-line modules that students get: their verbs and the dependencies of these.
@@ -46,14 +46,14 @@ def write_release(out: Path, names: tuple[str, ...] = (), newest: str = "") -> l
         release = Path(scratch) / out.name
         copy_tool(COPIED, release)
         _withhold(release)
-        copy_course((layout.COURSE_FILE, layout.course().worlds, *layout.course().released), release)
-        checks = [path for path in layout.CHECKS.glob("ch*/*") if path.name in STUDENT_CHECKS]
-        copy_course((str(path.relative_to(layout.course().root)) for path in checks), release)
+        copy_course((course_paths.COURSE_FILE, course_paths.course().worlds, *course_paths.course().released), release)
+        checks = [path for path in course_paths.CHECKS.glob("ch*/*") if path.name in STUDENT_CHECKS]
+        copy_course((str(path.relative_to(course_paths.course().root)) for path in checks), release)
         for chapter in chosen:
-            write_released(chapter, release / layout.course().chapters / chapter.assignment)
+            write_released(chapter, release / course_paths.course().chapters / chapter.assignment)
         shutil.copytree(STUDENT_FILES, release, dirs_exist_ok=True)
         readme = (STUDENT_FILES / "README.md").read_text(encoding="utf-8")
-        readme = readme.replace("TITLE", layout.course().title).replace("FIRST", chosen[0].assignment)
+        readme = readme.replace("TITLE", course_paths.course().title).replace("FIRST", chosen[0].assignment)
         (release / "README.md").write_text(readme, encoding="utf-8")
         write_manifest(release, datetime.now(timezone.utc).isoformat(timespec="seconds"), newest)
         release.rename(out)
@@ -62,14 +62,14 @@ def write_release(out: Path, names: tuple[str, ...] = (), newest: str = "") -> l
 
 def copy_tool(parts: Iterable[str], folder: Path) -> None:
     """Copy files and folders of the autograder's repository to `folder`, without any course's checks."""
-    _copy(layout.ROOT, parts, folder)
+    _copy(course_paths.ROOT, parts, folder)
     for chapter in (folder / "autograder" / "checks").glob("ch*"):
         shutil.rmtree(chapter)
 
 
 def copy_course(parts: Iterable[str], folder: Path) -> None:
     """Copy files and folders of the course to `folder`, if they exist. `parts` are paths relative to the course."""
-    _copy(layout.course().root, (part for part in parts if (layout.course().root / part).exists()), folder)
+    _copy(course_paths.course().root, (part for part in parts if (course_paths.course().root / part).exists()), folder)
 
 
 def _copy(root: Path, parts: Iterable[str], folder: Path) -> None:
@@ -77,7 +77,7 @@ def _copy(root: Path, parts: Iterable[str], folder: Path) -> None:
     for part in parts:
         source, target = root / part, folder / part
         if source.is_dir():
-            shutil.copytree(source, target, ignore=layout.NOT_COPIED, dirs_exist_ok=True)
+            shutil.copytree(source, target, ignore=course_paths.NOT_COPIED, dirs_exist_ok=True)
         else:
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(source, target)
@@ -94,5 +94,5 @@ def _withhold(release: Path) -> None:
 
 def write_released(chapter: Chapter, folder: Path) -> None:
     """Write a chapter's folder as students get it."""
-    shutil.copytree(chapter.folder, folder, ignore=layout.NOT_COPIED)
+    shutil.copytree(chapter.folder, folder, ignore=course_paths.NOT_COPIED)
     nbformat.write(in_form(chapter.read(), Form.RELEASED), folder / chapter.notebook_path.name)

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.findings import Finding
 from autograder.author.course.fixture_rules import unknown_fixtures
 from autograder.author.course.python_files import (
@@ -53,13 +53,13 @@ class ReadSuite:
 
 def shown(path: Path) -> str:
     """Return a file's path for findings: relative to the course's folder, if it is inside."""
-    root = layout.course().root
+    root = course_paths.course().root
     return str(path.relative_to(root) if path.is_relative_to(root) else path)
 
 
 def read_suite(assignment: str, kind: str) -> ReadSuite:
     """Parse the "visible" or "hidden" suite of an assignment."""
-    folder = layout.CHECKS / f"ch{assignment}" / kind
+    folder = course_paths.CHECKS / f"ch{assignment}" / kind
     top = folder / "__init__.py"
     if not top.is_file():
         missing = Finding(shown(top), None, f"there are no {kind} checks: the file has to name PACKAGES and MODULES")
@@ -106,13 +106,13 @@ def _described(file: PythonFile, folder: Path, modules: dict[str, PythonFile]) -
         if name not in modules:
             yield file.finding(values["MODULES"], f"`MODULES` names {name!r}, and there is no {name}.py beside it")
     for name in packages + folders:
-        if not (layout.SOLUTIONS / name).is_dir():
+        if not (course_paths.SOLUTIONS / name).is_dir():
             where = values["PACKAGES" if name in packages else "FOLDERS"]
             yield file.finding(
-                where, f"names {name!r}, and the reference has no folder {layout.course().solutions}/{name}"
+                where, f"names {name!r}, and the reference has no folder {course_paths.course().solutions}/{name}"
             )
     for name in read:
-        if not (layout.course().root / name).exists():
+        if not (course_paths.course().root / name).exists():
             yield file.finding(values["READS"], f"`READS` names {name!r}, and the course has no such file or folder")
     if listed:
         for name, module in modules.items():

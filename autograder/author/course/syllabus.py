@@ -16,7 +16,7 @@ from typing import Any
 
 from nbformat import NotebookNode
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.cells import metadata
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding
@@ -41,7 +41,7 @@ class Syllabus:
     @classmethod
     def read(cls, path: Path | None = None) -> Syllabus:
         """Read a YAML file, by default the course's. Raises CourseError with all of its problems."""
-        path = path or layout.course().root / layout.course().syllabus
+        path = path or course_paths.course().root / course_paths.course().syllabus
         if not path.is_file():
             raise CourseError(f"{path}: is missing: it names the objectives of the course")
         file = read_yaml(path, str(path), "syllabus.yaml")
@@ -106,7 +106,7 @@ def find_coverage(
         findings += wrong
     served = {row.objective for row in rows if row.checks}
     findings += [
-        Finding(layout.course().syllabus, None, f"no {what} covers {key!r}: {text}")
+        Finding(course_paths.course().syllabus, None, f"no {what} covers {key!r}: {text}")
         for what, missing in (
             ("hidden check", {k: t for k, t in syllabus.objectives.items() if k not in served}),
             ("notebook", {k: t for k, t in syllabus.items.items() if not items[k]}),

@@ -12,7 +12,7 @@ from pathlib import Path
 import nbformat
 from nbformat import NotebookNode
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.cells import copied_file, given_files, is_graded, read_solution
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Difference, Finding
@@ -65,7 +65,7 @@ class Chapter:
 
 def chapters(names: Sequence[str] = ()) -> list[Chapter]:
     """Return the chapters of these names, or all in order. A UsageError lists the existing ones."""
-    return [Chapter(layout.chapter(name)) for name in names or layout.assignments()]
+    return [Chapter(course_paths.chapter(name)) for name in names or course_paths.assignments()]
 
 
 def find_outdated(

@@ -10,7 +10,7 @@ import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.findings import Finding
 from autograder.author.course.markdown_table import table
 from autograder.author.course.syllabus import Location, Syllabus, SyllabusCoverage, find_coverage
@@ -51,7 +51,7 @@ def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str], 
     points = {name: _points(covered, name) for name in titles}
     return "\n".join(
         [
-            HEAD.format(syllabus=layout.course().syllabus),
+            HEAD.format(syllabus=course_paths.course().syllabus),
             "## Chapters\n",
             *table(
                 (
@@ -108,7 +108,7 @@ def _where(locations: Sequence[Location]) -> str:
 def titles() -> dict[Path, str]:
     """Return the text of each assignment's file with titles for students, by path."""
     return {
-        layout.hidden_titles(name): titles_of(name)
+        course_paths.hidden_titles(name): titles_of(name)
         for name in sorted({*suites.checkable_assignments()} & {*suites.graded_assignments()})
     }
 

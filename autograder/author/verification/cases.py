@@ -9,7 +9,7 @@ from functools import partial
 from importlib import import_module
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.release import write_released
 from autograder.author.course.sync import Chapter
 from autograder.author.verification.equivalent_rewrites import rewrites
@@ -46,7 +46,7 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
     The quick cases include one mutant for each check, graded only by the checks that it represents. They include no
     attacks and no answers from `equivalent_rewrites`.
     """
-    sources, chapter = suites.hidden(assignment).sources, Chapter(layout.chapter(assignment))
+    sources, chapter = suites.hidden(assignment).sources, Chapter(course_paths.chapter(assignment))
     selected = [
         Case(assignment, CaseKind.REFERENCE, "reference", partial(write_reference, sources), verify_full_marks),
         Case(assignment, CaseKind.RELEASE, "release", partial(write_released, chapter), verify_zero),

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from types import CodeType
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.cells import copied_file, is_solution
 from autograder.author.course.sync import Chapter
 from autograder.author.verification.python_operators import (
@@ -53,14 +53,15 @@ class GeneratedMutant:
     def texts(self) -> dict[str, str]:
         """Return the new text of each changed file."""
         return {
-            file: replaced((layout.SOLUTIONS / file).read_bytes(), changes).decode() for file, changes in self.changes
+            file: replaced((course_paths.SOLUTIONS / file).read_bytes(), changes).decode()
+            for file, changes in self.changes
         }
 
     def diff(self) -> str:
         """Return the lines that differ, with their line numbers, in a readable form."""
         diff_lines: list[str] = []
         for file, text in self.texts().items():
-            old, new = (layout.SOLUTIONS / file).read_text(encoding="utf-8").splitlines(), text.splitlines()
+            old, new = (course_paths.SOLUTIONS / file).read_text(encoding="utf-8").splitlines(), text.splitlines()
             matcher = difflib.SequenceMatcher(None, old, new, autojunk=False)
             for tag, first, last, new_first, new_last in matcher.get_opcodes():
                 if tag != "equal":
@@ -83,7 +84,7 @@ def generated_mutants(assignment: str) -> GeneratedMutants:
     mutants: dict[str, GeneratedMutant] = {}
     left_out = 0
     for file, functions, given in written_by_students(assignment):
-        text = (layout.SOLUTIONS / file).read_text(encoding="utf-8")
+        text = (course_paths.SOLUTIONS / file).read_text(encoding="utf-8")
         seen = {_meaning(file, text)}
         for function, (operator, changes) in mutations(file, text, functions):
             if given.issuperset(_lines(text.encode(), changes)):
@@ -101,7 +102,7 @@ def generated_mutants(assignment: str) -> GeneratedMutants:
 
 def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None, frozenset[bytes]]]:
     """Yield (path, functions, given lines) for each file that students write or correct. None means all functions."""
-    packages, chapter = suites.hidden(assignment).sources, Chapter(layout.chapter(assignment))
+    packages, chapter = suites.hidden(assignment).sources, Chapter(course_paths.chapter(assignment))
     copies = [(cell, copied) for cell in chapter.read().cells if (copied := copied_file(cell))]
     for cell, copied in copies:
         if is_solution(cell) and copied.source.parts[0] in packages:
@@ -114,7 +115,7 @@ def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] |
     written = {copied.source.parts[0] for _, copied in copies}
     for package in set(packages) - written:  # students get a faulty version and correct it
         for path in sorted((given / package).rglob("*")):
-            right = layout.SOLUTIONS / path.relative_to(given)
+            right = course_paths.SOLUTIONS / path.relative_to(given)
             if right.is_file() and path.is_file() and right.read_bytes() != path.read_bytes():
                 yield str(path.relative_to(given)), None, frozenset(path.read_bytes().splitlines())
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.mutant_rules import read_or_raise
 from autograder.author.verification import snapshot
 from autograder.author.verification.snapshot import Record
@@ -79,7 +79,7 @@ def mutants(assignment: str) -> tuple[Mutant, ...]:
 def write_reference(sources: tuple[str, ...], folder: Path) -> None:
     """Copy packages and other folders of the reference solution to `folder/src`."""
     for source in sources:
-        shutil.copytree(layout.SOLUTIONS / source, folder / "src" / source)
+        shutil.copytree(course_paths.SOLUTIONS / source, folder / "src" / source)
 
 
 def write_mutant(mutant: Mutant, sources: tuple[str, ...], folder: Path) -> None:

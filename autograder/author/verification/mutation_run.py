@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.verification.generated_mutants import GeneratedMutant
 from autograder.author.verification.mutants import write_reference
 from autograder.author.verification.worker_pool import WorkerPool
@@ -179,4 +179,6 @@ def prepared_run(assignment: str, workers: WorkerPool, seed: int) -> Iterator[Mu
 def _version(assignment: str) -> str:
     """Return a digest of the files of the suite and the reference."""
     suite = suites.hidden(assignment)
-    return digest(assignment, (*suite.reads, *(f"{layout.course().solutions}/{source}" for source in suite.sources)))
+    return digest(
+        assignment, (*suite.reads, *(f"{course_paths.course().solutions}/{source}" for source in suite.sources))
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder import layout
+from autograder import course_paths
 
 CANARY = "CANARY-5b1e"  # a test sets it in the grader's environment
 
@@ -11,10 +11,11 @@ CANARY = "CANARY-5b1e"  # a test sets it in the grader's environment
 SEARCH = f"""
 import gc as _gc, glob as _glob, os as _os, signal as _signal, socket as _socket, sys as _sys
 _paths = ["/etc/shadow", "/etc/passwd", "/root/.bashrc", *_glob.glob("/proc/*/environ"), *_glob.glob("/proc/*/cmdline")]
-for _root in (*_glob.glob("{layout.CHECKS}/ch*"), "{layout.SOLUTIONS}", "{layout.ROOT}/tests", "/home", "/tmp"):
+_roots = (*_glob.glob("{course_paths.CHECKS}/ch*"), "{course_paths.SOLUTIONS}", "{course_paths.ROOT}/tests")
+for _root in (*_roots, "/home", "/tmp"):
     for _folder, _, _names in _os.walk(_root):
         # Students may read a clone below /tmp. Its secrets are searched for by name.
-        if _root != "/tmp" or not _folder.startswith("{layout.ROOT}"):
+        if _root != "/tmp" or not _folder.startswith("{course_paths.ROOT}"):
             _paths += [_os.path.join(_folder, _name) for _name in _names]
 for _path in _paths:
     try:
@@ -37,10 +38,10 @@ for _path in _glob.glob("/tmp/**/result.json", recursive=True) + ["result.json",
         open(_path, "w").write('{{"score": 51}}')
     except OSError:
         pass
-for _path in ("{layout.ROOT}/autograder/__init__.py", "{layout.ROOT}/autograder/run/lockstep/lockstep_host/host.py"):
+for _path in ("__init__.py", "run/lockstep/lockstep_host/host.py"):
     try:
         # r+ opens only an existing file: a new one in the sandbox's own /tmp would be harmless.
-        open(_path, "r+").write("raise SystemExit(0)")
+        open("{course_paths.ROOT}/autograder/" + _path, "r+").write("raise SystemExit(0)")
         print("STOLEN", "/the grader's code is writable")
     except OSError:
         pass

@@ -12,7 +12,7 @@ from enum import Enum
 from functools import cache
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.verification.leaks import STOLEN
 from autograder.author.verification.mutants import Mutant
 from autograder.diagnosis import Kind
@@ -177,6 +177,8 @@ def hidden_lines(assignment: str) -> frozenset[str]:
         for line in path.read_text(encoding="utf-8").splitlines()
         if line.startswith(("def ", "    expect", "        expect")) and len(line.strip()) > 30
     }
-    public = [path for name in ("support", "visible") for path in layout.CHECKS.glob(f"ch*/{name}/*.py")]
-    public_text = "\n".join(path.read_text(encoding="utf-8") for path in (*public, *layout.SOLUTIONS.rglob("*.py")))
+    public = [path for name in ("support", "visible") for path in course_paths.CHECKS.glob(f"ch*/{name}/*.py")]
+    public_text = "\n".join(
+        path.read_text(encoding="utf-8") for path in (*public, *course_paths.SOLUTIONS.rglob("*.py"))
+    )
     return frozenset(line for line in lines if line not in public_text)

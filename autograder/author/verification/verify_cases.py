@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.verification.cases import Case
 from autograder.author.verification.check_errors import errors_in_checks
 from autograder.author.verification.leaks import hidden_text_in, texts_of
@@ -63,7 +63,7 @@ def verify_cases(
         log = folder / LOG
         if result.unjudged or result.status is Status.NOT_GRADED:
             text = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
-            errors = errors_in_checks(text, layout.CHECKS)
+            errors = errors_in_checks(text, course_paths.CHECKS)
             if named := "; ".join(errors) or ", ".join(result.unjudged):
                 mismatch = f"checks raised errors: {named}; {log} has the details"
         return Verdict(case.assignment, case.kind, case.name, result, mismatch, case.options.only)

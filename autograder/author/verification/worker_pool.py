@@ -14,7 +14,7 @@ from multiprocessing import Pipe
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from autograder import layout
+from autograder import course_paths
 from autograder.building.keeper import attend
 from autograder.grade.job import Job
 from autograder.grade.own_sandbox import GRACE
@@ -94,7 +94,7 @@ class _Worker:
                 str(theirs.fileno()),
             ]
 
-        view = View(shown=(*{layout.ROOT, layout.course().root}, self._shared))
+        view = View(shown=(*{course_paths.ROOT, course_paths.course().root}, self._shared))
         with theirs:
             sandbox = in_worker_sandbox(command, isolation, VERIFICATION_WORKER, view=view, pass_fds=(theirs.fileno(),))
             self._process, self._scratch = self._stack.enter_context(sandbox)

@@ -11,7 +11,7 @@ import hashlib
 import platform
 from collections.abc import Iterable
 
-from autograder import layout
+from autograder import course_paths
 from autograder.ros.launch_packages import describe_launch
 from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.isolation import best_isolation
@@ -22,7 +22,7 @@ LOCK = "requirements.lock"
 
 def resource(assignment: str, isolation: Isolation) -> str:
     """Return the name of this machine's resource for an assignment and an isolation level."""
-    lock = hashlib.sha256((layout.ROOT / LOCK).read_bytes()).hexdigest()[:12]
+    lock = hashlib.sha256((course_paths.ROOT / LOCK).read_bytes()).hexdigest()[:12]
     python = ".".join(platform.python_version_tuple()[:2])
     launch = describe_launch().replace(", ", "+").replace(" ", "-")
     return (

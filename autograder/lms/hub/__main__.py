@@ -10,14 +10,16 @@ from threading import Event
 
 import click
 
-from autograder import layout
+from autograder import course_paths
 from autograder.exceptions import UsageError
 from autograder.lms.hub.trial import install_release, serving
 
 
 @click.command()
 @click.option("--port", default=8000, show_default=True, help="Of the hub, on this machine alone.")
-@click.option("--place", default=layout.ROOT / ".build" / "hub", type=click.Path(path_type=Path), help="Its folder.")
+@click.option(
+    "--place", default=course_paths.ROOT / ".build" / "hub", type=click.Path(path_type=Path), help="Its folder."
+)
 def main(port: int, place: Path) -> None:
     """Serve a JupyterHub with three students and a teacher on this machine until Ctrl-C."""
     place.mkdir(parents=True, exist_ok=True)

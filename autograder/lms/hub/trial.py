@@ -21,7 +21,7 @@ from pathlib import Path
 from threading import Event
 from time import monotonic
 
-from autograder import layout
+from autograder import course_paths
 from autograder.bootstrap import closed_to_other_users
 from autograder.exceptions import UsageError
 from autograder.lms.hub.users import temporary_users
@@ -29,7 +29,7 @@ from autograder.lms.hub.users import temporary_users
 STUDENTS = ("ada", "ben", "cleo")
 TEACHER = "teacher"
 START_SECONDS = 300.0  # a deadline for the hub, not an expectation
-PROXY = layout.ROOT / "assets" / "hub"  # package.json, and the lock of npm
+PROXY = course_paths.ROOT / "assets" / "hub"  # package.json, and the lock of npm
 CONFIGURATION = """\
 from pathlib import Path
 from autograder.lms.hub.configuration import configure
@@ -68,7 +68,7 @@ def install_release(place: Path) -> Path:
     course = place / "course"
     _run(place, sys.executable, "-m", "autograder", "release", "--out", str(course))
     _run(course, "make", "--silent", "setup", f"PYTHON={Path(sys.executable).resolve()}")
-    pinned = ("--no-deps", "--require-hashes", "-r", str(layout.ROOT / "requirements-hub.lock"))
+    pinned = ("--no-deps", "--require-hashes", "-r", str(course_paths.ROOT / "requirements-hub.lock"))
     _run(course, str(course / ".venv" / "bin" / "pip"), "install", "--quiet", *pinned)
     return course
 
@@ -80,7 +80,7 @@ def install_proxy() -> Path:
         UsageError: npm failed.
     """
     lock = (PROXY / "package-lock.json").read_bytes()
-    proxy = layout.ROOT / ".build" / "hub-proxy" / hashlib.sha256(lock).hexdigest()[:12]
+    proxy = course_paths.ROOT / ".build" / "hub-proxy" / hashlib.sha256(lock).hexdigest()[:12]
     if not (proxy / "node_modules" / ".bin" / "configurable-http-proxy").exists():
         shutil.copytree(PROXY, proxy, dirs_exist_ok=True, ignore=shutil.ignore_patterns("*.py"))
         npm = str(Path(sys.executable).with_name("npm"))
@@ -133,9 +133,9 @@ def serving(place: Path, course: Path, port: int = 0) -> Iterator[Hub]:
 def _make_course_directory(home: Path, owner: str) -> None:
     """Give a teacher the chapters as a course directory of nbgrader's, with its settings where Jupyter finds them."""
     course, settings = home / "course", home / ".jupyter"
-    chapters = layout.course().chapters
-    shutil.copytree(layout.course().root / chapters, course / chapters, ignore=layout.NOT_COPIED)
-    shutil.copy(layout.course().root / "nbgrader_config.py", course)
+    chapters = course_paths.course().chapters
+    shutil.copytree(course_paths.course().root / chapters, course / chapters, ignore=course_paths.NOT_COPIED)
+    shutil.copy(course_paths.course().root / "nbgrader_config.py", course)
     settings.mkdir()
     (settings / "nbgrader_config.py").symlink_to(course / "nbgrader_config.py")
     user = pwd.getpwnam(owner)

@@ -11,7 +11,7 @@ from nbgrader.converters import Autograde
 from nbgrader.preprocessors import Execute
 from traitlets.config import Config
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.forms import SETTINGS
 
 
@@ -23,8 +23,8 @@ def configure(c: Any, root: Path) -> None:
     # nbgrader runs `alembic` from PATH, which does not contain this environment unless it is activated.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
     c.CourseDirectory.root = str(root)
-    c.CourseDirectory.course_id = layout.course().name
-    c.CourseDirectory.source_directory = layout.course().chapters
+    c.CourseDirectory.course_id = course_paths.course().name
+    c.CourseDirectory.source_directory = course_paths.course().chapters
     # Build products of colcon and Python are neither released nor collected.
     c.CourseDirectory.ignore = [
         *(".ipynb_checkpoints", "__pycache__", "*.pyc", "*.egg-info", ".pytest_cache"),

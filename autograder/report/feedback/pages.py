@@ -15,7 +15,7 @@ from urllib.parse import urlsplit
 import jinja2
 from markupsafe import Markup
 
-from autograder import layout
+from autograder import course_paths
 from autograder.plain_text import clean
 from autograder.report.feedback.model import page_view
 from autograder.report.feedback.pictures import Picture
@@ -24,7 +24,7 @@ from autograder.result.causes import FAILED_AS_WELL
 from autograder.result.model import Result, write_atomically
 from autograder.suite.contract import contract
 
-TEMPLATES = layout.ROOT / "assets" / "templates"
+TEMPLATES = course_paths.ROOT / "assets" / "templates"
 PAGE = "feedback.html"
 
 
@@ -74,7 +74,7 @@ def write(result: Result, folder: Path, *, artifacts: Path | None = None) -> Pat
     Raises:
         UsageError: the path of an artifact is outside of its folder.
     """
-    requirements = contract(result.assignment) if result.assignment in layout.assignments() else {}
+    requirements = contract(result.assignment) if result.assignment in course_paths.assignments() else {}
     page = page_view(result, artifacts or folder, requirements)
     script, style = _player_assets() if page.plays else ("", "")
     return write_page(

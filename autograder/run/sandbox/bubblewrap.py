@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.ros import RosError, find
 from autograder.run.sandbox import warm_caches
 from autograder.run.sandbox.limits import (
@@ -125,8 +125,8 @@ def _open_folders(folders: Iterable[Path | str]) -> list[str]:
 
 def _grader() -> tuple[Path, ...]:
     """Return the parts of the grader in every worker sandbox: its code, the course's description and a sourced ROS."""
-    course = (layout.course().root / layout.COURSE_FILE, layout.WORLDS)
-    code = (layout.ROOT / "autograder", layout.ROOT / "sim", layout.SHARED_WORLDS)
+    course = (course_paths.course().root / course_paths.COURSE_FILE, course_paths.WORLDS)
+    code = (course_paths.ROOT / "autograder", course_paths.ROOT / "sim", course_paths.SHARED_WORLDS)
     try:
         ros = find()
     except RosError:  # only for sandboxes that ask for it
@@ -196,4 +196,4 @@ def _private_folders() -> tuple[Path, ...]:
 
     An installed course is inside the Python that every sandbox sees.
     """
-    return *layout.check_folders(), layout.SOLUTIONS, layout.CHAPTERS
+    return *course_paths.check_folders(), course_paths.SOLUTIONS, course_paths.CHAPTERS

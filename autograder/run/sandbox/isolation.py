@@ -11,13 +11,13 @@ from enum import Enum
 from functools import cache
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.exceptions import IsolationError
 from autograder.run.sandbox import bubblewrap
 from autograder.run.sandbox.identity import ordinary_user
 from autograder.run.sandbox.spec import Sandbox, View
 
-_FOUND = {"PATH": os.defpath, "PYTHONPATH": str(layout.ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
+_FOUND = {"PATH": os.defpath, "PYTHONPATH": str(course_paths.ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
 
 
 class Isolation(str, Enum):
@@ -76,7 +76,8 @@ def require(isolation: Isolation) -> Isolation:
     if gives_up_root(isolation) and (why := _root_failure(temporary)) is not None:
         raise IsolationError(
             f"with `--isolation process` root's gradings run as an ordinary user, which fails here: {why}. Let others "
-            f"read the grader (`chmod -R go+rX {layout.ROOT}`) and enter {temporary}, or start it as an ordinary user"
+            f"read the grader (`chmod -R go+rX {course_paths.ROOT}`) and enter {temporary}, "
+            "or start it as an ordinary user"
         )
     failure = namespaces_failure() if isolation is Isolation.BUBBLEWRAP else None
     if failure is not None:

@@ -10,7 +10,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 
 _NOT_OURS = re.compile(r"/(variants|versions)/")  # below a chapter's checks: answers, which no grader imports
 
@@ -18,7 +18,7 @@ _NOT_OURS = re.compile(r"/(variants|versions)/")  # below a chapter's checks: an
 @cache
 def compile_grader() -> None:
     """Compile the grader's modules, once for a process; where they cannot be written to, each worker does it anew."""
-    for folder in (layout.ROOT / "autograder", layout.ROOT / "sim", layout.CHECKS):
+    for folder in (course_paths.ROOT / "autograder", course_paths.ROOT / "sim", course_paths.CHECKS):
         if os.access(folder, os.W_OK):
             compileall.compile_dir(folder, quiet=2, rx=_NOT_OURS)
 

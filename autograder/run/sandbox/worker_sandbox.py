@@ -13,7 +13,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.ros.environment import without_wheel_bootstrap
 from autograder.run.sandbox import bubblewrap, cgroup, warm_caches
 from autograder.run.sandbox.identity import ordinary_user
@@ -151,8 +151,13 @@ def copy_submission(path: Path, copy: Path) -> None:
 
 
 def _own(scratch: Path, isolation: Isolation) -> dict[str, str]:
-    folders = [str(layout.ROOT), os.environ.get("PYTHONPATH", "")]  # this grader, from whatever folder it was started
-    path = {} if layout.ROOT.is_relative_to(sys.prefix) else {"PYTHONPATH": os.pathsep.join(filter(None, folders))}
+    folders = [
+        str(course_paths.ROOT),
+        os.environ.get("PYTHONPATH", ""),
+    ]  # this grader, from whatever folder it was started
+    path = (
+        {} if course_paths.ROOT.is_relative_to(sys.prefix) else {"PYTHONPATH": os.pathsep.join(filter(None, folders))}
+    )
     return {ISOLATION_VARIABLE: isolation.value, "ROS_LOG_DIR": str(scratch / "ros-log"), **path}
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TypeVar
 
-from autograder import layout
+from autograder import course_paths
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.submission.intake.exercises import SOURCE, Exercises, is_stub
@@ -168,7 +168,7 @@ def _trees(files: Sequence[SubmittedFile], assignment: str, exercises: Exercises
             homes = {PurePosixPath(): PurePosixPath()} if virtual.parts else {}
         else:
             homes = {package.parent: package.parent for package in outer}
-    others = set(layout.assignments()) - {assignment}
+    others = set(course_paths.assignments()) - {assignment}
     below: dict[PurePosixPath, list[SubmittedFile]] = {home: [] for home in homes.values()}
     for file in files:
         if not outer or outer.intersection(file.path.parents):
@@ -225,7 +225,7 @@ def _notebooks(
             named.append(notebook)
         elif is_of_chapter:
             alike.append(notebook)
-        elif not any(names_assignment(file.path.name, other) for other in layout.assignments()):
+        elif not any(names_assignment(file.path.name, other) for other in course_paths.assignments()):
             others.append(notebook)
     return named + alike or others
 

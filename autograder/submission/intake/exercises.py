@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from autograder import layout
+from autograder import course_paths
 from autograder.exceptions import UsageError
 from autograder.submission.exercise_stubs import CODE_STUB, STILL_TO_BE_WRITTEN, TEXT_STUB
 from autograder.submission.intake.files import SubmittedFile
@@ -74,7 +74,7 @@ class Exercises:
 def exercises_of(assignment: str) -> Exercises | None:
     """Return the exercises of an assignment, None if the course has no such chapter."""
     try:
-        notebook = layout.source_notebook(assignment)
+        notebook = course_paths.source_notebook(assignment)
         folder = notebook.parent
     except UsageError:
         return None

@@ -14,7 +14,7 @@ import launch
 import pytest
 import yaml
 
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 from autograder.ros.domains import Domain
 from tests.e2e.launch_cases.runner import HERE, RECORDS, cases
 

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 import yaml
 
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 from tests.e2e.launch_test_cases.runner import CALLS, RECORDS
 
 EXPECTED: list[dict[str, Any]] = yaml.safe_load(RECORDS.read_text())

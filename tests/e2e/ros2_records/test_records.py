@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 import yaml
 
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 from autograder.ros.domains import Domain
 from tests.e2e.ros2_records.runner import HERE, RECORDS, is_stand_in
 

@@ -11,12 +11,12 @@ from types import SimpleNamespace
 import pytest
 from click.testing import CliRunner, Result
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.tables import titles
 from autograder.cli import course as command
+from autograder.course_paths import Course
 from autograder.exceptions import UsageError
-from autograder.layout import Course
 from autograder.notebook import checking
 from autograder.notebook.checking import CheckReport
 from autograder.result.model import CheckResult
@@ -42,7 +42,7 @@ FILES = {
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(suites, "hidden", lambda assignment: SimpleNamespace(checks=CHECKS, groups={"graph": 2.0}))
     monkeypatch.setattr(suites, "visible", lambda assignment: SimpleNamespace(checks=()))
-    monkeypatch.setattr(layout, "course", lambda: Course(tmp_path, "small", "A small course"))
+    monkeypatch.setattr(course_paths, "course", lambda: Course(tmp_path, "small", "A small course"))
     for name, text in FILES.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text)
@@ -104,7 +104,7 @@ def test_a_chapter_that_does_not_exist_is_named_with_those_that_do(course: Path)
 def test_the_lists_of_hidden_checks_that_students_get_are_up_to_date() -> None:
     stale = [path for path, text in titles().items() if path.read_text(encoding="utf-8") != text]
     assert stale == [], "run `autograder course tables`"
-    assert "The node is called robot_controller." in json.loads(layout.hidden_titles("02_nodes").read_text())
+    assert "The node is called robot_controller." in json.loads(course_paths.hidden_titles("02_nodes").read_text())
 
 
 @pytest.mark.promise("After `check(...)` has passed, it lists the hidden checks")

@@ -15,9 +15,9 @@ from click.testing import CliRunner
 
 from autograder import cli
 from autograder.cli.text_tables import table
+from autograder.course_paths import ROOT
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
-from autograder.layout import ROOT
 from autograder.notebook.checking import CheckReport
 from autograder.plain_text import visible
 from autograder.result.model import Outcome, Result, write_json

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.exceptions import UsageError
 from autograder.grade.cluster.connection import CERTIFICATE, KEY, connected, require_address
 from autograder.grade.cluster.machine import difference, resource, resources
@@ -46,7 +46,7 @@ def test_a_missing_certificate_is_named(tmp_path: Path) -> None:
 
 @pytest.mark.promise("make cluster-certificates")
 def test_a_certificate_works_for_server_and_client_and_only_its_owner_can_read_it(tmp_path: Path) -> None:
-    make = ["make", "-f", layout.ROOT / "Makefile", "cluster-certificates"]
+    make = ["make", "-f", course_paths.ROOT / "Makefile", "cluster-certificates"]
     subprocess.run(make, cwd=tmp_path, check=True)
     certificate, key = (tmp_path / "cluster-certificates" / name for name in (CERTIFICATE, KEY))
     context = ssl.create_default_context(cafile=str(certificate))

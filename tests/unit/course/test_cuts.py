@@ -8,12 +8,12 @@ import pytest
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_notebook
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.cells import copied_file
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.solution_markers import mark_lines, strip_markers
-from autograder.layout import Course
+from autograder.course_paths import Course
 
 MANIFEST = """<package>
   <name>a</name>
@@ -66,7 +66,7 @@ def _cell(**course: object) -> NotebookNode:
 def test_a_cell_is_cut_as_its_metadata_says_and_its_release_holds_no_answer(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(layout, "course", lambda: Course(tmp_path, "small", "A small course"))
+    monkeypatch.setattr(course_paths, "course", lambda: Course(tmp_path, "small", "A small course"))
     (tmp_path / "solutions" / "a").mkdir(parents=True)
     (tmp_path / "solutions" / "a" / "b.xml").write_text(MANIFEST)
     cell = _cell(cut=[["<package>", "</package>"]])

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from autograder import cli, layout
-from autograder.layout import Course
+from autograder import cli, course_paths
+from autograder.course_paths import Course
 
 from .notebooks import chapter, code, notebook, solution
 
@@ -21,7 +21,7 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A course of one chapter whose notebook runs when it is solved, and not when it is released."""
     answer = code("# BEGIN SOLUTION\nanswer = 42\n# END SOLUTION", "answer", nbgrader=solution("answer"))
     chapter(tmp_path, notebook(answer, code("print(answer)", "use")))
-    monkeypatch.setattr(layout, "course", lambda: Course(tmp_path, "small", "A small course"))
+    monkeypatch.setattr(course_paths, "course", lambda: Course(tmp_path, "small", "A small course"))
     return tmp_path
 
 
@@ -56,7 +56,7 @@ while len(list(Path('{place}').iterdir())) < 2 and time.monotonic() < end:
     time.sleep(0.01)
 assert len(list(Path('{place}').iterdir())) == 2"""
     chapter(tmp_path, notebook(code(meet, "meet")))
-    monkeypatch.setattr(layout, "course", lambda: Course(tmp_path, "small", "A small course"))
+    monkeypatch.setattr(course_paths, "course", lambda: Course(tmp_path, "small", "A small course"))
     said = _run("--source", "--solved", "-j", "2")
     assert said.exit_code == 0, said.output
     assert sorted(line.partition(": ")[0] for line in said.output.splitlines()) == [

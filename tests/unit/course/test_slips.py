@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from tests.unit.course.check_server import END
 
 CHECKS = "checks/ch10_mapping"
@@ -159,7 +159,7 @@ def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
         os.environ["AUTOGRADER_COURSE"] = {str(folder)!r}
         write_chapter("10_mapping")
     """
-    subprocess.run([sys.executable, "-c", script], check=True, cwd=layout.ROOT)
+    subprocess.run([sys.executable, "-c", script], check=True, cwd=course_paths.ROOT)
     return folder
 
 
@@ -169,7 +169,9 @@ def check(course: Path) -> Iterator[CheckCourse]:
     command = [sys.executable, "-m", "tests.unit.course.check_server"]
     environment = {**os.environ, "AUTOGRADER_COURSE": str(course)}
     pipe = subprocess.PIPE
-    with subprocess.Popen(command, cwd=layout.ROOT, env=environment, stdin=pipe, stdout=pipe, text=True) as server:
+    with subprocess.Popen(
+        command, cwd=course_paths.ROOT, env=environment, stdin=pipe, stdout=pipe, text=True
+    ) as server:
         assert server.stdin is not None
         assert server.stdout is not None
         asked, answers = server.stdin, server.stdout
@@ -234,7 +236,7 @@ def test_sync_says_what_is_wrong_with_a_suite_that_cannot_be_imported(course: Pa
     undo = slip(course, SUITE, '("readings",)', '("readings")')
     command = [sys.executable, "-m", "autograder", "--course", str(course), "course", "sync"]
     try:
-        done = subprocess.run(command, cwd=layout.ROOT, text=True, capture_output=True)
+        done = subprocess.run(command, cwd=course_paths.ROOT, text=True, capture_output=True)
     finally:
         undo()
     assert done.returncode == 1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.syllabus import Location, Syllabus, find_coverage
 from autograder.author.course.tables import course_page, page
 from autograder.author.course.workload import Effort
@@ -73,7 +73,7 @@ def test_the_page_has_a_row_for_each_and_keeps_to_markdown() -> None:
 def test_the_course_covers_the_syllabus_and_its_page_is_up_to_date() -> None:
     written, findings = course_page()
     assert [str(finding) for finding in findings] == []
-    page = (layout.CHAPTERS / "README.md").read_text(encoding="utf-8")
+    page = (course_paths.CHAPTERS / "README.md").read_text(encoding="utf-8")
     assert page == written, "it is out of date: run `autograder course tables`"
 
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.sync import Chapter, chapters, find_outdated, sync_chapter
-from autograder.layout import Course
+from autograder.course_paths import Course
 
 from .notebooks import chapter, code, notebook, prose, solution
 
@@ -20,7 +20,7 @@ CELL: dict[str, Any] = {"source": "pkg/node.py", "target": "ws/src/pkg/node.py",
 
 @pytest.fixture(autouse=True)
 def solutions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(layout, "course", lambda: Course(tmp_path, "small", "A small course"))
+    monkeypatch.setattr(course_paths, "course", lambda: Course(tmp_path, "small", "A small course"))
     folder = tmp_path / "solutions"
     (folder / "pkg").mkdir(parents=True)
     (folder / "pkg/node.py").write_text("# Copyright 2026 Us\n\n" + NODE)

@@ -6,7 +6,7 @@ import re
 import runpy
 
 from autograder.author.verification.cases import attacks
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 from autograder.suite import suites
 
 MADE = runpy.run_path(str(ROOT / "docs" / "attacks_page.py"))

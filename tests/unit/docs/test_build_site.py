@@ -11,20 +11,20 @@ import numpy as np
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.sync import Chapter
-from autograder.layout import Course
+from autograder.course_paths import Course
 from sim import RobotSpec, Simulation, load_world, run
 
-GLOSSARY = layout.CHAPTERS / "glossary.md"
-MADE = runpy.run_path(str(layout.ROOT / "docs" / "build_site.py"))
+GLOSSARY = course_paths.CHAPTERS / "glossary.md"
+MADE = runpy.run_path(str(course_paths.ROOT / "docs" / "build_site.py"))
 
 
 @pytest.mark.parametrize(("executed", "shown"), [("1 + 1", 1), ("1 + 2", 0)])
 def test_each_cell_gets_the_outputs_of_the_same_executed_cell(
     executed: str, shown: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(layout, "course", lambda: Course(tmp_path, "small", "A small course"))
+    monkeypatch.setattr(course_paths, "course", lambda: Course(tmp_path, "small", "A small course"))
     chapter = Chapter(tmp_path / "10_mapping")
     reports, site = tmp_path / ".build" / "notebooks", tmp_path / "site"
     for folder in (chapter.folder, reports, site):
@@ -76,12 +76,12 @@ def test_the_first_use_of_a_term_in_prose_is_linked_to_the_glossary() -> None:
 def test_each_exception_from_linking_names_a_term_of_the_glossary() -> None:
     words = {word for entry in MADE["ENTRY"].finditer(GLOSSARY.read_text()) for word in entry["words"].split(", ")}
     assert MADE["EVERYWHERE"].union(*MADE["MEANT_OTHERWISE"].values()) <= words
-    assert {name for name in MADE["MEANT_OTHERWISE"] if name[0].isdigit()} <= set(layout.assignments())
+    assert {name for name in MADE["MEANT_OTHERWISE"] if name[0].isdigit()} <= set(course_paths.assignments())
 
 
 @pytest.mark.promise("This robot finds its way by its lidar alone.")
 def test_the_robot_on_the_start_page_drives_into_nothing() -> None:
-    simulation = Simulation(load_world(layout.WORLDS / "lab.yaml"), (RobotSpec(),))
+    simulation = Simulation(load_world(course_paths.WORLDS / "lab.yaml"), (RobotSpec(),))
     recording = run(simulation, MADE["wander"], seconds=40.0)
     hits = [event for event in recording.events if event.kind == "collision"]
     assert [event.what for event in hits if event.speed] == []  # a colleague may walk into the robot

@@ -6,7 +6,7 @@ import runpy
 
 import pytest
 
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 
 MADE = runpy.run_path(str(ROOT / "docs" / "limits_page.py"))
 

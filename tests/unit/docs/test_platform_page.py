@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 from autograder.ros.distribution import DISTRIBUTION
 from autograder.ros.ros2.main import STAND_INS
 

@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
+from autograder.course_paths import ROOT
 from autograder.doctor import CommandResult, Finding, Status, System, examine, healthy, render
-from autograder.layout import ROOT
 from autograder.ros import RosEnvironment, RosNotFoundError, WrongDistroError
 from autograder.ros.distribution import DISTRIBUTION
 from autograder.run.sandbox.isolation import namespaces_failure

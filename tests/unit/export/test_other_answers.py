@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.exceptions import UsageError
 from autograder.report.export import write
 from autograder.report.other_answers import SHOWN, other_answers
@@ -64,6 +64,6 @@ def test_a_slip_in_the_list_is_named(
     (variants / "states").mkdir(parents=True)
     if text is not None:
         (variants / SHOWN).write_text(text)
-    monkeypatch.setattr(layout, "CHECKS", tmp_path)
+    monkeypatch.setattr(course_paths, "CHECKS", tmp_path)
     with pytest.raises(UsageError, match=message):
         other_answers("02_nodes")

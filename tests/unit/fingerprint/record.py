@@ -15,18 +15,18 @@ import tokenize
 from collections.abc import Iterator
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.suite import fingerprint
 
 RECORD = Path(__file__).with_name("recorded.txt")
-LOCK = layout.ROOT / "requirements.lock"  # the packages that students' programs meet
+LOCK = course_paths.ROOT / "requirements.lock"  # the packages that students' programs meet
 
 
 def current() -> str:
     """Return the record as it would be now."""
-    any_chapter = layout.assignments()[0]
+    any_chapter = course_paths.assignments()[0]
     shared = {*fingerprint.files(any_chapter), LOCK}.difference(fingerprint.chapter_files(any_chapter))
-    lines = (f"{_digest(path)}  {path.relative_to(layout.ROOT).as_posix()}" for path in sorted(shared))
+    lines = (f"{_digest(path)}  {path.relative_to(course_paths.ROOT).as_posix()}" for path in sorted(shared))
     return "\n".join([f"GRADER_VERSION {fingerprint.GRADER_VERSION}", *lines, ""])
 
 

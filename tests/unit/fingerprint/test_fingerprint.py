@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
-from autograder.layout import Course
+from autograder import course_paths
+from autograder.course_paths import Course
 from autograder.suite import fingerprint, suites
 from autograder.suite.fingerprint import GRADER_VERSION, digest, files, version
 
@@ -63,10 +63,10 @@ LINES = "name: few\ntitle: A course with few files\nchecks: autograder/checks\nw
 @pytest.fixture
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A course with few files."""
-    for name, text in {**SHARED, **OWN, layout.COURSE_FILE: LINES}.items():
+    for name, text in {**SHARED, **OWN, course_paths.COURSE_FILE: LINES}.items():
         _write(tmp_path / name, text)
-    monkeypatch.setattr(layout, "ROOT", tmp_path)
-    monkeypatch.setattr(layout, "course", lambda: Course.read(tmp_path))
+    monkeypatch.setattr(course_paths, "ROOT", tmp_path)
+    monkeypatch.setattr(course_paths, "course", lambda: Course.read(tmp_path))
     return tmp_path
 
 
@@ -105,9 +105,9 @@ def test_the_version_of_another_course_does_not_depend_on_checks_of_this_course(
     course: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     other = course / "other"
-    _write(other / layout.COURSE_FILE, "name: other\ntitle: Another\n")
+    _write(other / course_paths.COURSE_FILE, "name: other\ntitle: Another\n")
     _write(other / "checks/ch02_nodes/hidden/graph.py", "")
-    monkeypatch.setattr(layout, "course", lambda: Course.read(other))
+    monkeypatch.setattr(course_paths, "course", lambda: Course.read(other))
     read = {str(path.relative_to(course)) for path in files(CHAPTER)}
     assert "other/checks/ch02_nodes/hidden/graph.py" in read
     assert {"sim/world.py", "autograder/suite/suites.py", "assets/worlds/lab.yaml"} <= read
@@ -145,8 +145,10 @@ def test_every_module_that_a_grading_imports_is_among_the_files() -> None:
         "places = [getattr(module, '__file__', None) for module in list(sys.modules.values())]\n"
         "print(json.dumps([place for place in places if place]))\n"
     )
-    printed = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, cwd=layout.ROOT)
-    homes = (layout.ROOT / "autograder", layout.ROOT / "sim")
+    printed = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True, text=True, cwd=course_paths.ROOT
+    )
+    homes = (course_paths.ROOT / "autograder", course_paths.ROOT / "sim")
     modules = {Path(place) for place in json.loads(printed.stdout)}
     imported = {module for module in modules if any(home in module.parents for home in homes)}
     known = {path for name in suites.graded_assignments() for path in files(name, suites.hidden(name).reads)}
@@ -155,8 +157,8 @@ def test_every_module_that_a_grading_imports_is_among_the_files() -> None:
 
 
 def test_each_path_in_reads_of_a_suite_exists() -> None:
-    reads = [layout.ROOT / path for name in suites.graded_assignments() for path in suites.hidden(name).reads]
-    assert layout.SOLUTIONS / "speed_guard" in reads
+    reads = [course_paths.ROOT / path for name in suites.graded_assignments() for path in suites.hidden(name).reads]
+    assert course_paths.SOLUTIONS / "speed_guard" in reads
     assert all(path.exists() for path in reads)
 
 

@@ -9,7 +9,7 @@ import pytest
 from nbformat import NotebookNode, write
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from autograder import layout
+from autograder import course_paths
 from autograder.exceptions import UsageError
 from autograder.notebook.checking import Part, part_of
 from autograder.notebook.exercises import Exercise, checks_of, exercises, find
@@ -70,7 +70,7 @@ def _held(source: str, *sentences: str, **more: str) -> NotebookNode:
 def chapter(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The notebook of a chapter `x`."""
     path = tmp_path / "x.ipynb"
-    monkeypatch.setattr(layout, "source_notebook", lambda assignment: path)
+    monkeypatch.setattr(course_paths, "source_notebook", lambda assignment: path)
     return path
 
 

@@ -14,8 +14,8 @@ from typing import Any
 
 import pytest
 
-from autograder import layout
-from autograder.layout import Course
+from autograder import course_paths
+from autograder.course_paths import Course
 from autograder.notebook import checking, kept_results
 from autograder.notebook.checking import CheckReport, part_of, run_part
 from autograder.result.model import CheckResult
@@ -99,10 +99,10 @@ def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the course and of the grader. Each test keeps its results elsewhere, and leaves the copy in order."""
     root = tmp_path_factory.mktemp("course")
     for name in ("autograder", "sim", "assets/worlds", f"chapters/{CHAPTER}"):
-        shutil.copytree(layout.ROOT / name, root / name, ignore=layout.NOT_COPIED)
+        shutil.copytree(course_paths.ROOT / name, root / name, ignore=course_paths.NOT_COPIED)
     for package in suites.visible(CHAPTER).sources:
         source = root / "chapters" / CHAPTER / "ws/src" / package
-        shutil.copytree(layout.SOLUTIONS / package, source, dirs_exist_ok=True)
+        shutil.copytree(course_paths.SOLUTIONS / package, source, dirs_exist_ok=True)
     return root
 
 
@@ -111,8 +111,8 @@ def machine(copied: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Ma
     copy = Machine(copied)
     own = copy.root / "autograder/notebook/kept_results.py"
     course = Course(copy.root, "a-copy", "A copy", checks="autograder/checks", worlds="assets/worlds")
-    monkeypatch.setattr(layout, "ROOT", copy.root)
-    monkeypatch.setattr(layout, "course", lambda: course)
+    monkeypatch.setattr(course_paths, "ROOT", copy.root)
+    monkeypatch.setattr(course_paths, "course", lambda: course)
     monkeypatch.setattr(kept_results, "__file__", str(own))
     monkeypatch.setattr(checking, "run_in_worker", copy.run)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.layout import SOLUTIONS
+from autograder.course_paths import SOLUTIONS
 from autograder.probes import imports, manifest
 
 FILES = {

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from autograder.author.course.forms import CODE_STUB
-from autograder.layout import SOLUTIONS
+from autograder.course_paths import SOLUTIONS
 from autograder.probes import manifest
 from autograder.suite import CheckFailed
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 
 PARSES = re.compile(
     r"json\.loads?\(|yaml\.(?:safe_)?load|SafeLoader\(|ET\.(?:fromstring|parse)\(|ast\.parse\(|literal_eval|nbformat\.reads?\("

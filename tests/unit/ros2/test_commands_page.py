@@ -7,7 +7,7 @@ import shlex
 
 import pytest
 
-from autograder.layout import CHAPTERS
+from autograder.course_paths import CHAPTERS
 from autograder.ros.ros2.main import COMMANDS
 from autograder.ros.ros2.parsing import parse
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 from autograder.ros import RosEnvironment, find, real_launch
 from autograder.ros.launch_packages import SOURCES, Place, Source, describe_launch, python_packages
 from autograder.ros.real_launch import RealLaunchError, install, main, remove, set_up

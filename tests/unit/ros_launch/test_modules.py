@@ -11,7 +11,7 @@ import pytest
 import yaml
 from standin_notice import NotInStandInError
 
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 
 MODULES: dict[str, list[str]] = yaml.safe_load(Path(__file__).with_name("real_modules.yaml").read_text())
 PAGE = runpy.run_path(str(ROOT / "docs" / "platform_page.py"))

@@ -6,7 +6,7 @@ import itertools
 import sys
 from pathlib import Path
 
-from autograder import layout
+from autograder import course_paths
 from autograder.run.sandbox import Limits, Mount, Sandbox, bubblewrap
 from autograder.run.sandbox.limits import WORKER_SCRATCH
 from autograder.run.sandbox.spec import View
@@ -50,14 +50,14 @@ def test_no_accounts_and_no_home_folders_are_shown(tmp_path: Path) -> None:
     python = set(bubblewrap.python_mounts())
     for secret in ("/", "/root", "/home", "/etc", "/etc/shadow", "/etc/passwd", "/var", "/run", "/sys"):
         assert Path(secret) not in shown - python
-    assert not any(layout.ROOT.is_relative_to(path) for path in shown)
+    assert not any(course_paths.ROOT.is_relative_to(path) for path in shown)
 
 
 def test_suites_and_solutions_are_hidden_in_each_mount_that_contains_them(tmp_path: Path) -> None:
-    spec = Sandbox(tmp_path, mounts=(Mount(layout.ROOT),))
+    spec = Sandbox(tmp_path, mounts=(Mount(course_paths.ROOT),))
     options = _options(_sandbox(spec))
-    mounted = options.index(str(layout.ROOT))
-    for secret in (*layout.check_folders(), layout.SOLUTIONS):
+    mounted = options.index(str(course_paths.ROOT))
+    for secret in (*course_paths.check_folders(), course_paths.SOLUTIONS):
         assert options.index(str(secret)) > mounted
         assert str(secret) in _pairs(options, "--tmpfs")
         assert str(secret) in _pairs(options, "--remount-ro")
@@ -121,21 +121,23 @@ def test_a_sandbox_of_root_becomes_an_ordinary_user_before_it_creates_namespaces
 
 
 def test_a_worker_sandbox_shows_the_grader_s_code_and_only_the_declared_files_of_chapters(tmp_path: Path) -> None:
-    shown, out = layout.SOLUTIONS / "speed_guard", tmp_path / "out"
+    shown, out = course_paths.SOLUTIONS / "speed_guard", tmp_path / "out"
     options = _options(
         bubblewrap.worker_sandbox(["worker"], View((shown,), (tmp_path,), (out,)), scratch=Path("/tmp/worker"))
     )
     read_only, writable = _pairs(options, "--ro-bind"), _pairs(options, "--bind")
     assert writable == [str(out)]
-    assert {str(layout.ROOT / "autograder"), str(shown), str(tmp_path)} <= set(read_only)
+    assert {str(course_paths.ROOT / "autograder"), str(shown), str(tmp_path)} <= set(read_only)
     for secret in (
-        layout.ROOT,
-        layout.CHAPTERS,
-        layout.SOLUTIONS,
+        course_paths.ROOT,
+        course_paths.CHAPTERS,
+        course_paths.SOLUTIONS,
         Path("/"),
         Path("/home"),
         Path("/etc"),
         Path("/run"),
     ):
         assert str(secret) not in read_only
-    assert {*map(str, layout.check_folders())} <= set(_pairs(options, "--tmpfs")) & set(_pairs(options, "--remount-ro"))
+    assert {*map(str, course_paths.check_folders())} <= set(_pairs(options, "--tmpfs")) & set(
+        _pairs(options, "--remount-ro")
+    )

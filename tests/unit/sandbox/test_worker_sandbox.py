@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.run.sandbox import Isolation, procfs
 from autograder.run.sandbox.worker_sandbox import run_in_worker_sandbox
 
@@ -63,7 +63,7 @@ def test_a_worker_imports_nothing_from_the_folder_that_the_grader_was_started_in
 
 CELL = """
 import sys
-from autograder import layout
+from autograder import course_paths
 from autograder.run.sandbox import Isolation, procfs
 from autograder.run.sandbox.worker_sandbox import in_worker_sandbox
 
@@ -78,7 +78,7 @@ with in_worker_sandbox(lambda scratch: ["sh", "-c", "echo up; exec sleep 600"], 
 def test_nothing_in_a_worker_sandbox_outlives_a_killed_grader() -> None:
     """The kernel sends the signal of a parent's death with the rights of the parent, here those of root without any."""
     command = [sys.executable, "-c", CELL]
-    with subprocess.Popen(command, cwd=layout.ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as grader:
+    with subprocess.Popen(command, cwd=course_paths.ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as grader:
         assert grader.stdout is not None
         assert grader.stdout.readline() == b"up\n"
         below = {os.pidfd_open(pid): procfs.name(pid) for pid in procfs.measure(grader.pid).pids if pid != grader.pid}

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 from tests.unit.structure.regex_steps import Budget, Steps, hard_texts
 
 LENGTH = 32  # repetitions of the part of a text that makes it hard

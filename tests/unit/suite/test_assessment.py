@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.syllabus import Syllabus
 from autograder.author.course.sync import Chapter
@@ -22,7 +22,7 @@ ASSIGNMENT = "09_assessment"
 
 
 def test_the_notebook_asks_each_question_with_four_choices() -> None:
-    text = "\n".join(cell.source for cell in Chapter(layout.chapter(ASSIGNMENT)).read().cells)
+    text = "\n".join(cell.source for cell in Chapter(course_paths.chapter(ASSIGNMENT)).read().cells)
     asked = dict(re.findall(r"^\*\*(q\d+)\.\*\*.*?((?:\n- [a-d]\) [^\n]+)+)", text, re.MULTILINE | re.DOTALL))
     assert tuple(asked) == contract.QUESTIONS == tuple(QUESTIONS)
     for choices in asked.values():
@@ -44,9 +44,9 @@ def test_every_wrong_answer_is_explained_without_naming_the_right_one(name: str)
 
 
 def test_the_reference_holds_the_key_and_the_release_does_not() -> None:
-    sheet = (layout.SOLUTIONS / contract.SHEET).read_text()
+    sheet = (course_paths.SOLUTIONS / contract.SHEET).read_text()
     assert parse(sheet) == {name: question.right for name, question in QUESTIONS.items()}
-    released = in_form(Chapter(layout.chapter(ASSIGNMENT)).read(), Form.RELEASED)
+    released = in_form(Chapter(course_paths.chapter(ASSIGNMENT)).read(), Form.RELEASED)
     (cell,) = [cell for cell in released.cells if cell.id == "answers"]
     assert "still to be written" in cell.source
     assert parse(cell.source).keys().isdisjoint(QUESTIONS)

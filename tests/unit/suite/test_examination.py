@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.checks.ch06_testing.hidden.examination import FILES, Examination
 from autograder.checks.ch06_testing.hidden.faults import faults
 from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMITS
@@ -24,7 +24,7 @@ ALL_PASS = Report(None, 0, Claims({f"test::{number}": ClaimedOutcome.PASSED for 
 
 @pytest.fixture
 def workspace(tmp_path: Path) -> Workspace:
-    shutil.copytree(layout.SOLUTIONS / "speed_guard", tmp_path / "ws/src/speed_guard")
+    shutil.copytree(course_paths.SOLUTIONS / "speed_guard", tmp_path / "ws/src/speed_guard")
     (tmp_path / "home").mkdir()
     return Workspace(tmp_path / "ws", environment.find(), tmp_path / "home")
 

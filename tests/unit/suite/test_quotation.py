@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from markdown_it import MarkdownIt
 
-from autograder import layout
+from autograder import course_paths
 from autograder.suite.contract import contract
 from autograder.suite.quotation import quote
 
@@ -101,11 +101,13 @@ def rendered(source: str) -> Iterator[list[str]]:
 
 
 def cells(assignment: str) -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = json.loads(layout.source_notebook(assignment).read_text(encoding="utf-8"))["cells"]
+    found: list[dict[str, Any]] = json.loads(course_paths.source_notebook(assignment).read_text(encoding="utf-8"))[
+        "cells"
+    ]
     return [cell for cell in found if cell["metadata"].get("course", {}).get("contract")]
 
 
-@pytest.mark.parametrize("assignment", layout.assignments())
+@pytest.mark.parametrize("assignment", course_paths.assignments())
 def test_each_sentence_of_a_contract_is_whole_and_as_another_parser_renders_it(assignment: str) -> None:
     known, first = contract(assignment), set[str]()
     for cell in cells(assignment):

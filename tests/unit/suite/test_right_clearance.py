@@ -8,10 +8,10 @@ import runpy
 
 from sensor_msgs.msg import LaserScan
 
-from autograder import layout
+from autograder import course_paths
 from autograder.checks.ch08_capstone.support.clearances import MIDDLES, nearest
 
-SECTORS = layout.SOLUTIONS / "robot_navigation_tutorial/robot_navigation_tutorial/sectors.py"
+SECTORS = course_paths.SOLUTIONS / "robot_navigation_tutorial/robot_navigation_tutorial/sectors.py"
 READINGS = (math.nan, math.inf, -math.inf, 0.0, 0.05, 0.12, 3.5, 9.0)
 
 

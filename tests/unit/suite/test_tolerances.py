@@ -23,7 +23,7 @@ from autograder.checks.ch08_capstone.support import contract as capstone
 from autograder.checks.ch08_capstone.support import system
 from autograder.checks.ch09_assessment.support import contract as assessment
 from autograder.checks.ch09_assessment.support import robot as heater
-from autograder.layout import CHECKS
+from autograder.course_paths import CHECKS
 from autograder.suite.declaration import CheckFailed
 
 NAMED = re.compile(r"^(?:[A-Z]+_)?(?:TOLERANCE|SLACK|EXACT|ROUNDED|FLOAT32) = .*$", re.MULTILINE)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from PIL import Image, PngImagePlugin
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.verification.leaks import ENCODINGS, hidden_text_in, texts_of
 from autograder.author.verification.verdicts import hidden_lines
 from autograder.probes.leak_markers import draw_marker
@@ -31,7 +31,7 @@ def test_a_hidden_line_is_found_in_each_encoding(encoding: str) -> None:
 
 def test_a_notebook_contains_no_hidden_text() -> None:
     for assignment in suites.graded_assignments():
-        text = layout.source_notebook(assignment).read_text(encoding="utf-8")
+        text = course_paths.source_notebook(assignment).read_text(encoding="utf-8")
         assert hidden_text_in(text, hidden_lines(assignment)) == []
 
 

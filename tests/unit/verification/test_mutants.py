@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.author.verification.mutants import Edit, Mutant, mutants, write_mutant, write_reference
 from autograder.diagnosis import Kind
 from autograder.exceptions import GraderError
@@ -58,7 +58,7 @@ def test_a_recorded_diagnosis_that_does_not_exist_is_refused(described: Path) ->
 
 @pytest.mark.parametrize(("find", "times"), [("no such text", 0), ("import", 2)])
 def test_an_edit_whose_text_does_not_occur_exactly_once_is_refused(tmp_path: Path, find: str, times: int) -> None:
-    shutil.copytree(layout.SOLUTIONS / "my_robot_package", tmp_path / "reference")
+    shutil.copytree(course_paths.SOLUTIONS / "my_robot_package", tmp_path / "reference")
     text = (tmp_path / "reference" / "setup.py").read_text()
     times = text.count(find)
     assert times != 1

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
@@ -54,6 +54,6 @@ def test_a_node_sees_the_install_space_and_no_sources(workspace: Workspace) -> N
     paths = {mount.path for mount in spec.mounts}
     assert workspace.install in paths
     assert not any((workspace.root / "src").is_relative_to(path) for path in paths)
-    assert not any(layout.CHECKS.is_relative_to(path) for path in paths)
+    assert not any(course_paths.CHECKS.is_relative_to(path) for path in paths)
     assert [mount.path for mount in spec.mounts if mount.writable] == [workspace.scratch]
     assert spec.network

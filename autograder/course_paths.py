@@ -115,7 +115,7 @@ BUILD: Path
 
 
 def __getattr__(name: str) -> Path:
-    """Return the path of a folder of the course, such as `layout.CHAPTERS`."""
+    """Return the path of a folder of the course, such as `course_paths.CHAPTERS`."""
     if name not in ("CHAPTERS", "SOLUTIONS", "CHECKS", "WORLDS", "BUILD"):
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return _folder(name.lower())

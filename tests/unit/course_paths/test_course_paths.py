@@ -9,15 +9,15 @@ from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import course_paths
+from autograder.course_paths import Course
 from autograder.exceptions import UsageError
-from autograder.layout import Course
 
 LINES = "name: small\ntitle: A small course\n"
 
 
 def course(folder: Path, lines: str) -> Course:
-    (folder / layout.COURSE_FILE).write_text(lines)
+    (folder / course_paths.COURSE_FILE).write_text(lines)
     return Course.read(folder)
 
 
@@ -32,7 +32,7 @@ def test_a_course_needs_a_name_and_a_title_and_all_else_has_a_default(tmp_path: 
 def test_a_course_file_names_the_folders_and_the_files_that_students_get(tmp_path: Path) -> None:
     small = course(tmp_path, LINES + "checks: suites\nreleased: [chapters/commands.md]\n")
     assert small.checks == "suites"
-    assert {"suites", "chapters/commands.md", layout.COURSE_FILE} <= set(small.parts)
+    assert {"suites", "chapters/commands.md", course_paths.COURSE_FILE} <= set(small.parts)
 
 
 @pytest.mark.parametrize(
@@ -69,28 +69,29 @@ def test_an_installed_autograder_uses_the_course_that_contains_the_working_folde
     inside = tmp_path / "chapters" / "01_first"
     inside.mkdir(parents=True)
     monkeypatch.chdir(inside)
-    monkeypatch.delenv(layout.COURSE_VARIABLE, raising=False)
-    assert layout._chosen() == layout.ROOT  # the one around the autograder comes first
-    monkeypatch.setattr(layout, "ROOT", tmp_path / "site-packages")
-    assert layout._chosen() == tmp_path
-    monkeypatch.setenv(layout.COURSE_VARIABLE, str(inside))
-    assert layout._chosen() == inside
+    monkeypatch.delenv(course_paths.COURSE_VARIABLE, raising=False)
+    assert course_paths._chosen() == course_paths.ROOT  # the one around the autograder comes first
+    monkeypatch.setattr(course_paths, "ROOT", tmp_path / "site-packages")
+    assert course_paths._chosen() == tmp_path
+    monkeypatch.setenv(course_paths.COURSE_VARIABLE, str(inside))
+    assert course_paths._chosen() == inside
 
 
 @pytest.mark.slow  # it imports all of them
 def test_no_module_of_the_autograder_reads_the_course_when_it_is_imported(tmp_path: Path) -> None:
     # The checks and attacks of chapters are a part of the course. `payloads` is what attacks are made of.
     names = [
-        ".".join(path.relative_to(layout.ROOT).with_suffix("").parts)
-        for path in sorted((layout.ROOT / "autograder").rglob("*.py"))
+        ".".join(path.relative_to(course_paths.ROOT).with_suffix("").parts)
+        for path in sorted((course_paths.ROOT / "autograder").rglob("*.py"))
         if not {"checks", "standins", "__main__", "__init__"} & {*path.parts, path.stem}
         and not path.stem.endswith(("_runner", "attacks", "payloads"))
         and not any(part.endswith("_host") for part in path.parts)
     ]
-    importing = f"import importlib\nfor name in {names}: importlib.import_module(name)\nfrom autograder import layout\n"
+    importing = f"import importlib\nfor name in {names}: importlib.import_module(name)\n"
+    importing += "from autograder import course_paths\n"
     done = subprocess.run(
-        [sys.executable, "-c", importing + "print(layout.course.cache_info().currsize)\nlayout.CHAPTERS"],
-        env={**os.environ, layout.COURSE_VARIABLE: str(tmp_path)},
+        [sys.executable, "-c", importing + "print(course_paths.course.cache_info().currsize)\ncourse_paths.CHAPTERS"],
+        env={**os.environ, course_paths.COURSE_VARIABLE: str(tmp_path)},
         capture_output=True,
         text=True,
         check=False,
@@ -99,20 +100,24 @@ def test_no_module_of_the_autograder_reads_the_course_when_it_is_imported(tmp_pa
 
 
 def test_each_path_that_the_course_file_names_exists() -> None:
-    made = layout.course().guide  # by `autograder course tables`
-    assert {part for part in layout.course().parts if not (layout.course().root / part).exists()} <= {made}
-    assert layout.course().demo in layout.assignments()
+    made = course_paths.course().guide  # by `autograder course tables`
+    assert {part for part in course_paths.course().parts if not (course_paths.course().root / part).exists()} <= {made}
+    assert course_paths.course().demo in course_paths.assignments()
 
 
 def test_the_autograder_names_no_chapter_and_no_package_of_the_course() -> None:
-    names = {*layout.assignments(), *(path.name for path in layout.SOLUTIONS.iterdir()), *layout.check_folders()}
+    names = {
+        *course_paths.assignments(),
+        *(path.name for path in course_paths.SOLUTIONS.iterdir()),
+        *course_paths.check_folders(),
+    }
     names = {str(name) for name in names if str(name) != "assessment"}
     texts = {
         path: path.read_text(encoding="utf-8", errors="replace").replace("dummy_robot_bringup", "")  # one of ROS's
-        for path in (layout.ROOT / "autograder").rglob("*")
+        for path in (course_paths.ROOT / "autograder").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     }
-    own = [path for path in texts if any(path.is_relative_to(folder) for folder in layout.check_folders())]
+    own = [path for path in texts if any(path.is_relative_to(folder) for folder in course_paths.check_folders())]
     assert len(names) > 20
     assert len(own) > 100
     for path in set(texts) - set(own):
