@@ -180,7 +180,7 @@ class SetUp:
         return {**base, "dev": digest(self.root / "requirements-dev.lock")} if dev else base
 
     def stamp(self) -> dict[str, str]:
-        """Return the stamp of the last finished set-up, which is empty if there is none or its Python is gone."""
+        """Return the stamp of the last finished set-up, or an empty string if it or its Python does not exist."""
         try:
             stamp = json.loads((self.venv / STAMP).read_text())
         except (OSError, ValueError):

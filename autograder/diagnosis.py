@@ -44,7 +44,7 @@ HINTS = {
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The outcome of reading, building and starting one submission: what happened, and what the student can do.
+    """The outcome of reading, building and starting one submission, and advice for the student.
 
     `detail` is relevant lines of output or traceback, already shortened. It may be empty.
     """

@@ -1,4 +1,4 @@
-"""The errors that the grader raises, sorted by who can correct them.
+"""The errors that the grader raises, sorted by the person who can correct them.
 
 AutograderError
 ├── UsageError          the command was called wrongly, or names something that does not exist  (exit status 2)

@@ -1,4 +1,4 @@
-"""What the authors of checks import. The checks of a chapter import this package, `sim`, and their own modules.
+"""The public interface for authors of checks. A chapter's checks import this package, `sim`, and their own modules.
 
     from autograder.checking import AutoHarness, Workspace, expect, group, hint
     from autograder.checking.probes import parameters

@@ -1,4 +1,4 @@
-"""What the `attacks.py` of a chapter imports: malicious submissions, made of the reference, mutants and payloads."""
+"""For the `attacks.py` of a chapter: malicious submissions, made of the reference, mutants and payloads."""
 
 from autograder.author.verification.attack_writer import Chapter
 from autograder.author.verification.payloads import (

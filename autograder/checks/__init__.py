@@ -4,7 +4,7 @@ The package of a chapter::
 
     chNN_name/
         conftest.py    the fixtures of this chapter
-        support/       contract, robots and stimuli: what visible and hidden checks share
+        support/       contract, robots and stimuli for visible and hidden checks
         visible/       the checks that students run themselves
         hidden/        the checks that grade; students never get this folder
         mutants.yaml   flawed versions of the reference, each with the check for which it was written
@@ -18,6 +18,6 @@ Visible checks and support import nothing hidden, and no conftest imports anothe
 
 from autograder import course_paths
 
-# The chapters of a course that lies elsewhere are imported under the same names, as autograder.checks.chID.
+# The chapters of another course's folder are imported under the same names, as autograder.checks.chID.
 if str(course_paths.CHECKS) not in __path__:
     __path__.insert(0, str(course_paths.CHECKS))

@@ -25,7 +25,7 @@ class Escape:
     """A program that tries to escape. The tests and `autograder doctor --security` run it."""
 
     id: str
-    description: str  # what it tries, to complete the sentence "a program cannot ..."
+    description: str  # the attempt, to complete the sentence "a program cannot ..."
     code: str
     limits: Limits = LIMITS
     network: bool = False

@@ -20,7 +20,7 @@ def read_json(data: bytes, most: int, *, is_strict: bool = True) -> Any:
     Args:
         data: the JSON.
         most: maximum of commas and brackets outside strings; there are at most one fewer of these than values.
-        is_strict: whether a number that cannot be computed with or shown is an error: NaN, infinity, endless digits.
+        is_strict: whether NaN, infinity and numbers with too many digits are errors.
 
     Raises:
         ValueError: it is not JSON, or exceeds a bound.

@@ -53,7 +53,7 @@ def restore(submitted: NotebookNode, source: NotebookNode) -> NotebookNode:
     """Return a copy of the submitted notebook with the source notebook's nbgrader cells, and without outputs.
 
     Cells that students may edit keep the student's text. If the student deleted such a cell, it comes back with a
-    comment that says so. The student's own cells have no metadata: nobody reads them, and there can be millions.
+    comment that says so. The student's own cells have no metadata: it is never read, and cells can be many.
     """
     originals = {grade_id(cell): cell for cell in source.cells if grade_id(cell)}
     names = _names(submitted.cells, source.cells)

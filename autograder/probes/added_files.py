@@ -1,4 +1,4 @@
-"""What is installed of a package to which files were added: a list of names written by hand leaves them behind."""
+"""Installs a package with added files: a handwritten list of names in setup.py would miss them."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ class Manifest:
     maintainers: tuple[tuple[str, str], ...]  # each (name, e-mail)
     build_type: str  # the text of <export>; without it, ROS takes the package for an old CMake one
     depends: Mapping[str, frozenset[str]]  # the names by kind, one of `KINDS`; those whose condition holds in this ROS
-    groups: frozenset[str]  # the dependency groups of which it is a member
+    groups: frozenset[str]  # its dependency groups
 
     def needs(self, *kinds: str) -> frozenset[str]:
         """Return the names of the dependencies of the given kinds; of all kinds if none is given."""

@@ -117,7 +117,7 @@ def _installed(prefix: Path, package: str, name: str) -> Path | None:
 
 def _obfuscated(text: str, draw: random.Random) -> str:
     tree = ast.parse(text)
-    nodes = list(ast.walk(tree))  # walking a tree takes long, and there are hundreds of them
+    nodes = list(ast.walk(tree))  # walking a tree takes long, and this is done for hundreds of trees
     for node in nodes:
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
             own = node.body[ast.get_docstring(node) is not None :]

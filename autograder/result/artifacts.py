@@ -49,7 +49,7 @@ class Artifacts:
             caption: alternative text of the picture.
             mark: the time to mark on the track, in seconds since the start of the run.
             note: text beside the mark.
-            rules: what became of each rule that the run was judged by, by the rule in words; its times count from the
+            rules: the result of each rule for the run, by the rule in words; its times count from the
                 start of the run.
         """
         if self.disabled:

@@ -1,7 +1,7 @@
-"""Where ROS writes its log files: below the user's home, or in a folder that this process has made.
+"""Chooses where ROS writes its log files: below the user's home, or in a folder that this process has created.
 
-A name in the machine's own temporary folder could be guessed. Who makes such a folder first, closed, lets `rclpy.init`
-raise for the user whose name it has; who makes it open reads or changes what that user's nodes log.
+A fixed name in the machine's temporary folder could be guessed. Another user who creates that folder first can make
+`rclpy.init` raise an error, or read and change the logs.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from pathlib import Path
 
 
 def log_folder(environ: Mapping[str, str] | None = None) -> Path:
-    """Return a folder for log files of this user's own, made where it was missing.
+    """Return a private folder for this user's log files, which is created if it does not exist.
 
-    It is `$ROS_HOME/log` or `~/.ros/log`, ROS's own. Where that belongs to somebody else, is open to others or cannot
-    be made, it is a new folder, the same for this process and all that it starts.
+    It is ROS's default, `$ROS_HOME/log` or `~/.ros/log`. If that belongs to another user, is open to others or cannot
+    be created, it is a new folder, the same for this process and its children.
     """
     environ = os.environ if environ is None else environ
     home = environ.get("ROS_HOME") or environ.get("HOME", "")

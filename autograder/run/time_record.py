@@ -1,4 +1,4 @@
-"""What a grading learns about time: which programs ran in real time and why, and how long the machine held them up."""
+"""Records the time of a grading: which programs ran in real time and why, and the delays by a busy machine."""
 
 from __future__ import annotations
 

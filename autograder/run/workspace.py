@@ -30,7 +30,7 @@ class Workspace:
     ros: RosEnvironment  # the ROS 2 that it was built with
     scratch: Path  # a writable folder for homes and logs, for sandboxes without their own /tmp
     domain: int = 0  # the `ROS_DOMAIN_ID` in which its programs and the grader meet
-    # What harnesses learn about time; copies of a workspace share it.
+    # The time records of the harnesses; copies of a workspace share them.
     time_record: TimeRecord = field(default_factory=TimeRecord, compare=False)
     exchanges: ExchangeLog = field(default_factory=ExchangeLog, compare=False)  # copies share it
 

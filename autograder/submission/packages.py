@@ -60,7 +60,7 @@ def read_packages(source: Path) -> tuple[dict[str, Package], dict[Path, str]]:
     """Read the packages below a folder, by their names; those that cannot be read are errors, by their folders.
 
     It looks where colcon looks: not in hidden folders, not below a marker such as COLCON_IGNORE, and not for packages
-    in packages. `building.colcon` gives colcon these folders, so that what is built is what is judged.
+    in packages. `building.colcon` gives colcon these folders, so that the built packages are the judged ones.
 
     Raises:
         StudentError: two packages have the same name, or the tree has too many.

@@ -8,7 +8,7 @@ A suite is a pytest module. Each of its tests is a check, in the group of checks
     @hint("Where is 0 rad in a scan?")
     @hint("Compare the smallest forward range with 1.0.")
     def test_turns_when_blocked(robot: Robot) -> None:
-        \"\"\"The robot turns when something stands within 1 m in front of it.\"\"\"
+        \"\"\"The robot turns when something is within 1 m in front of it.\"\"\"
         ...
         expect(turned, "it kept driving straight at a wall 0.6 m ahead")
 

@@ -1,8 +1,8 @@
 """Snapshots of the named mutants: the checks that each one fails, and its diagnosis.
 
 `mutants.yaml` names the check for which a mutant was written. The other checks that it fails and its diagnosis follow
-from the suite. `autograder verify --record` writes them, so that nobody maintains the list by hand and a reviewer sees
-every change in the diff.
+from the suite. `autograder verify --record` writes them, so that they need no maintenance and a reviewer sees every
+change in the diff.
 """
 
 from __future__ import annotations

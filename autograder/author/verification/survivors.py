@@ -93,7 +93,7 @@ def reasons(assignment: str, generated: GeneratedMutants) -> dict[str, str]:
 def faults(chapters: Sequence[ChapterMutationResult]) -> list[str]:
     """Return a sentence for each mutant without a result or a reason, and for each score that is too low.
 
-    A diff stands below the sentence of a mutant without a reason: its id shows nobody what it changes. A score is only
+    A diff follows the sentence of a mutant without a reason, because the id does not show the change. A score is only
     judged if all mutants of the chapter, or of all chapters, were graded.
     """
     sentences = [f"{each.assignment}: the grader failed on {name}" for each in chapters for name in each.failed]

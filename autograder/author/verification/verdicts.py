@@ -43,7 +43,7 @@ class Verdict:
     """The result of a test case, and a description of how it differs from the expected result.
 
     `mismatch` is empty if the result is the expected one. `only` names the checks that were run; empty means every
-    check. The points of a part of the checks are no marks.
+    check. The points of a part of the checks are not marks.
     """
 
     assignment: str

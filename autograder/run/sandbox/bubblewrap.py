@@ -57,12 +57,12 @@ def worker_sandbox(
 ) -> list[str]:
     """Return the command line of a worker sandbox: its own namespaces, and of the machine only what `view` shows.
 
-    It is read-only but for `scratch`, /tmp and what `view` says. In it, sandboxes can be made: a bubblewrap can mount
-    /proc below another one's if the outer one's user is not root, who alone gets parts of /proc covered.
+    It is read-only except `scratch`, /tmp and the writable folders of `view`. Sandboxes can be nested in it: bubblewrap
+    can mount /proc inside another one unless the outer one runs as root, for which it hides parts of /proc.
 
     Args:
         command: the command to run.
-        view: what it sees in addition to the system and the grader.
+        view: the files that it sees in addition to the system and the grader.
         scratch: the folder that is a file system in memory, of `limits.WORKER_SCRATCH` bytes.
         user: the user to become, for root; None leaves the user as it is.
         groups: folders of control groups in which the worker sandbox makes those of its sandboxes.

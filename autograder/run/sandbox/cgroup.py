@@ -73,10 +73,10 @@ class ControlGroup:
 
 
 def make(limits: Limits) -> ControlGroup:
-    """Return a new group with the bounds that can be had here; it may have none.
+    """Return a new group with the bounds that this machine supports, possibly none.
 
-    Memory has room above `Limits.memory`, as tasks have above `Limits.threads`: what is watched is seen first, and has
-    a better diagnosis.
+    The bounds are above `Limits.memory` and `Limits.threads`, so that the watcher, whose diagnosis is better, notices
+    an excess first.
     """
     memory = 2 * (limits.memory + limits.scratch)
     values = {"pids": {"pids.max": limits.tasks}, "memory": {"memory.max": memory, "memory.limit_in_bytes": memory}}

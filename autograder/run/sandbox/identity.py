@@ -1,7 +1,7 @@
 """The user of each worker sandbox that root starts: a number that no account of the machine has.
 
-Root owns the kernel's settings, and a user namespace does not change that: who is root outside can write to them
-inside. Users of their own keep the worker sandboxes apart, too, in all that the kernel counts or allows by user.
+Root owns the kernel's settings, and a user namespace does not change that: a process of root can write to them inside a
+namespace. Separate users also separate the worker sandboxes in everything that the kernel counts or allows by user.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The description of a sandbox: what the code in it sees. No effects."""
+"""The description of a sandbox and of the files in it. No effects."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Lists, bounds and copies files that untrusted code wrote, on their way out of a sandbox.
 
-Sizes are apparent ones. A sparse file costs nothing where it is written, and all of its size where it is copied.
+Sizes are apparent sizes. A sparse file needs no space where it is written, but its full size where it is copied.
 """
 
 from __future__ import annotations
@@ -141,10 +141,10 @@ def _read_file(path: Path, size: int) -> bytes:
 def copy_unread(source: Path, target: Path, limits: TreeLimits, ignored: Ignored) -> None:
     """Copy a submission for a reader that may not reach it, without following links or reading archives.
 
-    The copy is refused for the same reasons as the original. Links stay links, devices and pipes become pipes. Of what
-    is larger than `limits`, the size is kept and not the content: the reader sees that it is too large. `ignored` says
-    which names of a folder are left out. A folder is reached from the one above it, so a path may have any length.
-    What changes meanwhile is left out: no folder of the path `source` was a link, and none may have become one.
+    The copy is refused for the same reasons as the original. Links stay links, devices and pipes become pipes. Files
+    larger than `limits` keep their size but not their content, so that the reader rejects them. `ignored` returns the
+    names of a folder to leave out. Each folder is opened from its parent, so a path may have any length.
+    Files that change meanwhile are left out: no folder of the path `source` was a link, and none may have become one.
     """
     with _unless_changed(), _opened_unfollowed(source.parent) as old, _opened(target.parent) as new:
         _copy(_Pair(old, source.name, new, target.name), _Left(limits), ignored, limits.depth)

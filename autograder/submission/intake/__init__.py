@@ -115,7 +115,7 @@ def detect_layout(files: Sequence[SubmittedFile], assignment: str, left_out: Seq
     """Find the notebook and the packages among a submission's files, whose paths are below its root.
 
     Raises:
-        StudentError: there is neither the notebook nor a package, they are unclear or unsafe, or a file and a folder
+        StudentError: it has neither the notebook nor a package, they are unclear or unsafe, or a file and a folder
             have the same path.
     """
     _require_tree(files)

@@ -22,7 +22,7 @@ _EXECUTABLE = 0o100
 
 
 def read_contents(path: Path, assignment: str) -> Contents:
-    """Read the files of a submission, with paths below its root. What an archive in it holds lies below its name.
+    """Read the files of a submission, with paths below its root. Files of an inner archive are below its name.
 
     Raises:
         UsageError: `path` does not exist.

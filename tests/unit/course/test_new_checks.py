@@ -6,7 +6,7 @@ import ast
 
 import pytest
 
-from autograder.layout import ROOT
+from autograder.course_paths import ROOT
 
 NEW = ROOT / "assets" / "new" / "chapter" / "checks"
 
