@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from autograder.checking import CheckFailed, ReceivedMessage, Workspace, expect, group, hint
 from autograder.checking.probes import parameters
 from autograder.checks.ch02_nodes.support.scans import Part, scan
-from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN
+from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN, newest_clearance
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
     CONFIG,
@@ -129,8 +129,8 @@ def _data_timeout(system: System) -> None:
 
 
 def _half_angle(system: System) -> None:
-    _settled(system, Part(22.0, 26.0, 1.0))
-    front = system.harness.messages("/clearance")[-1].message.front
+    system.see(OPEN)
+    front = newest_clearance(system, scan(Part(22.0, 26.0, 1.0))).front
     expect(front > 2.0, "something at 24° was still ahead.")
 
 

@@ -105,7 +105,7 @@ def test_watches(system: System) -> None:
     ):
         expect(bool(seen.reports), f"{what}, no report came on health.")
         level = seen.reports[-1].message.level
-        said = LEVELS[level] if level < len(LEVELS) else level
+        said = LEVELS[level] if 0 <= level < len(LEVELS) else level
         expect(level == wanted, f"{what}, health was {said} instead of {LEVELS[wanted]}.")
     silent = sorted(seen.reports[-1].message.silent)
     expect(silent == ["clearance", "scan"], f"2 s after the last scan, silent was {silent}.")
