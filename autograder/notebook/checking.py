@@ -39,11 +39,9 @@ class Part:
     exercises: tuple[Exercise, ...] = ()
 
     @property
-    def later(self) -> frozenset[str]:
-        """The files of the exercises that come after this one in the notebook."""
-        names = [each.name for each in self.exercises]
-        after = self.exercises[names.index(self.name) + 1 :] if self.name in names else ()
-        return frozenset(file for each in after for file in each.files)
+    def later(self) -> tuple[str, ...]:
+        """The files that only cells after this exercise write."""
+        return next((each.later for each in self.exercises if each.name == self.name), ())
 
 
 @dataclass(frozen=True)
@@ -70,6 +68,11 @@ class CheckReport:
         return all(line.outcome is Outcome.PASSED for line in self.lines)
 
     @property
+    def shown_trouble(self) -> Notice | None:
+        """The trouble, or None if a part passed in spite of it: it concerns a package of another exercise."""
+        return None if self.part and self.passed else self.trouble
+
+    @property
     def summary(self) -> str:
         """A sentence with the number of passed checks."""
         good = sum(line.outcome is Outcome.PASSED for line in self.lines)
@@ -84,7 +87,7 @@ class CheckReport:
 
     def __repr__(self) -> str:
         parts = [line for notice in self.notices for line in (notice, "")]
-        parts += [] if self.trouble is None else [repr(self.trouble), ""]
+        parts += [] if self.shown_trouble is None else [repr(self.shown_trouble), ""]
         for cause in self.causes:
             line = cause.check
             parts.append(_head(line))
@@ -103,7 +106,7 @@ class CheckReport:
 
     def _repr_html_(self) -> str:
         notices = "".join(Notice(notice)._repr_html_() for notice in self.notices)
-        trouble = notices + ("" if self.trouble is None else self.trouble._repr_html_())
+        trouble = notices + ("" if self.shown_trouble is None else self.shown_trouble._repr_html_())
         colour = COLOURS[Outcome.PASSED] if self.passed else INFO
         rows = "".join(_cause(cause) for cause in self.causes)
         if self.passed and self.later:

@@ -35,7 +35,7 @@ class Exercise:
         title: the rest of the heading.
         sentences: the ids of the requirements in it.
         groups: the groups of checks that the notebook's objectives assign only to this exercise.
-        files: the files that its cells write, such as `ws/src/robot/setup.py`.
+        later: the files that only cells after it write, such as `ws/src/robot/setup.py`.
     """
 
     kind: str
@@ -43,7 +43,7 @@ class Exercise:
     title: str
     sentences: tuple[str, ...] = ()
     groups: tuple[str, ...] = ()
-    files: tuple[str, ...] = ()
+    later: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -107,7 +107,8 @@ def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]
             given.setdefault(group, set()).add(objective["exercise"])
     found: dict[str, Exercise] = {}
     sentences: dict[str, dict[str, Any]] = {}
-    files: dict[str, list[str]] = {}
+    files: list[str] = []  # that cells write, in the order of the notebook
+    before: dict[str, int] = {}  # how many of them are written down to the end of an exercise
     level, now = 0, ""
     for cell in cells:
         for depth, text in _headings(cell):
@@ -118,13 +119,15 @@ def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]
                 found[now] = Exercise(new.kind, new.number, new.title, groups=groups)
             elif depth <= level:
                 level, now = 0, ""
+        if cell["cell_type"] == "code" and (written := written_file("".join(cell["source"]))):
+            files.append(written[0].as_posix())
         if now:
             sentences.setdefault(now, {}).update(cell["metadata"].get("course", {}).get("contract", {}))
-            if cell["cell_type"] == "code" and (written := written_file("".join(cell["source"]))):
-                files.setdefault(now, []).append(written[0].as_posix())
+            before[now] = len(files)
     for name, each in found.items():
         if named := sentences.get(name):  # a question that a person grades has no requirements that a check could cover
-            yield replace(each, sentences=tuple(named), files=tuple(files.get(name, ())))
+            there, after = files[: before[name]], files[before[name] :]
+            yield replace(each, sentences=tuple(named), later=tuple(file for file in after if file not in there))
 
 
 def _headings(cell: Any) -> Iterator[tuple[int, str]]:

@@ -87,17 +87,22 @@ def test_an_exercise_ends_with_the_next_heading_of_its_rank_and_no_heading_is_on
     assert exercises("x") == (Exercise("exercise", 1, "the only one", ("first", "second", "third")),)
 
 
-def test_the_files_of_the_exercises_after_a_part_in_the_notebook_are_later() -> None:
-    def later(exercise: int) -> set[str]:
-        names = part_of("05_parameters", exercise, None, None).later
-        return {name.rpartition("/")[2] for name in names}
-
-    assert [later(exercise) for exercise in (1, 2, 3)] == [
-        {"configured_node.py", "fleet_params.yaml"},
-        {"fleet_params.yaml"},
-        set(),
+def test_the_files_that_only_cells_after_a_part_write_are_later(chapter: Path) -> None:
+    cells = [
+        new_code_cell("%%writefile ws/given.py\na = 0"),
+        _held("## Exercise 1", "first"),
+        new_code_cell("%%writefile ws/one.py\na = 1"),
+        new_markdown_cell("## Between"),
+        new_code_cell("%%writefile ws/between.py\na = 2"),
+        new_code_cell("%%writefile ws/one.py\na = 3"),
+        _held("## Exercise 2", "second"),
+        new_code_cell("%%writefile ws/two.py\na = 4"),
     ]
-    assert part_of("05_parameters", None, None, None).later == frozenset()
+    write(new_notebook(cells=cells), chapter)
+    there = exercises("x")
+    assert [each.later for each in there] == [("ws/between.py", "ws/two.py"), ()]
+    assert Part("x", "exercise 1", there).later == ("ws/between.py", "ws/two.py")
+    assert Part("x", "", there).later == ()
 
 
 @pytest.mark.parametrize("text", ['{"cells": [{"cell_type": "mark', "[]", '{"cells": [1], "metadata": {}}'])

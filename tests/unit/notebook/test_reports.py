@@ -31,6 +31,17 @@ LINES = (
 )
 
 
+def test_trouble_is_shown_unless_a_part_of_the_chapter_passed_in_spite_of_it() -> None:
+    trouble = Notice("There is no package lab.")
+
+    def shown(lines: tuple[CheckResult, ...], part: str) -> set[bool]:
+        report = CheckReport("09_assessment", lines, trouble, part=part)
+        return {trouble.sentence in text for text in (repr(report), report._repr_html_())}
+
+    assert shown(LINES[:1], "question 1") == {False}
+    assert shown(LINES, "question 1") == shown(LINES[:1], "") == {True}
+
+
 def test_a_report_counts_and_explains_on_a_terminal() -> None:
     text = repr(CheckReport("02_nodes", LINES))
     assert "✔ passed      It starts." in text
