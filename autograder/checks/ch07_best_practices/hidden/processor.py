@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from math import inf, isclose, isnan, nan
 from statistics import fmean
 
@@ -10,11 +11,12 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import LaserScan
 
 from autograder.checking import SCAN_SECONDS, Workspace, expect, group, hint
-from autograder.checking.probes import calls, namespaces, qos
+from autograder.checking.probes import calls, namespaces, node_callbacks, qos
 from autograder.checks.ch07_best_practices.support.contract import (
     HISTORY,
     LOGGING,
     PACKAGE,
+    PROCESSOR,
     QOS,
     SILENT_SECONDS,
     TOLERANCE,
@@ -115,13 +117,14 @@ def test_mean_of_ten(workspace: Workspace, fresh_processor: Processor, draw: ran
     blind = set(draw.sample(range(1, len(means)), 4))  # no mean, and none of the ten
     shown = [reading for i, mean in enumerate(means) for reading in ([nan], [mean, nan, mean])[i not in blind :]]
     _, said = fresh_processor.show(*map(scan, shown))
-    if _all_alike(said, _means(workspace, shown)):
-        return
-    expect(len(said) == len(means), f"{len(means)} scans with a distance went in, {len(said)} means came out.")
-    wanted = [fmean(means[max(0, i + 1 - HISTORY) : i + 1]) for i in range(len(means))]
-    wrong = next((i for i in range(len(means)) if abs(said[i] - wanted[i]) > TOLERANCE), None)
-    i = wrong or 0
-    expect(wrong is None, f"After {i + 1} scans with a distance it said {said[i]:.3f} m instead of {wanted[i]:.3f} m.")
+    if not _all_alike(said, _means(workspace, shown)):
+        expect(len(said) == len(means), f"{len(means)} scans with a distance went in, {len(said)} means came out.")
+        wanted = [fmean(means[max(0, i + 1 - HISTORY) : i + 1]) for i in range(len(means))]
+        wrong = next((i for i in range(len(means)) if abs(said[i] - wanted[i]) > TOLERANCE), None)
+        i = wrong or 0
+        differs = f"After {i + 1} scans with a distance it said {said[i]:.3f} m instead of {wanted[i]:.3f} m."
+        expect(wrong is None, differs)
+    _expect_own_history(workspace)
 
 
 @check(points=1, covers="blind", after=("filtered",))
@@ -153,6 +156,12 @@ def test_warns_now_and_then(workspace: Workspace, fresh_processor: Processor) ->
     seconds, by_turns = 2 * ALTERNATIONS * SCAN_SECONDS, _warnings(fresh_processor, [blind, seeing] * ALTERNATIONS)
     often = f"With blind and good scans by turns for {seconds:.0f} s, it warned {by_turns} times."
     expect(by_turns <= seconds + 2, often, fraction=0.5)
+    causes = [scan([]), scan([inf, -inf]), scan([nan]), scan([0.05])]
+    seconds, mixed = len(causes) * ALTERNATIONS * SCAN_SECONDS, _warnings(fresh_processor, causes * ALTERNATIONS)
+    often = (
+        f"Scans without beams, of infinities, of nan and of phantoms by turns for {seconds:.0f} s: {mixed} warnings."
+    )
+    expect(mixed <= seconds + 2, often, fraction=0.5)
     slow = _warnings(fresh_processor, [blind] * SLOW, apart=SLOW_SECONDS)
     seldom = f"Blind for {SLOW * SLOW_SECONDS} s, with two scans a second, it warned {slow} times."
     expect(slow >= 2, seldom, fraction=0.75)  # three are due; real time needs room
@@ -173,6 +182,37 @@ def test_any_lidar(processor: Processor) -> None:
         filtered, _ = processor.show(scan([1.0] * beams))
         lengths = [len(message.ranges) for message in filtered]
         expect(lengths == [beams], f"A scan of {beams} beams came out as {lengths or 'nothing'}.")
+
+
+def _expect_own_history(workspace: Workspace) -> None:
+    """Fail the check if of two processors in one process each averages what the other was shown."""
+    node, first, second = calls.call("SensorProcessor"), _message(1.0), _message(3.0)
+    turns = [(0, "scan_callback", first), (1, "scan_callback", second), (0, "scan_callback", first)]
+    texts = node_callbacks.published(workspace, PROCESSOR, [node, node], turns)
+    said = [re.findall(r"Float32\(data=(-?\d{1,40}(?:\.\d{1,40})?)\)", text) for text in texts]
+    if not all(len(means) == 1 for means in said):
+        return  # it publishes otherwise than in its callback, which is allowed
+    got = [float(mean) for (mean,) in said]
+    sentence = "Of two sensor processors in one process, one was shown scans of 1 m and the other one of 3 m"
+    right = _all_alike(got, [1.0, 3.0, 1.0]) or _all_alike(got, _averages_of_two(workspace))
+    expect(right, f"{sentence}, and the other one said {got[1]:.3f} m: each needs a history of its own.", fraction=0.5)
+
+
+def _message(distance: float) -> calls.Step:
+    """Return the call that makes a scan of one beam."""
+    return calls.call("LaserScan", module="sensor_msgs.msg", ranges=[distance], range_min=0.125, range_max=3.5)
+
+
+def _averages_of_two(workspace: Workspace) -> list[float]:
+    """Return what two of the student's own DataProcessors say in `_expect_own_history`: its own checks judge it."""
+    plan = calls.Plan()
+    processors = [plan.add(calls.call("DataProcessor", HISTORY)) for _ in range(2)]
+    asked = []
+    for number, distance in ((0, 1.0), (1, 3.0), (0, 1.0)):
+        plan.add(calls.call("process", [distance], 0.125, 3.5, on=processors[number]))
+        asked.append(plan.add(calls.call("average", on=processors[number])))
+    outcomes = calls.calls(workspace, UTILS, *plan.steps)
+    return [average for step in asked if isinstance(average := outcomes[step].value, float)]
 
 
 def _warnings(processor: Processor, scans: list[LaserScan], apart: float = SCAN_SECONDS) -> int:

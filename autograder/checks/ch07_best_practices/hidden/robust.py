@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import itertools
 import random
+import re
 from typing import Any
 
 from rclpy.qos import DurabilityPolicy
 from std_msgs.msg import String
 
 from autograder.checking import LOCKSTEP, Kind, StudentError, Workspace, expect, group, hint
-from autograder.checking.probes import calls, late_joiner, namespaces, parameters
+from autograder.checking.probes import calls, late_joiner, namespaces, node_callbacks, parameters
 from autograder.checks.ch07_best_practices.hidden.bugs import BUGS, with_bugs
 from autograder.checks.ch07_best_practices.support.contract import (
     ERRORS,
@@ -92,6 +93,20 @@ def test_counts(workspace: Workspace, draw: random.Random) -> None:
     wanted_third = [twice_asked.random() for _ in range(3)][2]
     asked = third.value == wanted_third
     expect(asked, "In two readings with the probabilities 0 and 1, it did not ask the generator twice.", fraction=0.5)
+    _expect_own_count(workspace)
+
+
+def _expect_own_count(workspace: Workspace) -> None:
+    """Fail the check if of two nodes in one process one counts the other's failures."""
+    always = ["--ros-args", *parameters.override_arguments({"failure_probability": 1.0})]
+    node, turns = calls.call("RobustNode", cli_args=always), [(number, "timer_callback", None) for number in (0, 0, 1)]
+    texts = node_callbacks.published(workspace, ROBUST, [node, node], turns)
+    said = [re.findall(r"data='([^']+)'", text) for text in texts]
+    if not all(len(status) == 1 for status in said):
+        return  # another check asks what a callback publishes
+    (first,), _, (other,) = said
+    sentence = "Of two robust nodes in one process, one failed twice, then the other one for the first time, and said"
+    expect(other == first, f"{sentence} {other!r}: each counts its own failures.", fraction=0.5)
 
 
 @check(points=1, covers=("seed", "generator"), after=("once_a_second",), doc=RANDOM)

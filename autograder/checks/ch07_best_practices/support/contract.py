@@ -4,6 +4,7 @@ from __future__ import annotations
 
 PACKAGE = "my_robot_package"
 UTILS = "my_robot_package.utils.data_processing"
+PROCESSOR = "my_robot_package.nodes.sensor_processor"
 ROBUST = "my_robot_package.nodes.robust_node"
 
 HISTORY = 10  # scans that mean_distance is taken over

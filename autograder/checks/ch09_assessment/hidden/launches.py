@@ -71,7 +71,7 @@ def test_launches(launched: Launched) -> None:
 @check(points=2, covers=("hot-argument", "hot-cool"), after=("launches",))
 @hint("DeclareLaunchArgument('hot', default_value='60.0')")
 @hint("ParameterValue(LaunchConfiguration('hot'), value_type=float): else 55 becomes an integer.")
-def test_argument(workspace: Workspace, launched: Launched, hot: int) -> None:
+def test_argument(workspace: Workspace, launched: Launched, hot: int, draw: Random) -> None:
     """Its argument hot, by default 60.0, becomes the guard's parameter, always as a float."""
     harness = launched.harness
     launch_probe.expect_parameters(harness, f"/{GUARD}", {"hot": float(hot)})
@@ -83,6 +83,13 @@ def test_argument(workspace: Workspace, launched: Launched, hot: int) -> None:
         launch_probe.expect_parameters(harness, f"/{GUARD}", {"cool": COOL})
     except CheckFailed as failed:
         raise CheckFailed(f"Launched with hot:={hot} and nothing else: {failed.message}", fraction=0.75) from failed
+    fraction = hot + draw.randrange(100_001, 1_000_000, 2) / 1e6  # six digits, none of which may be lost
+    with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": str(fraction)}) as precise:
+        launch_probe.settle(precise, NODES)
+        try:
+            launch_probe.expect_parameters(precise, f"/{GUARD}", {"hot": fraction})
+        except CheckFailed as failed:
+            raise CheckFailed(f"Launched with hot:={fraction}: {failed.message}", fraction=0.5) from failed
 
 
 @check(points=1, covers="ctrl-c", after=("launches",))

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from random import Random
 
 from autograder.checking import LOCKSTEP, CheckFailed, ReceivedMessage, Workspace, expect, group, hint
-from autograder.checking.probes import namespaces
+from autograder.checking.probes import calls, namespaces, node_callbacks
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import (
     COOL,
     GUARD,
     HOT,
+    INTERFACES,
     MEAN,
+    PACKAGE,
     PERIOD,
     SMOOTHER,
     SWING,
@@ -97,7 +100,7 @@ def test_stamps(start: Start) -> None:
 
 @check(points=2, covers=("smoother", "window", "smoother-topics"), after=BUILT, doc=contract.NODES_DOC)
 @hint("sum(...) / len(...) of what the window holds now; at the start that is less.", "Publish for each reading.")
-def test_average(start: Start, draw: Random) -> None:
+def test_average(workspace: Workspace, start: Start, draw: Random) -> None:
     """Smoother publishes, for each reading, the average of the newest five, with the stamp of the newest."""
     readings = [round(draw.uniform(20.0, 80.0), 1) for _ in range(12)]
     with start(SMOOTHER) as harness:
@@ -111,6 +114,22 @@ def test_average(start: Start, draw: Random) -> None:
         told = harness.send([readings[0]] * QUEUE, apart=0.0)
     said = f"Of {QUEUE} readings that came at once, {len(told)} got an average: a queue of {QUEUE} holds them all."
     expect(len(told) == QUEUE, said, fraction=0.75)
+    _expect_own_window(workspace)
+
+
+def _expect_own_window(workspace: Workspace) -> None:
+    """Fail the check if of two smoothers in one process each averages what the other was sent."""
+    node = calls.call("Smoother")
+    cold, warm = (calls.call("Temperature", module=f"{INTERFACES}.msg", celsius=celsius) for celsius in (20.0, 40.0))
+    turns = [(number, "temperature_callback", message) for number, message in ((0, cold), (1, warm), (0, cold))]
+    texts = node_callbacks.published(workspace, f"{PACKAGE}.{SMOOTHER}", [node, node], turns)
+    said = [re.findall(r"celsius=(-?\d{1,40}(?:\.\d{1,40})?)[,)]", text) for text in texts]
+    if not all(len(averages) == 1 for averages in said):
+        return  # it publishes otherwise than in its callback, which is allowed
+    got = [float(average) for (average,) in said]
+    sentence = "Of two smoothers in one process, one was sent readings of 20 °C and the other one of 40 °C"
+    right = all(map(near, got, (20.0, 40.0, 20.0)))
+    expect(right, f"{sentence}, and the other one said {got[1]:.1f} °C: each averages its own.", fraction=0.5)
 
 
 @check(points=2, covers=("smoother", "window", "at-start"), after=("average",), doc=contract.PARAMETERS_DOC)
