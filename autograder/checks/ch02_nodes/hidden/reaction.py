@@ -7,6 +7,7 @@ import random
 
 from autograder.checking import LOCKSTEP, group, hint
 from autograder.checks.ch02_nodes.support import contract
+from autograder.checks.ch02_nodes.support.lidars import other_lidars
 from autograder.checks.ch02_nodes.support.robot import SETTLED, Reactions, Robot, expect_forward, expect_turn
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 
@@ -19,6 +20,8 @@ EDGE = 1.0  # degrees from the edge of the forward sector, which is left open: h
 # first, by three of the second, for a robot that does not believe in one.
 COARSE, FINE = (360, 0.6), (1800, 0.3)
 JUST_BELOW = 0.003  # m: who rounds a distance, even to centimetres, takes it for the limit
+SEEN_SECONDS = 0.5  # s for which one of many scans is shown, again and again
+BESIDE = Part(40.0, 180.0, 0.0), Part(-180.0, -40.0, 0.0)  # degrees; all that is not ahead
 SHOWN_SECONDS = 0.4  # s for which one scan is judged: there are commands after SETTLED, and the scan is not old yet
 
 
@@ -97,6 +100,7 @@ def test_only_forward_counts(robot: Robot, own: Reactions, draw: random.Random) 
 )
 @hint("Beam 0 does not always look forward: on many lidars it looks backward.")
 @hint("Use angle_min and angle_increment of the message, never a fixed index or a fixed number of beams.")
+@hint("math.remainder(bearing, math.tau) wraps any bearing, from above and from below, by as many turns as it takes.")
 def test_other_lidars(robot: Robot, own: Reactions, draw: random.Random) -> None:
     """It reads bearings from the message: any number of beams, any first bearing."""
     near = draw.uniform(*NEAR)
@@ -116,3 +120,11 @@ def test_other_lidars(robot: Robot, own: Reactions, draw: random.Random) -> None
         shown = scan(Part(right, left, near), beams=many, first_bearing=-180.0)
         where = f"away, from {right:.0f}° to {left:.0f}°, from a lidar of {many} beams that starts at -180°"
         expect_reaction(robot.see(shown), f"With something {near:.2f} m {where}", fraction=0.75)
+    for lidar in other_lidars(draw):
+        for bearing in (draw.uniform(-26.0, -8.0), draw.uniform(8.0, 26.0)):
+            for seen_at in lidar.sees(bearing):
+                said = f"With something {near:.2f} m away at {seen_at:.0f}°, which is {bearing:.0f}°, from {lidar}"
+                own.expect_turn(robot.see(lidar.scan_of_one(seen_at, near), SEEN_SECONDS), said, fraction=0.75)
+        beside = lidar.scan(*(Part(part.first, part.last, near) for part in BESIDE))
+        said = f"With walls {near:.2f} m away beside and behind, and nothing ahead, from {lidar}"
+        own.expect_forward(robot.see(beside, SEEN_SECONDS), said, fraction=0.75)

@@ -28,7 +28,8 @@ REAL_MARGIN = 0.04  # s: a tenth too much is seen there, too
 AFTER = 0.25  # s after the time-out: the first command that stops has come
 LATE = 2.0  # s: how old a stamp is, of a scan of which only the arrival counts
 FINE = 0.01  # s between two looks at the clock
-SLOW = 0.25  # of ROS time: how fast the machine's clocks run for a robot that must not look at them
+# Of ROS time: how fast the machine's clocks run for a robot that must not look at them.
+SLOW, FAST = 0.25, 8.0
 
 
 @check(points=2, covers=("no-scan", "cmd-vel"), needs=("publishes_cmd_vel",))
@@ -58,7 +59,7 @@ def test_stops_when_stale(workspace: Workspace, robot: Robot, own: Reactions, dr
     came = _show_before_command(robot, scan(fill=distance), first + 0.01)
     _run_finely(robot, 2.0)
     expect_stop(robot.messages("/cmd_vel", since=came + first), f"{first:.2f} s after the last scan and later")
-    _expect_ros_time(workspace, scan(fill=distance))  # where time is real, it is the machine's
+    _expect_ros_time(workspace, own, scan(fill=distance))
 
 
 @check(points=1, covers=("stale", "clear", "ros-time"), needs=TALKS, after=("stops_when_stale",))
@@ -94,19 +95,25 @@ def _expect_timeout(robot: Robot, own: Reactions, shown: LaserScan) -> None:
     expect(right, f"It stopped {timeout:.2f} s after the last scan, instead of after {contract.STALE_AFTER:g} s.")
 
 
-def _expect_ros_time(workspace: Workspace, shown: LaserScan) -> None:
+def _expect_ros_time(workspace: Workspace, own: Reactions, shown: LaserScan) -> None:
     """Fail the check if the age of a scan depends on another clock than that of ROS."""
     with Robot(workspace, clock_rate=SLOW) as robot:
         robot.see(shown)
         robot.run(contract.STALE_AFTER + MARGIN)
         blind = robot.left_alone(contract.STALE_AFTER)
         expect_stop(blind, f"Where ROS time runs {1 / SLOW:g} times as fast as the machine's clocks, without a scan")
+    with Robot(workspace, clock_rate=FAST) as robot:
+        seen = robot.see(shown)
+        said = f"Where the machine's clocks run {FAST:g} times as fast as ROS time, with a clear way"
+        own.expect_forward(seen, said, fraction=0.5)
 
 
 def _show_before_command(robot: Robot, shown: LaserScan, age: float) -> float:
     """Show a scan so that a command comes when it is `age` seconds old; return when it arrived."""
     _run_finely(robot, SCAN_SECONDS)
-    command = robot.messages("/cmd_vel")[-1].seconds
+    told = robot.messages("/cmd_vel")
+    expect(bool(told), "No command came on /cmd_vel.")
+    command = told[-1].seconds
     _run_finely(robot, (command - age - FINE - robot.seconds) % SCAN_SECONDS)
     robot.show(shown, FINE)
     return robot.seconds
