@@ -6,6 +6,7 @@ import math
 import random
 from typing import Any
 
+from autograder.checks.ch02_nodes.support.lidars import other_lidars
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden.exact_limits import newest_clearance
 from autograder.checks.ch08_capstone.support.contract import TOLERANCE
@@ -16,13 +17,14 @@ MIDDLES = {"front": 0.0, "left": 90.0, "right": -90.0}  # degrees
 ARC, BEAMS = 125.0, 26
 INSIDE = 29.0  # degrees to each side of a middle; half_angle is 29.8°
 BETWEEN = 0.4  # m: what is between the sectors is nearer than what is in them
-OTHER_LIDARS = 4  # errors that `other_lidar_errors` can name
+OTHER_LIDARS = 5  # errors that `other_lidar_errors` can name
 
 
 def other_lidar_errors(system: System, draw: random.Random) -> list[str]:
     """Say what becomes of scans by lidars that differ from the usual one, where it is wrong.
 
-    One sees an arc, to the left or, hung upside down, to the right; another has limits and a frame of its own.
+    One sees an arc, to the left or, hung upside down, to the right; another has limits and a frame of its own; others
+    begin at any bearing, some turns away too, and go round more than once.
     """
     found = []
     for first in (-ARC, ARC):
@@ -45,6 +47,19 @@ def other_lidar_errors(system: System, draw: random.Random) -> list[str]:
         found.append(
             f"With scans in the frame {wanted!r}, the clearance's was {frame!r}: its header is the scan's own."
         )
+    return found + _far_bearing_errors(system, draw)[:1]
+
+
+def _far_bearing_errors(system: System, draw: random.Random) -> list[str]:
+    """Say what is not seen by lidars that begin anywhere and go round either way, at each bearing that they have."""
+    found = []
+    for lidar in other_lidars(draw):
+        for name, middle in MIDDLES.items():
+            bearing, distance = middle + draw.uniform(-25.0, 25.0), round(draw.uniform(0.7, 2.0), 2)
+            for seen_at in lidar.sees(bearing):
+                shown, wanted = lidar.scan_of_one(seen_at, distance), dict.fromkeys(MIDDLES, 3.0) | {name: distance}
+                situation = f"a scan by {lidar} and something at {seen_at:.0f}°, which is {bearing:.0f}°"
+                found += _wrong_distances(newest_clearance(system, shown), situation, wanted)
     return found
 
 

@@ -8,7 +8,7 @@ from autograder.checking import CheckFailed, Diagnosis, Workspace, expect, group
 from autograder.checking.probes import installed, manifest
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import INTERFACES
-from autograder.checks.ch08_capstone.support.messages import CLEARANCE, HEALTH, Message, differences, load_messages
+from autograder.checks.ch08_capstone.support.messages import CLEARANCE, HEALTH, Message, differences
 from autograder.checks.ch08_capstone.support.sources import require_built, source_of
 
 check = group("step_3", doc=contract.INTERFACES_DOC)
@@ -57,7 +57,7 @@ def test_interface_package(workspace: Workspace, builds: Mapping[str, Diagnosis]
 
 
 def _expect_like(workspace: Workspace, wanted: Message) -> None:
-    wrong = differences(load_messages(workspace), wanted)
+    wrong = differences(workspace, wanted)
     if wrong:
         total = len(wanted.fields) + len(wanted.constants)
         raise CheckFailed(" ".join(wrong[:3]), fraction=round(max(0.0, 1.0 - len(wrong) / total), 2) * 0.9)

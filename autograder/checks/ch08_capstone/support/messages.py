@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from autograder.checking import Workspace, expect, load_interfaces
+from autograder.checking.probes import files, interfaces
 from autograder.checks.ch08_capstone.support.contract import INTERFACES, LEVELS
+from autograder.checks.ch08_capstone.support.sources import source_of
 
 
 @dataclass(frozen=True)
@@ -61,8 +63,12 @@ def types(package: Any) -> Types:
     return Types(package.msg.Clearance, package.msg.Health)
 
 
-def differences(package: Any, wanted: Message) -> list[str]:
-    """Say where a message of the student's differs from what it must hold, near misses named."""
+def differences(workspace: Workspace, wanted: Message) -> list[str]:
+    """Say where a message of the student's differs from what it must hold, near misses named.
+
+    Raises as `load_interfaces` does.
+    """
+    package = load_messages(workspace)
     found = getattr(package.msg, wanted.name, None)
     if found is None:
         there = sorted(name for name in vars(package.msg) if name[:1].isupper())
@@ -76,10 +82,26 @@ def differences(package: Any, wanted: Message) -> list[str]:
         said = [
             f"The fields of {wanted.name} are in the order {', '.join(fields)}: {', '.join(wanted.fields)} is asked."
         ]
-    return said + [
+    return said + _differences_of_text(workspace, wanted)
+
+
+def _differences_of_text(workspace: Workspace, wanted: Message) -> list[str]:
+    """Say which constants are missing, or are others, and which fields have a default: no class knows that."""
+    path = f"msg/{wanted.name}.msg"
+    data = files.read_plain(source_of(workspace, INTERFACES) / path, interfaces.MAX_BYTES + 1) or b""
+    try:
+        (part,) = interfaces.parse(INTERFACES, path, data.decode(errors="replace")).parts
+    except interfaces.Unreadable as error:
+        return [str(error)]
+    constants = {constant.name: (constant.type, constant.value) for constant in part.constants}
+    return [
         f"{wanted.name} has no constant uint8 {name}={value}."
         for name, value in wanted.constants.items()
-        if getattr(found, name, None) != value
+        if constants.get(name) != ("uint8", value)
+    ] + [
+        f"{wanted.name}.{field.name} has a default, {field.default!r}: no field has one."
+        for field in part.fields
+        if field.default is not None
     ]
 
 

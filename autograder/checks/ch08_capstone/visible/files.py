@@ -8,7 +8,7 @@ from autograder.checking import Diagnosis, Workspace, check, expect, hint
 from autograder.checking.probes import imports, installed, manifest
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import INTERFACES, PACKAGE, PROGRAMS
-from autograder.checks.ch08_capstone.support.messages import CLEARANCE, HEALTH, differences, load_messages
+from autograder.checks.ch08_capstone.support.messages import CLEARANCE, HEALTH, differences
 from autograder.checks.ch08_capstone.support.sources import require_built, source_of
 
 
@@ -32,8 +32,7 @@ def test_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
 @hint("Compare with the tables of step 3, letter by letter.", "float32 front, bool valid, std_msgs/Header header.")
 def test_definitions(workspace: Workspace) -> None:
     """Step 3: both messages have the fields and constants of the contract."""
-    module = load_messages(workspace)
-    wrong = [*differences(module, CLEARANCE), *differences(module, HEALTH)]
+    wrong = [*differences(workspace, CLEARANCE), *differences(workspace, HEALTH)]
     expect(not wrong, " ".join(wrong[:3]))
 
 
