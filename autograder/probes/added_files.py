@@ -27,7 +27,7 @@ def install_with(workspace: Workspace, package: str, files: Iterable[str]) -> In
     copy = replace(workspace, root=workspace.root.parent / "grown")
     folder = copy.root / "src" / package
     with reading(f"The folder of {package}"):
-        shutil.copytree(find_packages(workspace.root / "src")[0][package], folder)
+        shutil.copytree(find_packages(workspace.root / "src")[0][package], folder, symlinks=True)
     for file in files:
         with reading(f"{package}/{file}", advice="A file of that name was to be added: rename what has its place."):
             (folder / file).parent.mkdir(parents=True, exist_ok=True)

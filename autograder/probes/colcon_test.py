@@ -8,6 +8,9 @@ from __future__ import annotations
 
 import re
 import secrets
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,6 +24,7 @@ from autograder.run.sandbox.launcher import launch
 from autograder.run.sandbox.limits import COLCON_TEST
 from autograder.run.workspace import Workspace
 from autograder.submission.packages import find_packages
+from autograder.submission.reading import reading
 from autograder.suite import expect
 
 TEST_EXTRAS = ("test", "tests", "testing")  # in which colcon looks for pytest
@@ -29,7 +33,7 @@ TEST_EXTRAS = ("test", "tests", "testing")  # in which colcon looks for pytest
 def colcon_test(workspace: Workspace, package: str) -> Report:
     """Run `colcon test --packages-select PACKAGE --return-code-on-test-failure` in a built workspace.
 
-    Its build and test folders are written to.
+    It writes to a copy of the workspace.
 
     Returns:
         colcon's exit status, and the tests in the file that `colcon test-result` would count. If it had to be stopped,
@@ -69,12 +73,25 @@ def _colcon_test(workspace: Workspace, package: str, *pytest_arguments: str) -> 
     environment = {**plain.environment, "COLCON_HOME": str(workspace.scratch)}
     del environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"]  # colcon is the student's own way to run them, plug-ins and all
     mounts = tuple(mount for mount in plain.mounts if mount.path != workspace.install)
-    spec = replace(
-        plain, workdir=workspace.root, environment=environment, mounts=(*mounts, Mount(workspace.root, writable=True))
-    )
-    with launch(colcon_command(workspace, packages.values(), "test", *choice), spec, profile="colcon") as process:
-        process.wait(COLCON_TEST.wall_seconds + 10)
-        exit_reason, status, output = process.exit_reason, process.returncode, process.output
-    written = read_below(workspace.root, Path("build", package, "pytest.xml"), MAX_BYTES) or b""
-    claims = parse_claims(written) if run.encode() in written else None
+    with _copied(workspace.root) as copy:
+        mounts += (Mount(workspace.root, writable=True, source=copy),)
+        spec = replace(plain, workdir=workspace.root, environment=environment, mounts=mounts)
+        with launch(colcon_command(workspace, packages.values(), "test", *choice), spec, profile="colcon") as process:
+            process.wait(COLCON_TEST.wall_seconds + 10)
+            exit_reason, status, output = process.exit_reason, process.returncode, process.output
+        reports = [read_below(root, Path("build", package, "pytest.xml"), MAX_BYTES) for root in (copy, workspace.root)]
+    written = next((report for report in reports if report and run.encode() in report), None)
+    claims = parse_claims(written) if written else None
     return Report(exit_reason, status, claims or Claims(), 0, output), claims is not None
+
+
+@contextmanager
+def _copied(root: Path) -> Iterator[Path]:
+    """Copy a workspace for the code of one run, which may write to it. Later checks read the workspace itself."""
+    copy = root.with_name(f"{root.name}-tested")  # not in scratch, where students' code may write
+    with reading("What colcon built"):
+        shutil.copytree(root, copy, symlinks=True)
+    try:
+        yield copy
+    finally:
+        shutil.rmtree(copy, ignore_errors=True)

@@ -158,7 +158,8 @@ def sandbox(command: list[str], spec: Sandbox, filter_fd: int | None, status_fd:
     ]
     mounts = (*(Mount(folder) for folder in python_mounts()), *spec.mounts)
     for mount in mounts:
-        arguments += ["--bind" if mount.writable else "--ro-bind", str(mount.path), str(mount.path)]
+        source = mount.source or mount.path
+        arguments += ["--bind" if mount.writable else "--ro-bind", str(source), str(mount.path)]
     for folder in _private_folders():
         if folder.is_dir() and any(folder.is_relative_to(mount.path) for mount in mounts):
             arguments += ["--tmpfs", str(folder), "--remount-ro", str(folder)]

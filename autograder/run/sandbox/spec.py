@@ -22,10 +22,14 @@ INTERPRETER = {
 
 @dataclass(frozen=True)
 class Mount:
-    """A folder or file of the machine that the sandbox sees at the same path."""
+    """A folder or file of the machine that the sandbox sees at the same path, or another one in its place.
+
+    With `Isolation.PROCESS`, which mounts nothing, code sees what is at the path.
+    """
 
     path: Path
     writable: bool = False
+    source: Path | None = None  # what is seen in its place
 
 
 @dataclass(frozen=True)
