@@ -39,7 +39,8 @@ def paths(document: str) -> set[str]:
     text = (ROOT / document).read_text(encoding="utf-8")
     links = {link.partition("#")[0] for link in re.findall(r"\]\(([^)\s]+)\)", text) if "://" not in link}
     words = {word.rstrip("/") for span in spans(document) for word in span.split() if _is_path(word)}
-    return {link for link in links if link} | words
+    drawn = set(re.findall(r'\.save\("([\w.]+)"\)', text))  # by the page's own code, when the site is built
+    return {link for link in links - drawn if link} | words
 
 
 def _is_path(word: str) -> bool:
