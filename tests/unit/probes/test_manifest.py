@@ -137,7 +137,7 @@ def test_a_manifest_that_ros_accepts_is_read_alike_leniently_and_strictly(tmp_pa
 
 @pytest.mark.parametrize(
     ("text", "words"),
-    [("<package", "no well-formed XML"), (f"<!DOCTYPE p>{REFUSED}", "DOCTYPE"), (CODE_STUB, "still to be written")],
+    [("<package", "not well-formed XML"), (f"<!DOCTYPE p>{REFUSED}", "DOCTYPE"), (CODE_STUB, "still to be written")],
 )
 def test_a_file_that_is_not_a_manifest_is_also_rejected_leniently(tmp_path: Path, text: str, words: str) -> None:
     (tmp_path / "package.xml").write_text(text)
