@@ -33,7 +33,7 @@ TEST_EXTRAS = ("test", "tests", "testing")  # in which colcon looks for pytest
 def colcon_test(workspace: Workspace, package: str) -> Report:
     """Run `colcon test --packages-select PACKAGE --return-code-on-test-failure` in a built workspace.
 
-    It writes to a copy of the workspace.
+    It writes to a copy of the workspace, or to the workspace itself with `Isolation.PROCESS`, which mounts nothing.
 
     Returns:
         colcon's exit status, and the tests in the file that `colcon test-result` would count. If it had to be stopped,
@@ -79,6 +79,7 @@ def _colcon_test(workspace: Workspace, package: str, *pytest_arguments: str) -> 
         with launch(colcon_command(workspace, packages.values(), "test", *choice), spec, profile="colcon") as process:
             process.wait(COLCON_TEST.wall_seconds + 10)
             exit_reason, status, output = process.exit_reason, process.returncode, process.output
+        # In the workspace itself with `Isolation.PROCESS`.
         reports = [read_below(root, Path("build", package, "pytest.xml"), MAX_BYTES) for root in (copy, workspace.root)]
     written = next((report for report in reports if report and run.encode() in report), None)
     claims = parse_claims(written) if written else None
