@@ -25,6 +25,21 @@ LIE = """        declare_configuration(self)
         self.describe_parameters = lie
 """
 
+# Describes steps so wide that they lead from every number to a default, and drives by the defaults alone.
+WIDE_STEPS = """
+import copy as _copy
+import rclpy.node as _node
+_describe = _node.Node.describe_parameter
+def _forge(self, name):
+    found = _copy.deepcopy(_describe(self, name))
+    only = {'max_linear_velocity': 0.3, 'control_frequency': 10.0, 'battery_threshold': 20}
+    for span in (*found.floating_point_range, *found.integer_range):
+        if name in only:
+            span.from_value, span.step = only[name], type(span.step)(10**12)
+    return found
+_node.Node.describe_parameter = _forge
+"""
+
 # Answers each question about a value with a type that ROS does not know.
 UNKNOWN_TYPE = """
 import rclpy.parameter_service as _service
@@ -71,6 +86,15 @@ def attacks() -> tuple[Attack, ...]:
             CHAPTER.mutant("no_range").fails,
             exactly=True,
             says="max_linear_velocity: it took",
+        ),
+        *(
+            Attack(
+                f"wide steps and {base}",
+                "a constant in a parameter's place, and steps that leave no other value to try",
+                CHAPTER.write(base, heads={NODE: WIDE_STEPS}),
+                CHAPTER.mutant(base).fails,
+            )
+            for base in ("fixed_speed", "fixed_rate", "fixed_threshold")
         ),
         *CHAPTER.evasions(
             "slow",

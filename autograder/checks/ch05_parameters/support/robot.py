@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 
-from rcl_interfaces.msg import ParameterDescriptor, ParameterType
+from rcl_interfaces.msg import ParameterDescriptor
 from sensor_msgs.msg import BatteryState, LaserScan
 
 from autograder.checking import (
@@ -30,6 +30,7 @@ SETTLED = 0.2  # s: a node at 10 Hz has answered a scan by then
 TOLERANCE = 0.01  # m/s: a speed may be rounded to centimetres
 RATE_TOLERANCE = 0.08  # of the rate: in real time commands are late, and an error of a tenth is seen
 ROUNDED = 0.0051  # m: a value in a sentence may be rounded to centimetres
+STEP_SHARE = 0.05  # of a parameter's range: less than from any drawn number of the start to its default
 REFUSED = (Kind.CRASHED_AT_START, Kind.ENDED_EARLY)
 
 
@@ -76,18 +77,24 @@ class Robot(AutoHarness):
         return self.parameters.descriptors(*WANTED)
 
     def allowed(self, name: str, number: float, *, up: bool = False) -> float:
-        """Return the number next below, or above, that a parameter's type and steps allow: one check judges these."""
+        """Return the number next below, or above, that a parameter's type and steps allow: one check judges these.
+
+        The node describes its steps itself. Where they lead far from the number, it is returned as it is: otherwise the
+        node would choose the values that it is tried with.
+        """
         described = self.descriptors.get(name)
         if described is None:
             return number
         ranges = [*described.floating_point_range, *described.integer_range]
         low, step = (float(ranges[0].from_value), float(ranges[0].step)) if ranges else (0.0, 0.0)
-        if described.type == ParameterType.PARAMETER_INTEGER:
+        is_whole = type(self.initial.get(name)) is int
+        if is_whole:
             step = max(1.0, step)
         if not step > 0.0:
             return number
         steps = (number - low) / step
-        return round(low + (math.ceil(steps - 1e-6) if up else math.floor(steps + 1e-6)) * step, 9)
+        near = round(low + (math.ceil(steps - 1e-6) if up else math.floor(steps + 1e-6)) * step, 9)
+        return near if abs(near - number) < farthest(name, is_whole=is_whole) else number
 
     def unfixed(self, values: Mapping[str, parameters.Value]) -> dict[str, parameters.Value]:
         """Return those of these values whose parameters are not read-only; one check judges which are."""
@@ -131,6 +138,14 @@ class Robot(AutoHarness):
     def charge(self, percent: float) -> None:
         """Let the battery say its charge."""
         self.publish("/battery_state", BatteryState(percentage=percent / 100.0))
+
+
+def farthest(name: str, *, is_whole: bool = False) -> float:
+    """Return how far a parameter's steps may move a drawn number; whole numbers are up to 1 away."""
+    low, high = WANTED[name].low, WANTED[name].high
+    assert low is not None, name
+    assert high is not None, name
+    return max(STEP_SHARE * (high - low), 1.0 if is_whole else 0.0)
 
 
 def restore(robot: Robot) -> bool:
