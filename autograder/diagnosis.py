@@ -5,6 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
+from autograder.plain_text import shorten
+
+MAX_SENTENCE = 4_000  # characters of a sentence for the student, which may quote a program
+MAX_DETAIL = 16_000  # characters of lines of its output
+
 
 class Kind(str, Enum):
     """The outcomes of reading, building and starting a submission."""
@@ -46,12 +51,16 @@ HINTS = {
 class Diagnosis:
     """The outcome of reading, building and starting one submission, and advice for the student.
 
-    `detail` is relevant lines of output or traceback, already shortened. It may be empty.
+    `detail` is relevant lines of output or traceback. It may be empty. Both are shortened here if they are too long.
     """
 
     kind: Kind
     sentence: str
     detail: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "sentence", shorten(self.sentence, MAX_SENTENCE))
+        object.__setattr__(self, "detail", shorten(self.detail, MAX_DETAIL))
 
     @property
     def hints(self) -> tuple[str, ...]:

@@ -18,6 +18,14 @@ def clean(text: str) -> str:
     return _FORBIDDEN.sub("\ufffd", text)
 
 
+def shorten(text: str, most: int) -> str:
+    """Return `text`, or as much of it as fits into `most` characters with a remark that says how much is left out."""
+    if len(text) <= most:
+        return text
+    remark = f"… ({len(text):,} characters in all)"
+    return text[: most - len(remark)] + remark
+
+
 # Controls of both sets, marks that are not seen or turn a line round, half surrogate pairs, and other ends of lines.
 _UNSEEN = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
 

@@ -5,10 +5,13 @@ from __future__ import annotations
 from autograder.author.course.markdown_table import table
 from autograder.building.interfaces.cache import LIMIT
 from autograder.building.keeper import CACHE
+from autograder.diagnosis import MAX_DETAIL, MAX_SENTENCE
 from autograder.grade.bounded_json import NOTEBOOK_VALUES, RESULT_VALUES, RUN_VALUES
 from autograder.grade.executed_notebook import MAX_BYTES
 from autograder.grade.reply import MAX_RESULT, MAX_SHOWN
 from autograder.harness.launch import MAX_STATUS
+from autograder.probes.imports import MAX_ALL_BYTES
+from autograder.probes.parameters import MAX_NAME, MAX_NAMES
 from autograder.run.fork_server import seccomp
 from autograder.run.lockstep.protocol import MAX_LINE
 from autograder.run.patience import HELD_SECONDS
@@ -28,7 +31,7 @@ user that the table does not list, such as pipe memory and epoll watches. Root g
 user.
 """
 ARGUMENTS, SANDBOX, WALLS, INSTALLED = "test_bubblewrap", "test_sandbox", "test_walls", "test_installed"
-ANSWER = "test_reply"
+ANSWER, WORKER_BOUNDS = "test_reply", "test_worker_sandbox_bounds"
 
 
 def current() -> str:
@@ -86,6 +89,7 @@ def rows() -> list[tuple[str, str, str, str]]:
         ("size of a file; new files", f"{_mib(node.file_size)}; {node.files:,}", "the kernel; a watcher", SANDBOX),
         ("/tmp and /dev/shm of a program", _mib(node.scratch), "a file system in memory", SANDBOX),
         ("a worker sandbox's scratch folder", _mib(limits.WORKER_SCRATCH), "a file system in memory", ARGUMENTS),
+        ("its folder for the result", _mib(limits.WORKER_OUT), "another file system in memory", WORKER_BOUNDS),
         ("printed output", f"{_mib(node.output)}; {_mib(build.output)} in a build", "a watcher", SANDBOX),
         (
             "a submission",
@@ -124,6 +128,14 @@ def rows() -> list[tuple[str, str, str, str]]:
             "the process that starts the worker, before parsing",
             ANSWER,
         ),
+        (
+            "a sentence of feedback; quoted output",
+            f"{MAX_SENTENCE:,}; {MAX_DETAIL:,} characters",
+            "the worker",
+            "test_result",
+        ),
+        ("compared parameter names", f"{MAX_NAMES} of {MAX_NAME} characters", "the worker", "test_parameters"),
+        ("Python that is parsed for its imports", f"{_mib(MAX_ALL_BYTES)} in a package", "the worker", "test_imports"),
         ("an executed notebook", f"{_mib(MAX_BYTES)}, or it has no outputs", "the worker", ANSWER),
         ("pictures and runs on a page", _mib(MAX_SHOWN), "the process that starts the worker", ANSWER),
     ]

@@ -1,11 +1,12 @@
 """Runs inside the sandbox: executes the cells of a notebook in a kernel, and reports the outcome of each cell.
 
-    python notebook_runner.py ORDER_FD ANSWER_FD
+    python notebook_runner.py ORDER_FD ANSWER_FD BEGUN_FD
 
 The order, `{"notebook": ..., "skipped": [INDEX, ...], "cell_seconds": ..., "max_output": ...}`, comes on one
-descriptor. The answer goes to another, one line of JSON for each event: `{"event": "begin"}` before the kernel starts,
-`{"event": "cell", "index": ..., "outputs": [...], "execution_count": ...}` after each cell, and `{"event": "end",
-"why": ...}`. The student's code in the sandbox can forge it. No message of the kernel itself leaves this process.
+descriptor. The answer goes to another, one line of JSON for each event: `{"event": "cell", "index": ..., "outputs":
+[...], "execution_count": ...}` after each cell, and `{"event": "end", "why": ...}`. The student's code in the sandbox
+can forge or remove it. So a byte on the third, a pipe that is closed before the kernel starts, says that this program
+came so far. No message of the kernel itself leaves this process.
 """
 
 from __future__ import annotations
@@ -28,7 +29,8 @@ def main() -> None:
         answer.write(json.dumps({"event": event, **fields}) + "\n")
         answer.flush()
 
-    tell("begin")
+    os.write(int(sys.argv[3]), b".")
+    os.close(int(sys.argv[3]))
     try:
         _execute(order, tell)
         tell("end", why="")

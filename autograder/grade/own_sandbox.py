@@ -11,6 +11,7 @@ from pathlib import Path
 from autograder import course_paths
 from autograder.building.keeper import attend
 from autograder.grade.job import Job
+from autograder.run.sandbox.bubblewrap import OUT
 from autograder.run.sandbox.limits import GRADING_WORKER
 from autograder.run.sandbox.messages import MessageError
 from autograder.run.sandbox.spec import View
@@ -26,7 +27,7 @@ def in_own_sandbox(job: Job) -> WorkerReport:
 
     def command(scratch: Path) -> list[str]:
         path = place_of(job.path, job.isolation, scratch)
-        return _worker(replace(job, path=path, scratch=scratch, out=scratch / "out"), theirs.fileno())
+        return _worker(replace(job, path=path, scratch=scratch, out=scratch / OUT), theirs.fileno())
 
     limits = replace(GRADING_WORKER, wall_seconds=job.seconds + GRACE)
     with ours, ExitStack() as stack:

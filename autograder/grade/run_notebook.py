@@ -74,14 +74,18 @@ def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> Noteb
     with os.fdopen(os.memfd_create("order"), "w+b") as given, os.fdopen(os.memfd_create("answer"), "w+b") as taken:
         given.write(json.dumps(order).encode())
         given.seek(0)
-        descriptors = given.fileno(), taken.fileno()
-        command = [sys.executable, str(RUNNER), *map(str, descriptors)]
-        with launch(command, _sandbox(folder, workspace), pass_fds=descriptors) as process:
-            process.wait(KERNEL.wall_seconds + 10)
+        begun, theirs = os.pipe()
+        with os.fdopen(begun, "rb") as begins:
+            with os.fdopen(theirs, "wb"):
+                descriptors = given.fileno(), taken.fileno(), theirs
+                command = [sys.executable, str(RUNNER), *map(str, descriptors)]
+                process = launch(command, _sandbox(folder, workspace), pass_fds=descriptors)
+            with process:
+                process.wait(KERNEL.wall_seconds + 10)
+            if not begins.read(1):
+                raise GraderError(f"the notebook's sandbox did not answer: {tail(process.output)}")
         taken.seek(0)
         answer = read_answer(taken.read(MAX_ANSWER))
-    if not answer.begun:
-        raise GraderError(f"the notebook's sandbox did not answer: {tail(process.output)}")
     if answer.why and not answer.cells:
         raise _no_kernel(process, answer.why)
     for index, cell in enumerate(notebook.cells):
@@ -94,20 +98,17 @@ def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> Noteb
 class Answer:
     """The report of a run from the sandbox."""
 
-    begun: bool = False  # whether it came as far as starting a kernel
     why: str = ""  # why the run ended early; empty if it finished or gave no reason
     cells: Mapping[int, NotebookNode] = field(default_factory=dict)  # valid code cells without text, by their places
 
 
 def read_answer(data: bytes) -> Answer:
     """Read the lines of `notebook_runner`, which the student's code may have forged. Invalid lines are left out."""
-    begun, why, cells, left = False, "", dict[int, NotebookNode](), MAX_VALUES
+    why, cells, left = "", dict[int, NotebookNode](), MAX_VALUES
     for line in data.split(b"\n", MAX_LINES)[:MAX_LINES]:
         with suppress(StudentError), reading("An output of your notebook"):
             message = json.loads(line, parse_constant=lambda _: None)
-            if message["event"] == "begin":
-                begun = True
-            elif message["event"] == "end":
+            if message["event"] == "end":
                 why = str(message["why"])[:MAX_WHY]
             elif message["event"] == "cell" and type(message["index"]) is int:
                 left -= _count_values(message["outputs"])
@@ -119,7 +120,7 @@ def read_answer(data: bytes) -> Answer:
                 nbformat.validate(new_notebook(cells=[cell]))
                 nbformat.writes(new_notebook(cells=[cell]))
                 cells[message["index"]] = cell
-    return Answer(begun, why, cells)
+    return Answer(why, cells)
 
 
 def _count_values(value: object) -> int:

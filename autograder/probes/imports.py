@@ -10,13 +10,16 @@ import ast
 import sys
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 from autograder.probes.files import parse_python, plain_files, read_plain
 from autograder.probes.manifest import Manifest
+from autograder.suite import CheckFailed
 
 MAX_FILES = 300
 MAX_BYTES = 256 * 1024
+MAX_ALL_BYTES = 4 * 1024 * 1024  # of all files of a package that are parsed
 LEFT_OUT = frozenset({"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".pytest_cache"})
 
 # The rosdep keys of common modules that are not ROS packages. A ROS package's key is its own name.
@@ -62,9 +65,13 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
         package: the package's folder.
         within: only files below these folders of it; all if none is named.
         without: no files below these.
+
+    Raises:
+        CheckFailed: these files hold more than `MAX_ALL_BYTES`.
     """
     own = {path.parent.name for path in package.glob("*/__init__.py")} | {package.name}
     by_module: dict[str, list[str]] = {}
+    left = MAX_ALL_BYTES
     for where in plain_files(package, MAX_FILES, left_out=LEFT_OUT, suffix=".py"):
         path = package / where
         top = where.parts[0]
@@ -72,11 +79,19 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
             continue
         # A test imports its neighbours, which pytest puts on the path.
         beside = {sibling.stem for sibling in path.parent.glob("*.py")} if top == "test" else set()
-        for module in modules(_text(path)) - own - beside - sys.stdlib_module_names:
+        text = _text(path)
+        left -= len(text)
+        if left < 0:
+            raise CheckFailed(
+                f"{package.name} holds more than {MAX_ALL_BYTES // 2**20} MiB of Python, too much to look for its "
+                "imports: keep generated files out of the package."
+            )
+        for module in modules(text) - own - beside - sys.stdlib_module_names:
             by_module.setdefault(module, []).append(str(where))
     return tuple(Import(module, tuple(files)) for module, files in sorted(by_module.items()))
 
 
+@lru_cache(MAX_FILES)  # several checks look at the same files
 def modules(text: str) -> frozenset[str]:
     """Return the top-level names that a module's text imports, or none if it is not Python."""
     names: set[str] = set()

@@ -35,6 +35,8 @@ SECONDS = 5.0  # of the node's time for an answer
 SHOWN = 200  # characters of a node's own words
 ALIKE = 0.6
 MAX_FILE = 64 * 1024
+MAX_NAMES = 100  # parameters of a node, and names that are compared with expected ones
+MAX_NAME = 200  # characters of a name that is compared
 TYPES = {
     ParameterType.PARAMETER_NOT_SET: "of no type yet",
     ParameterType.PARAMETER_BOOL: "a bool",
@@ -60,9 +62,12 @@ class NodeParameters:
     node: str
 
     def names(self) -> frozenset[str]:
-        """Return the names of all declared parameters, rclpy's own left out."""
+        """Return the names of all declared parameters, rclpy's own left out. CheckFailed: they are too many."""
         response = self._ask(ListParameters, "list_parameters", ListParameters.Request())
-        return frozenset(response.result.names) - OWN
+        names = frozenset(response.result.names) - OWN
+        if len(names) > MAX_NAMES:
+            raise CheckFailed(f"The node has {len(names):,} parameters: declare at most {MAX_NAMES}.")
+        return names
 
     def values(self, *names: str) -> dict[str, Value]:
         """Return values by name; an undeclared name is left out."""
@@ -105,7 +110,9 @@ def shortened(text: str) -> str:
 
 def near_misses(expected: Collection[str], actual: Collection[str]) -> dict[str, str]:
     """Return the expected names that are missing, each with the actual name that is probably meant, or ''."""
-    missing, extra = sorted(set(expected) - set(actual)), sorted(set(actual) - set(expected))
+    missing = sorted(set(expected) - set(actual))
+    # To compare two names takes the product of their lengths, so a student's are bounded.
+    extra = sorted(name for name in set(actual) - set(expected) if len(name) <= MAX_NAME)[:MAX_NAMES]
     likeness = {(name, other): SequenceMatcher(None, name, other).ratio() for name in missing for other in extra}
     near: dict[str, str] = {}
     for name, other in sorted(likeness, key=lambda pair: -likeness[pair]):

@@ -18,8 +18,9 @@ from threading import Lock
 from types import UnionType
 from typing import TYPE_CHECKING, Any, get_args, get_origin, get_type_hints
 
-from autograder.diagnosis import OK, Diagnosis
+from autograder.diagnosis import MAX_DETAIL, MAX_SENTENCE, OK, Diagnosis
 from autograder.exceptions import UsageError
+from autograder.plain_text import shorten
 from autograder.run.exchanges import Exchange
 from autograder.suite import Check, Outcome, Visibility
 
@@ -89,8 +90,8 @@ class CheckResult:
             points=round(check.points * share, 4),
             max_points=check.points,
             outcome=outcome,
-            message=message,
-            hints=hints,
+            message=shorten(message, MAX_SENTENCE),
+            hints=tuple(shorten(hint, MAX_SENTENCE) for hint in hints),
             doc=check.doc,
             visibility=check.visibility,
             seconds=round(seconds, 3),
@@ -112,6 +113,9 @@ class Build:
     seconds: float
     packages: tuple[str, ...] = ()
     log: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "log", shorten(self.log, MAX_DETAIL))
 
 
 @dataclass(frozen=True)

@@ -58,6 +58,26 @@ def test_a_cell_over_a_limit_ends_the_run_and_files_written_before_count(cell: s
     assert answer["left"] == []
 
 
+EMPTIES = """
+import os
+for pid in filter(str.isdigit, os.listdir("/proc")):
+    try:
+        for number in os.listdir(f"/proc/{pid}/fd"):
+            if "memfd:answer" in os.readlink(path := f"/proc/{pid}/fd/{number}"):
+                open(path, "wb").close()
+                print("emptied")
+    except OSError:
+        pass
+open("after.txt", "w").close()
+os.kill(os.getppid(), 9)
+"""
+
+
+def test_a_cell_that_empties_the_answer_loses_outputs_and_its_files_count() -> None:
+    answer = in_worker_sandbox(executed, ["%%writefile before.txt\nkept", EMPTIES])
+    assert answer["files"] == ["after.txt", "before.txt"]
+
+
 FORGED = "import os\nkernel = get_ipython().kernel\nsession, io = kernel.session, kernel.iopub_socket\n"
 
 

@@ -37,3 +37,24 @@ def test_a_bomb_in_the_widest_sandbox_does_not_end_the_worker() -> None:
     report = run_in_worker_sandbox(lambda scratch: [sys.executable, "-c", WORKER], Isolation.BUBBLEWRAP)
     assert (report.exit_reason, report.returncode) == (ExitReason.EXITED, 0), report.output
     assert report.output.split() == [ExitReason.THREADS.value] * 3
+
+
+FULL = """
+import os, sys
+from pathlib import Path
+from autograder.run.sandbox.bubblewrap import OUT
+scratch = Path(sys.argv[1])
+try:
+    with open(scratch / "home", "wb") as file:
+        while True:
+            file.write(bytes(1 << 20))
+except OSError as error:
+    print(os.strerror(error.errno))
+(scratch / OUT / "result.json").write_bytes(bytes(64 << 20))
+(Path(os.environ["ROS_LOG_DIR"]).parent / "log").write_text("line")
+"""
+
+
+def test_a_program_that_fills_the_scratch_folder_leaves_room_for_the_result_and_the_log() -> None:
+    report = run_in_worker_sandbox(lambda scratch: [sys.executable, "-c", FULL, str(scratch)], Isolation.BUBBLEWRAP)
+    assert (report.returncode, report.output) == (0, "No space left on device\n")

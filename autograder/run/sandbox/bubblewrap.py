@@ -13,6 +13,7 @@ from autograder.run.sandbox.limits import (
     INOTIFY_INSTANCES,
     INOTIFY_WATCHES,
     SIGNALS,
+    WORKER_OUT,
     WORKER_SCRATCH,
     WORKER_TMP,
     Limits,
@@ -31,6 +32,7 @@ exec setpriv --inh-caps=-all --ambient-caps=-all --bounding-set=-all "$@"
 """
 _STAY = '"$@"; exit $?'  # a shell that has something left to do stays in memory
 _FONTS = "/tmp/matplotlib"
+OUT = "out"  # the folder of a worker's scratch folder that its output goes to
 
 
 def resources(limits: Limits) -> dict[str, tuple[int, int]]:
@@ -63,7 +65,8 @@ def worker_sandbox(
     Args:
         command: the command to run.
         view: the files that it sees in addition to the system and the grader.
-        scratch: the folder that is a file system in memory, of `limits.WORKER_SCRATCH` bytes.
+        scratch: the folder that is a file system in memory, of `limits.WORKER_SCRATCH` bytes. Its folder `OUT` is
+            another one, so that no program that fills `scratch` keeps the worker from writing its result.
         user: the user to become, for root; None leaves the user as it is.
         groups: folders of control groups in which the worker sandbox makes those of its sandboxes.
     """
@@ -101,8 +104,9 @@ def _worker_mounts(view: View, scratch: Path, groups: tuple[Path, ...]) -> list[
     private = [folder for folder in _private_folders() if folder.is_dir() and any(map(folder.is_relative_to, code))]
     covered = [folder for folder in private if not any(map(folder.is_relative_to, view.shown))]
     arguments = [*_open_folders(("/etc",)), *_system(), "--dev", "/dev"]
-    for place, size in (("/tmp", WORKER_TMP), ("/dev/shm", WORKER_TMP), (str(scratch), WORKER_SCRATCH)):
-        arguments += ["--perms", "0777", "--size", str(size), "--tmpfs", place]
+    bounded = {"/tmp": WORKER_TMP, "/dev/shm": WORKER_TMP, scratch: WORKER_SCRATCH, scratch / OUT: WORKER_OUT}
+    for place, size in bounded.items():
+        arguments += ["--perms", "0777", "--size", str(size), "--tmpfs", str(place)]
     for path in code:
         arguments += [*_open_folders(path.parents), "--ro-bind", str(path), str(path)]
     for folder in covered:

@@ -67,6 +67,7 @@ READING_WORKER = Limits(wall_seconds=120.0, memory=2 * GIB, threads=64)
 # A worker sandbox of the verification, which lives while there is work. Each job has the wall time of GRADING_WORKER.
 VERIFICATION_WORKER = replace(GRADING_WORKER, wall_seconds=24 * 3600.0)
 WORKER_SCRATCH = 512 * MIB  # bytes of a worker sandbox's file system
+WORKER_OUT = 96 * MIB  # bytes of a grading's output folder, which no student's program can fill: room for RESULT_FILES
 WORKER_TMP = 64 * MIB  # bytes of a worker sandbox's /tmp, which no student's file is in
 INOTIFY_INSTANCES = 16  # of a whole worker sandbox; the kernel gives a user of the machine 128
 INOTIFY_WATCHES = 4096  # of a whole worker sandbox

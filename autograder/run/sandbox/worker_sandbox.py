@@ -107,6 +107,7 @@ def in_worker_sandbox(
                     **_own(scratch, isolation),
                     "HOME": "/tmp",
                     "TMPDIR": "/tmp",
+                    "ROS_LOG_DIR": "/tmp/ros-log",  # the grader's nodes log although a program has filled `scratch`
                 }
             elif gives_up_root(isolation):
                 user = stack.enter_context(ordinary_user())

@@ -8,6 +8,7 @@ import pytest
 
 from autograder.course_paths import SOLUTIONS
 from autograder.probes import imports, manifest
+from autograder.suite import CheckFailed
 
 FILES = {
     "lamp/__init__.py": "",
@@ -94,6 +95,17 @@ def test_files_that_are_too_large_or_linked_are_ignored(tmp_path: Path) -> None:
     (tmp_path / "elsewhere.py").write_text("import scipy\n")
     (package / "linked.py").symlink_to(tmp_path / "elsewhere.py")
     assert imports.imported(package) == ()
+
+
+def test_the_bytes_of_all_files_are_bounded(tmp_path: Path) -> None:
+    text = "#" * (imports.MAX_BYTES - 1) + "\n"
+    count = imports.MAX_ALL_BYTES // imports.MAX_BYTES
+    for number in range(count):
+        (tmp_path / f"x{number}.py").write_text(text)
+    assert imports.imported(tmp_path) == ()
+    (tmp_path / "y.py").write_text("import numpy\n")
+    with pytest.raises(CheckFailed, match="holds more than 4 MiB of Python"):
+        imports.imported(tmp_path)
 
 
 def test_the_number_of_files_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

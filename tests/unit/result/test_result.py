@@ -15,9 +15,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from autograder.diagnosis import OK, Diagnosis, Kind
+from autograder.diagnosis import MAX_DETAIL, MAX_SENTENCE, OK, Diagnosis, Kind
 from autograder.exceptions import AutograderError, GraderError, IsolationError, StudentError, UsageError
-from autograder.result.model import Artifact, CheckResult, Result, Status, from_json, schema, write_json
+from autograder.result.model import Artifact, Build, CheckResult, Result, Status, from_json, schema, write_json
 from autograder.suite import Check, Outcome, Visibility
 
 MakeResult = Callable[..., Result]
@@ -41,6 +41,17 @@ def turns(make_check: Callable[..., Check]) -> Check:
 def test_points_follow_the_outcome(turns: Check, outcome: Outcome, points: float, hints: tuple[str, ...]) -> None:
     record = CheckResult.of(turns, outcome, fraction=1 / 3)
     assert (record.points, record.max_points, record.hints) == (points, 3.0, hints)
+
+
+def test_words_of_a_program_are_shortened_with_a_remark_that_says_so(turns: Check) -> None:
+    words = "x" * 950_000
+    result = CheckResult.of(turns, Outcome.FAILED, words, hints=(words,))
+    diagnosis = Diagnosis(Kind.CRASHED_LATER, words, words)
+    for text in (result.message, *result.hints, diagnosis.sentence):
+        assert len(text) == MAX_SENTENCE
+        assert text.endswith("… (950,000 characters in all)")
+    assert len(diagnosis.detail) == len(Build(False, 0.0, log=words).log) == MAX_DETAIL
+    assert CheckResult.of(turns, Outcome.FAILED, "y" * MAX_SENTENCE).message == "y" * MAX_SENTENCE
 
 
 def test_a_result_sums_what_its_checks_earned(make_result: MakeResult) -> None:
