@@ -26,6 +26,7 @@ from autograder.grade import worker
 from autograder.grade.job import Job
 from autograder.run.fork_server.profiles import PROFILES
 from autograder.run.sandbox import line
+from autograder.run.sandbox.bubblewrap import OUT
 from autograder.run.sandbox.launcher import warm_up
 from autograder.run.sandbox.messages import send_message
 
@@ -46,7 +47,7 @@ def serve(scratch: Path, client: Connection) -> None:
         _reap_orphans()
         output = log_file.read_bytes()[-OUTPUT:].decode("utf-8", errors="replace") if log_file.is_file() else ""
         reply = {"do": "done", "status": os.waitstatus_to_exitcode(status), "output": output}
-        for left in scratch.iterdir():
+        for left in (*(path for path in scratch.iterdir() if path.name != OUT), *(scratch / OUT).glob("*")):
             subprocess.run(["rm", "-rf", "--", left], check=True)
         send_message(client, reply)
 

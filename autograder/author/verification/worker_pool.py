@@ -18,6 +18,7 @@ from autograder import course_paths
 from autograder.building.keeper import attend
 from autograder.grade.job import Job
 from autograder.grade.own_sandbox import GRACE
+from autograder.run.sandbox.bubblewrap import OUT
 from autograder.run.sandbox.isolation import Isolation, require
 from autograder.run.sandbox.limits import VERIFICATION_WORKER
 from autograder.run.sandbox.messages import MessageError
@@ -108,7 +109,7 @@ class _Worker:
             path = Path(folder, job.path.name)
             copy_submission(job.path, path)
             options = replace(job.options, built=job.options.built and str(self._share(Path(job.options.built))))
-            sent = replace(job, path=path, options=options, scratch=scratch, out=scratch / "out")
+            sent = replace(job, path=path, options=options, scratch=scratch, out=self._scratch / OUT)
             try:
                 self._server.send_bytes(sent.to_json().encode())
                 is_over = lambda: self._process.exit_reason is not None or time.monotonic() > deadline  # noqa: E731
