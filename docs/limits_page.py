@@ -113,6 +113,12 @@ def rows() -> list[tuple[str, str, str, str]]:
             "the worker",
             "test_stepper",
         ),
+        (
+            "messages from the topics of a run",
+            f"{limits.RECEIVED.messages:,}; {_mib(limits.RECEIVED.size)}",
+            "the worker, before it parses one",
+            "test_inflow",
+        ),
         ("the exit report of a launch", f"{MAX_STATUS} bytes", "the worker", "test_launch_status"),
         (
             "an installed path; all installed paths",

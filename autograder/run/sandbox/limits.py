@@ -43,6 +43,15 @@ class TreeLimits:
     paths: int = 1 * MIB  # bytes of all of these
 
 
+@dataclass(frozen=True)
+class Received:
+    """Bounds on the messages that one harness takes from the topics of a student's programs."""
+
+    messages: int = 100_000
+    # Bytes on the wire, in all. Parsed, a list of small messages takes up to 60 times as much: less than a worker has.
+    size: int = 64 * MIB
+
+
 # The harness bounds each wait for a node; the wall time is for a node that nothing waits for.
 NODE = Limits(wall_seconds=600.0)
 # Processor time bounds a build, and does not depend on the machine's load; the wall time is for a build that waits.
@@ -77,4 +86,5 @@ INSTALLED = TreeLimits()  # an install space after a build, which is copied for 
 KEPT = TreeLimits(names=5002, size=65 * MIB, depth=33, path=1088, paths=2 * MIB)
 SOURCES = TreeLimits(names=2000, size=16 * MIB)  # the interface packages of a submission
 RESULT_FILES = TreeLimits(names=200, depth=1)  # the files that a worker leaves: the result, its notebook, the pictures
+RECEIVED = Received()
 MESSAGE = 4 * MIB  # bytes of one message from a worker, except a list of files

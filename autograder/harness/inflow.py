@@ -1,0 +1,40 @@
+"""Bounds the messages that a harness takes from a student's programs: kept ones would fill the grader's memory."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError
+from autograder.run.sandbox.limits import MIB, RECEIVED, Received
+
+
+class Inflow:
+    """Counts the messages of all topics of one harness, and their bytes on the wire."""
+
+    def __init__(self, limits: Received = RECEIVED) -> None:
+        self._limits = limits
+        self._messages: Counter[str] = Counter()  # by topic
+        self._bytes: Counter[str] = Counter()
+
+    def add(self, topic: str, size: int) -> None:
+        """Count a message of `size` bytes, before it is parsed.
+
+        Raises:
+            StudentError: it is one too many, or too large; the sentence names the topic with the greatest part.
+        """
+        self._messages[topic] += 1
+        self._bytes[topic] += size
+        if self._bytes.total() > self._limits.size:
+            raise self._error(max(self._bytes, key=self._bytes.__getitem__))
+        if self._messages.total() > self._limits.messages:
+            raise self._error(max(self._messages, key=self._messages.__getitem__))
+
+    def _error(self, topic: str) -> StudentError:
+        sentence = (
+            f"Your programs sent {self._messages[topic]:,} messages of {self._bytes[topic] / MIB:.1f} MiB in all on "
+            f"{topic}, and in one run the grader takes no more than {self._limits.messages:,} messages and "
+            f"{self._limits.size / MIB:.0f} MiB from all topics: publish at the rate that is asked for, and small "
+            "messages."
+        )
+        return StudentError(Diagnosis(Kind.FLOODED_OUTPUT, sentence))

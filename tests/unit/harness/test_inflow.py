@@ -1,0 +1,98 @@
+"""A program that publishes without end fails with a sentence, before the messages fill the grader's memory."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.node import Node
+from std_msgs.msg import String
+
+from autograder.diagnosis import Kind
+from autograder.exceptions import StudentError
+from autograder.harness import grader_node
+from autograder.harness.grader_node import GraderNode, requested_qos
+from autograder.harness.inflow import Inflow
+from autograder.run.sandbox.limits import RECEIVED, Received
+
+DOMAIN = 87
+SECONDS = 30.0  # of real time for what must happen
+
+
+def flooded(inflow: Inflow, topic: str, size: int) -> str:
+    """Count a message that is too many; return the sentence."""
+    with pytest.raises(StudentError) as caught:
+        inflow.add(topic, size)
+    assert caught.value.diagnosis.kind is Kind.FLOODED_OUTPUT
+    return caught.value.diagnosis.sentence
+
+
+def test_one_message_too_many_names_the_topic_that_had_most() -> None:
+    inflow = Inflow(Received(messages=10))
+    for topic in ("/loud", "/loud", "/quiet") * 3:
+        inflow.add(topic, 8)
+    inflow.add("/loud", 8)
+    assert "sent 7 messages of 0.0 MiB in all on /loud" in flooded(inflow, "/quiet", 8)
+
+
+def test_large_messages_are_bounded_in_all() -> None:
+    inflow = Inflow()
+    for _ in range(4):
+        inflow.add("/map", RECEIVED.size // 4)
+    sentence = flooded(inflow, "/map", RECEIVED.size // 4)
+    assert "5 messages of 80.0 MiB in all on /map" in sentence
+    assert "100,000 messages and 64 MiB" in sentence
+
+
+@pytest.fixture
+def programs_node() -> Iterator[Node]:
+    """A node such as a student's, in the domain of the grader's node."""
+    context = Context()
+    rclpy.init(args=[], context=context, domain_id=DOMAIN)
+    node = Node("flood", context=context)
+    yield node
+    node.destroy_node()
+    context.try_shutdown()
+
+
+@pytest.fixture
+def grader() -> Iterator[GraderNode]:
+    """The grader's node."""
+    node = GraderNode(DOMAIN)
+    yield node
+    node.close()
+
+
+def test_the_grader_stops_taking_what_a_program_publishes_without_end(
+    programs_node: Node, grader: GraderNode, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(grader, "_inflow", Inflow(Received(messages=50)))
+    monkeypatch.setattr(grader_node, "DEPTH", 20)
+    kept: list[String] = []
+    grader.subscribe("/flood", String, lambda message, _: kept.append(message), requested_qos([]))
+    publisher = programs_node.create_publisher(String, "/flood", 100)
+
+    def flood() -> None:
+        deadline = time.monotonic() + SECONDS
+        while time.monotonic() < deadline:
+            publisher.publish(String(data="again"))
+            grader.spin(0.01)
+
+    with pytest.raises(StudentError, match=r"sent 51 messages .* on /flood"):
+        flood()
+    assert len(kept) == 50
+
+
+def test_bytes_that_are_no_message_of_the_type_are_left_out(programs_node: Node, grader: GraderNode) -> None:
+    kept: list[str] = []
+    grader.subscribe("/said", String, lambda message, _: kept.append(message.data), requested_qos([]))
+    publisher = programs_node.create_publisher(String, "/said", 100)
+    deadline = time.monotonic() + SECONDS
+    while not kept and time.monotonic() < deadline:
+        publisher.publish(b"\0\1\0\0")
+        publisher.publish(String(data="good"))
+        grader.spin(0.05)
+    assert set(kept) == {"good"}
