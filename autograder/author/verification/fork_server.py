@@ -47,8 +47,9 @@ def serve(scratch: Path, client: Connection) -> None:
         _reap_orphans()
         output = log_file.read_bytes()[-OUTPUT:].decode("utf-8", errors="replace") if log_file.is_file() else ""
         reply = {"do": "done", "status": os.waitstatus_to_exitcode(status), "output": output}
-        for left in (*(path for path in scratch.iterdir() if path.name != OUT), *(scratch / OUT).glob("*")):
-            subprocess.run(["rm", "-rf", "--", left], check=True)
+        for left in (*scratch.iterdir(), *(scratch / OUT).glob("*")):
+            if not left.is_mount():
+                subprocess.run(["rm", "-rf", "--", left], check=True)
         send_message(client, reply)
 
 
