@@ -25,9 +25,8 @@ from autograder.run.lockstep.failures import (
     diagnose_unsteppable,
 )
 from autograder.run.lockstep.protocol import START_NS, Description, Event, ProtocolError, Reply
-from autograder.run.sandbox import Process
+from autograder.run.sandbox import Process, starvation
 from autograder.run.sandbox.launcher import launch
-from autograder.run.sandbox.procfs import waited_ns
 from autograder.run.sandbox.spec import Sandbox
 
 HOST = Path(__file__).with_name("lockstep_host")
@@ -73,6 +72,7 @@ class Stepper:
     def __init__(
         self, spec: Sandbox, executable: Path, arguments: tuple[str, ...] = (), clock_rate: float = 1.0
     ) -> None:
+        self._at_start = starvation.look(())
         their_read, our_write = os.pipe()
         our_read, their_write = os.pipe()
         words = (HOST, their_read, their_write, START_NS, clock_rate, executable)
@@ -189,9 +189,9 @@ class Stepper:
                 raise patience.too_slow()
 
     def _excuse(self) -> None:
-        """Take back the time for which the program was ready to answer, and the machine did not let it run."""
-        waited = max(waited_ns((self.process.innermost(),)).values(), default=0) / 1e9
-        excused = min(waited, self._held)
+        """Take back the time for which the program was ready to answer, and others did not let it run."""
+        waited = starvation.starved(self._at_start, starvation.look((self.process.innermost(),)))
+        excused = min(max(0.0, waited), self._held)
         patience.add_held(self._excused - excused)
         self._excused = excused
 

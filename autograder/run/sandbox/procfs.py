@@ -48,16 +48,6 @@ def measure(*roots: int, most: int = sys.maxsize) -> Tree:
     return Tree(tuple(pids), threads, memory, largest)
 
 
-def cpu_seconds(pids: Iterable[int]) -> float:
-    """Return the processor time that processes have used so far; those that vanish are left out."""
-    ticks = 0
-    for pid in pids:
-        with suppress(OSError):
-            fields = _stat(pid)
-            ticks += int(fields[11]) + int(fields[12])  # utime and stime
-    return ticks / _TICKS_A_SECOND
-
-
 def start_seconds(pid: int) -> float | None:
     """Return when a process was started, in seconds since the boot, rounded down to a `TICK`; None if it has ended."""
     try:
@@ -66,18 +56,50 @@ def start_seconds(pid: int) -> float | None:
         return None
 
 
-def waited_ns(pids: Iterable[int]) -> dict[int, int]:
-    """Return by thread for how many nanoseconds it has waited for a processor, ready to run.
+@dataclass(frozen=True)
+class CpuTime:
+    """The processor time, in s, of a process, and of those children that have ended and that it has waited for."""
 
-    See schedstat in the kernel's Documentation/scheduler/sched-stats.rst. Threads that vanish are left out.
+    own: float = 0.0
+    reaped: float = 0.0
+
+
+def cpu_times(pids: Iterable[int]) -> dict[int, CpuTime]:
+    """Return the processor time by process; those that vanish are left out."""
+    times = {}
+    for pid in pids:
+        with suppress(OSError):
+            user, system, user_reaped, system_reaped = map(int, _stat(pid)[11:15])  # utime, stime, cutime and cstime
+            times[pid] = CpuTime((user + system) * TICK, (user_reaped + system_reaped) * TICK)
+    return times
+
+
+def cpu_seconds(pids: Iterable[int]) -> float:
+    """Return the processor time that processes have used so far; those that vanish are left out."""
+    return sum(time.own for time in cpu_times(pids).values())
+
+
+@dataclass(frozen=True)
+class ThreadTime:
+    """For how many seconds a thread has run, and has waited for a processor, ready to run."""
+
+    ran: float = 0.0
+    waited: float = 0.0
+
+
+def thread_times(pids: Iterable[int]) -> dict[int, ThreadTime]:
+    """Return the times by thread; threads that vanish are left out.
+
+    See schedstat in the kernel's Documentation/scheduler/sched-stats.rst.
     """
-    waited: dict[int, int] = {}
+    times = {}
     for pid in pids:
         with suppress(OSError):
             for task in os.listdir(f"/proc/{pid}/task"):
-                with suppress(OSError, IndexError):
-                    waited[int(task)] = int(_read(f"/proc/{pid}/task/{task}/schedstat").split()[1])
-    return waited
+                with suppress(OSError, ValueError):
+                    ran, waited, _ = _read(f"/proc/{pid}/task/{task}/schedstat").split()
+                    times[int(task)] = ThreadTime(int(ran) / 1e9, int(waited) / 1e9)
+    return times
 
 
 def parent(pid: int) -> int | None:

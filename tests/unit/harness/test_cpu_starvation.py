@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, suppress
+from contextlib import contextmanager
 from types import SimpleNamespace
 
 import pytest
 
 from autograder.harness import cpu_starvation
+from autograder.run.sandbox import procfs
 
 SECONDS = 60.0  # for what must happen
 
@@ -42,7 +44,7 @@ def test_a_late_return_counts_as_a_stall(
     clock += [5.0, 5.0 + took]
     with cpu_starvation.watch([], seconds, waits.append):
         pass
-    assert waits == [pytest.approx(late)]
+    assert waits == [pytest.approx(late, abs=5 * procfs.TICK)]  # less what this process used meanwhile
 
 
 def test_an_ended_process_does_not_count_as_stalled(clock: list[float], waits: list[float]) -> None:
@@ -54,31 +56,43 @@ def test_an_ended_process_does_not_count_as_stalled(clock: list[float], waits: l
     assert waits == [0.0]
 
 
-def spinning(nice: int, cpu: int) -> subprocess.Popen[bytes]:
-    """Start a process that keeps one processor busy."""
-    code = f"import os; os.sched_setaffinity(0, [{cpu}]); os.nice({nice}); print(flush=True)\nwhile True: pass"
-    return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE)
+@contextmanager
+def spinning(nice: int, *, adopted: bool = False) -> Iterator[int]:
+    """Keep the first processor busy with a process, the child of another one if `adopted`; yield its id."""
+    code = f"import os; os.sched_setaffinity(0, [{min(os.sched_getaffinity(0))}]); os.nice({nice})"
+    code += "; print(os.getpid(), flush=True)\nwhile True: pass"
+    command = [sys.executable, "-c", code]
+    if adopted:
+        command = ["sh", "-c", '"$@" & exec true', "sh", *command]
+    with subprocess.Popen(command, stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        pid = int(process.stdout.readline())
+        try:
+            yield pid
+        finally:
+            os.kill(pid, signal.SIGKILL)
 
 
-@pytest.fixture
-def crowded() -> Iterator[subprocess.Popen[bytes]]:
-    """A process that shares a processor with another, which goes first."""
-    cpu = min(os.sched_getaffinity(0))
-    with ExitStack() as stack:
-        processes = [stack.enter_context(spinning(nice, cpu)) for nice in (19, 0)]
-        for process in processes:
-            stack.callback(process.kill)
-        for process in processes:
-            assert process.stdout is not None
-            process.stdout.readline()
-        yield processes[0]
-
-
-def test_a_process_without_a_free_processor_counts_as_stalled(
-    crowded: subprocess.Popen[bytes], waits: list[float]
-) -> None:
+def test_a_process_without_a_free_processor_counts_as_stalled(waits: list[float]) -> None:
     deadline = time.monotonic() + SECONDS
-    while max(waits, default=0.0) < 0.2:
-        assert time.monotonic() < deadline
-        with cpu_starvation.watch([crowded.pid], SECONDS, waits.append), suppress(subprocess.TimeoutExpired):
-            crowded.wait(0.5)  # less than what is watched for: this is not late itself
+    with spinning(19) as pid, spinning(0, adopted=True):
+        while max(waits, default=0.0) < 0.2:
+            assert time.monotonic() < deadline
+            with cpu_starvation.watch([pid], SECONDS, waits.append):
+                time.sleep(0.5)  # less than what is watched for: this is not late itself
+
+
+def test_a_processor_that_the_submission_s_own_process_has_does_not_count(waits: list[float]) -> None:
+    deadline = time.monotonic() + SECONDS
+    waited = ran = 0.0
+    with spinning(19) as pid, spinning(0) as other:
+        while min(waited, ran) < 0.3:
+            assert time.monotonic() < deadline
+            waits.clear()
+            began_waiting = procfs.thread_times([pid])[pid].waited
+            with cpu_starvation.watch([pid], SECONDS, waits.append):
+                began_running = procfs.thread_times([other])[other].ran
+                time.sleep(0.5)
+                ran = procfs.thread_times([other])[other].ran - began_running
+            waited = procfs.thread_times([pid])[pid].waited - began_waiting
+    assert waits[0] <= max(0.0, waited - ran) + 10 * procfs.TICK

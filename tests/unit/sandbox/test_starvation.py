@@ -1,0 +1,46 @@
+"""What a submission's own processes use is not taken for the machine's."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from autograder.run.sandbox.procfs import TICK, CpuTime, ThreadTime
+from autograder.run.sandbox.starvation import NONE, Use, look, starved, used
+
+MAIN, CHILD = 11, 12  # process ids, and MAIN's thread
+
+
+@pytest.mark.parametrize(
+    ("child", "expected"),
+    [(0.0, 0.6), (0.2, 0.4), (0.6, 0.0), (9.0, 0.0)],
+    ids=["others had the processor", "a child had it for a part", "a child had it", "many children had many"],
+)
+def test_a_wait_counts_without_what_the_submission_s_other_processes_used(child: float, expected: float) -> None:
+    before = Use({MAIN: ThreadTime(1.0, 2.0)}, {MAIN: CpuTime(1.0), CHILD: CpuTime(3.0)})
+    after = Use({MAIN: ThreadTime(1.3, 2.6)}, {MAIN: CpuTime(1.3), CHILD: CpuTime(3.0 + child)})
+    assert max(0.0, starved(before, after)) == pytest.approx(expected)
+
+
+def test_children_that_have_ended_are_counted_once() -> None:
+    before = Use({}, {MAIN: CpuTime(1.0, 5.0), CHILD: CpuTime(3.0)})
+    assert used(before, Use({}, {MAIN: CpuTime(1.0, 8.5)})) == pytest.approx(0.5)
+
+
+def test_an_end_that_is_not_waited_for_takes_nothing_from_the_other_processes_time() -> None:
+    before = Use({}, {MAIN: CpuTime(1.0), CHILD: CpuTime(3.0)})
+    assert used(before, Use({}, {MAIN: CpuTime(1.4)})) == pytest.approx(0.4)
+
+
+def test_the_time_of_a_started_process_and_of_its_children_is_found_after_their_end() -> None:
+    busy = "import time\nwhile time.process_time() < 0.2: pass"
+    parent = f"import subprocess, sys\nsubprocess.run([sys.executable, '-c', {busy!r}])"
+    before = look(())
+    subprocess.run([sys.executable, "-c", parent], check=True)
+    assert used(before, look(())) > 0.2 - 2 * TICK
+
+
+def test_nothing_is_starved_that_is_not_there() -> None:
+    assert starved(NONE, NONE) == 0.0
