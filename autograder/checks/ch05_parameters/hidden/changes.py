@@ -8,8 +8,8 @@ from collections.abc import Mapping
 
 from autograder.checking import LOCKSTEP, Workspace, expect, group, hint
 from autograder.checking.probes import calls, parameters
-from autograder.checks.ch05_parameters.support import contract
-from autograder.checks.ch05_parameters.support.contract import DEFAULTS, EXECUTABLE, PACKAGE
+from autograder.checks.ch05_parameters.support import bench, contract
+from autograder.checks.ch05_parameters.support.contract import DEFAULTS, PACKAGE
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, scan
 
 check = group("changes")
@@ -119,7 +119,7 @@ def test_no_side_effects(fresh_robot: Robot, workspace: Workspace) -> None:
         _change(robot, {"battery_threshold": 25}, fraction=0.75)
         situation = "After a refused request for 25 Hz and an accepted one without a frequency"
         expect_rate(robot.command_rate(), rate, situation, fraction=0.75)
-    first, then, accepted = _judged(workspace)
+    first, then, accepted = bench.judge(workspace)
     told = f"While validate judged a request for 25 Hz, the timer's period went from {first} to {then} ns"
     expect(first == then, f"{told}: another callback may still refuse it.", fraction=0.75)
     told = f"With 0.5 m and 1.0 m, it took {_values_text(request)}: it refused nothing"
@@ -231,7 +231,8 @@ def test_passes(robot: Robot) -> None:
     after=("contradiction", "rate_change", "passes"),
 )
 @hint("Pass over a name that you do not know: neither return nor break at it, wherever it stands in the request.")
-def test_beside_others(robot: Robot, draw: random.Random) -> None:
+@hint("ROS stores what is in the very list that validate gets: leave the list as it is.")
+def test_beside_others(robot: Robot, draw: random.Random, workspace: Workspace) -> None:
     """In a request that also names use_sim_time, the rest is judged and carried out as usual, in any order."""
     other = robot.parameters.values("use_sim_time")
     bad: dict[str, parameters.Value] = {
@@ -245,6 +246,9 @@ def test_beside_others(robot: Robot, draw: random.Random) -> None:
         request = {**other, **rate} if frequency > 10.0 else {**rate, **other}
         _change(robot, request)
         expect_rate(robot.command_rate(), frequency, f"After {_values_text(request)}", fraction=0.5)
+    stored = bench.set_use_sim_time(workspace)
+    told = "After a request for use_sim_time = True and slow_distance = 1.5, use_sim_time is still False"
+    expect(stored is not False, f"{told}: it is stored like any other.", fraction=0.5)
 
 
 def draw_beyond(draw: random.Random) -> tuple[float, float]:
@@ -256,39 +260,6 @@ def draw_four(draw: random.Random) -> tuple[float, float, float, float]:
     """Return distances that fit, safety and slow, and two that do not: far as a safety distance, near as a slow one."""
     safety, slow, far, near = ((10 * tenths + draw.randrange(2, 9)) / 100 for tenths in (7, 13, 19, 6))
     return safety, slow, far, near
-
-
-def _judged(workspace: Workspace) -> tuple[parameters.Value, parameters.Value, parameters.Value]:
-    """Ask validate alone, so that nothing is stored.
-
-    Returns:
-        The timer's period in ns before and after it judges 25 Hz; whether it takes a safety distance of 1.5 m after it
-        has judged a slow distance of 2.0 m. None from a node with other names.
-    """
-    plan = calls.Plan()
-    add = plan.add
-    add(calls.call("init", module="rclpy"))
-
-    def parameter(name: str, value: float) -> int:
-        return add(calls.call("Parameter", name, value=value, module="rclpy.parameter"))
-
-    def validate(parameter: int) -> int:
-        add(calls.call("clear", on=request))
-        add(calls.call("append", calls.made(parameter), on=request))
-        return add(calls.call("validate", calls.made(request), on=node))
-
-    def period() -> int:
-        return add(calls.look("timer_period_ns", on=add(calls.look("timer", on=node))))
-
-    node = add(calls.call("ConfiguredNode"))
-    request = add(calls.call("list", module="builtins"))
-    before = period()
-    validate(parameter("control_frequency", 25.0))
-    after = period()
-    validate(parameter("slow_distance", 2.0))
-    accepted = add(calls.look("successful", on=validate(parameter("safety_distance", 1.5))))
-    outcomes = calls.calls(workspace, f"{PACKAGE}.nodes.{EXECUTABLE}", *plan.steps, network=True)
-    return outcomes[before].value, outcomes[after].value, outcomes[accepted].value
 
 
 def _change(robot: Robot, request: Mapping[str, parameters.Value], fraction: float = 0.0) -> None:
