@@ -1,9 +1,15 @@
-"""Cleans text for pages and for terminals, because the output of a student's program may hold any character."""
+"""Cleans, shortens and compares text of students and their programs, which may hold any character and be very long."""
 
 from __future__ import annotations
 
+import difflib
 import re
 import unicodedata
+from collections.abc import Iterable
+from itertools import islice
+
+MAX_NAMES = 100  # that are compared with one word
+MAX_NAME = 200  # characters of a name that is compared
 
 # Terminal sequences for colours, cursor moves and window titles (ECMA-48: CSI and OSC).
 _TERMINAL = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)?")
@@ -24,6 +30,25 @@ def shorten(text: str, most: int) -> str:
         return text
     remark = f"… ({len(text):,} characters in all)"
     return text[: most - len(remark)] + remark
+
+
+def comparable(names: Iterable[str]) -> list[str]:
+    """Return those names, at most `MAX_NAMES`, that are short enough to compare.
+
+    To compare two names takes the product of their lengths, and a student's may be many and long.
+    """
+    return list(islice((name for name in names if len(name) <= MAX_NAME), MAX_NAMES))
+
+
+def nearest(word: str, names: Iterable[str], cutoff: float = 0.6) -> str:
+    """Return the name that `word` is probably a misspelling of, or the reverse; the empty string if there is none.
+
+    Args:
+        word: a text of the course's.
+        names: any number of them; of a student's, the first `MAX_NAMES` short ones are compared.
+        cutoff: the ratio of `difflib.SequenceMatcher` that the name has to have, in [0, 1].
+    """
+    return next(iter(difflib.get_close_matches(word, comparable(names), 1, cutoff)), "")
 
 
 # Controls of both sets, marks that are not seen or turn a line round, half surrogate pairs, and other ends of lines.

@@ -10,8 +10,9 @@ from autograder.grade.bounded_json import NOTEBOOK_VALUES, RESULT_VALUES, RUN_VA
 from autograder.grade.executed_notebook import MAX_BYTES
 from autograder.grade.reply import MAX_RESULT, MAX_SHOWN
 from autograder.harness.launch import MAX_STATUS
+from autograder.plain_text import MAX_NAME, MAX_NAMES
 from autograder.probes.imports import MAX_ALL_BYTES
-from autograder.probes.parameters import MAX_NAME, MAX_NAMES
+from autograder.probes.student_test_reports import MAX_SOURCES
 from autograder.run.fork_server import seccomp
 from autograder.run.lockstep.protocol import MAX_LINE
 from autograder.run.patience import HELD_SECONDS
@@ -140,8 +141,14 @@ def rows() -> list[tuple[str, str, str, str]]:
             "the worker",
             "test_result",
         ),
-        ("compared parameter names", f"{MAX_NAMES} of {MAX_NAME} characters", "the worker", "test_parameters"),
+        (
+            "names that are compared with a word",
+            f"{MAX_NAMES} of {MAX_NAME} characters",
+            "the worker",
+            "test_plain_text",
+        ),
         ("Python that is parsed for its imports", f"{_mib(MAX_ALL_BYTES)} in a package", "the worker", "test_imports"),
+        ("tests that are parsed for their names", _mib(MAX_SOURCES), "the worker", "test_student_test_reports"),
         ("an executed notebook", f"{_mib(MAX_BYTES)}, or it has no outputs", "the worker", ANSWER),
         ("pictures and runs on a page", _mib(MAX_SHOWN), "the process that starts the worker", ANSWER),
     ]

@@ -25,6 +25,7 @@ from autograder.harness import (
 )
 from autograder.harness.drive import COMMAND_TOPICS, SCAN_SECONDS, SENSOR_TOPICS
 from autograder.harness.launch import LaunchHarness, RunningProgram
+from autograder.plain_text import nearest
 from autograder.result.artifacts import Artifacts
 from autograder.run.sandbox import Process
 from autograder.run.time_record import LOCKSTEP, REAL
@@ -70,6 +71,7 @@ __all__ = [
     "group",
     "hint",
     "load_interfaces",
+    "nearest",
     "reading",
     "solution_path",
     "world_path",

@@ -6,7 +6,6 @@ Pure: texts go in, sentences come out. `rosidl_adapter`, the parser of the build
 from __future__ import annotations
 
 import contextlib
-import difflib
 import io
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from enum import Enum
 from typing import Any
 
 from autograder.building.interfaces import rosidl
+from autograder.plain_text import nearest
 
 MAX_BYTES = 64 * 1024
 PARTS = {"msg": ("",), "srv": ("request", "response"), "action": ("goal", "result", "feedback")}
@@ -138,8 +138,7 @@ def share(expected: Interface, differences: Sequence[Difference]) -> float:
 def closest(path: str, present: Sequence[str]) -> str:
     """Return the definition in `present` that is most likely meant by `path`, the empty string if none is."""
     by_case = {other.casefold(): other for other in present}
-    near = difflib.get_close_matches(path.casefold(), by_case, 1, cutoff=0.8)
-    return by_case[near[0]] if near else ""
+    return by_case.get(nearest(path.casefold(), by_case, 0.8), "")
 
 
 class _Comparison:
@@ -175,7 +174,7 @@ class _Comparison:
         for name in (name for name in expected if name not in actual):
             if name in self._elsewhere:
                 yield self._difference(Aspect.FIELDS, f"{name} is in the {self._elsewhere[name]}, it belongs here")
-            elif near := _near(name, [other for other in extra if other not in self._strayed]):
+            elif near := nearest(name, (other for other in extra if other not in self._strayed), _NEAR):
                 extra.remove(near)
                 yield self._difference(Aspect.FIELDS, f"a field is called {near}, it should be {name}")
             else:
@@ -213,7 +212,7 @@ class _Comparison:
             elif name.lower() in fields:
                 sentence = f"{name.lower()} is a field; a constant is written {constant.type} {name} = VALUE"
                 yield self._difference(Aspect.CONSTANTS, sentence)
-            elif near := _near(name, extra):
+            elif near := nearest(name, extra, _NEAR):
                 yield self._difference(Aspect.CONSTANTS, f"a constant is called {near}, it should be {name}")
             else:
                 yield self._difference(Aspect.CONSTANTS, f"the constant {name} is missing")
@@ -224,11 +223,6 @@ class _Comparison:
 
 def _names(part: Part) -> set[str]:
     return {field.name for field in part.fields} | {constant.name for constant in part.constants}
-
-
-def _near(name: str, others: Sequence[str]) -> str:
-    near = difflib.get_close_matches(name, others, 1, cutoff=_NEAR)
-    return near[0] if near else ""
 
 
 def _part(package: str, spec: Any) -> Part:

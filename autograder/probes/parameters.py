@@ -23,6 +23,7 @@ from rclpy.parameter import Parameter
 
 from autograder.harness import Harness
 from autograder.harness.parameter_values import value_of
+from autograder.plain_text import comparable
 from autograder.probes import student_yaml
 from autograder.probes.files import read_plain
 from autograder.submission.reading import beyond_bounds, reading, reason
@@ -35,8 +36,7 @@ SECONDS = 5.0  # of the node's time for an answer
 SHOWN = 200  # characters of a node's own words
 ALIKE = 0.6
 MAX_FILE = 64 * 1024
-MAX_NAMES = 100  # parameters of a node, and names that are compared with expected ones
-MAX_NAME = 200  # characters of a name that is compared
+MAX_PARAMETERS = 100  # of a node
 TYPES = {
     ParameterType.PARAMETER_NOT_SET: "of no type yet",
     ParameterType.PARAMETER_BOOL: "a bool",
@@ -65,8 +65,8 @@ class NodeParameters:
         """Return the names of all declared parameters, rclpy's own left out. CheckFailed: they are too many."""
         response = self._ask(ListParameters, "list_parameters", ListParameters.Request())
         names = frozenset(response.result.names) - OWN
-        if len(names) > MAX_NAMES:
-            raise CheckFailed(f"The node has {len(names):,} parameters: declare at most {MAX_NAMES}.")
+        if len(names) > MAX_PARAMETERS:
+            raise CheckFailed(f"The node has {len(names):,} parameters: declare at most {MAX_PARAMETERS}.")
         return names
 
     def values(self, *names: str) -> dict[str, Value]:
@@ -111,8 +111,7 @@ def shortened(text: str) -> str:
 def near_misses(expected: Collection[str], actual: Collection[str]) -> dict[str, str]:
     """Return the expected names that are missing, each with the actual name that is probably meant, or ''."""
     missing = sorted(set(expected) - set(actual))
-    # To compare two names takes the product of their lengths, so a student's are bounded.
-    extra = sorted(name for name in set(actual) - set(expected) if len(name) <= MAX_NAME)[:MAX_NAMES]
+    extra = comparable(sorted(set(actual) - set(expected)))
     likeness = {(name, other): SequenceMatcher(None, name, other).ratio() for name in missing for other in extra}
     near: dict[str, str] = {}
     for name, other in sorted(likeness, key=lambda pair: -likeness[pair]):

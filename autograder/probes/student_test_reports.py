@@ -11,7 +11,7 @@ import ast
 import hmac
 import secrets
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import PurePosixPath
@@ -24,6 +24,8 @@ from autograder.run.sandbox import ExitReason
 MAX_BYTES = 1024 * 1024
 MAX_MESSAGE = 300
 MAX_SOURCE = 256 * 1024  # bytes of a test file from which names are read
+MAX_SOURCES = 1024 * 1024  # bytes of all of them
+MAX_NAME = 300  # characters of such a name, with those of the classes that the test is in
 UNNAMED = "a test"  # the name for a test whose own name does not occur in the student's source
 _KEY = secrets.token_bytes(16)
 
@@ -142,25 +144,34 @@ class Source:
         return {name.removeprefix("test/"): data for name, data in self.files.items() if name.startswith("test/")}
 
     def test_names(self, files: tuple[str, ...]) -> frozenset[str]:
-        """Return the tests in test files, named as in a report. The files are parsed, not run."""
+        """Return the tests in test files, named as in a report. The files are parsed, not run.
+
+        Very long names, and files that are too large or too many, are left out: their tests are `UNNAMED`.
+        """
         names: set[str] = set()
+        tests, left = self.tests, MAX_SOURCES
         for name in files:
-            data = self.tests.get(name, b"")
-            tree = parse_python(data) if len(data) <= MAX_SOURCE else None
+            data = tests.get(name, b"")
+            if len(data) > min(MAX_SOURCE, left):
+                continue
+            left -= len(data)
+            tree = parse_python(data)
             for node in tree.body if tree else ():
-                stem = PurePosixPath(name).stem
-                names |= {f"{stem}::{test}" for test in _tests(node)}
+                names.update(_tests(node, PurePosixPath(name).stem))
         return frozenset(names)
 
 
-def _tests(node: ast.stmt) -> list[str]:
-    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-        return [node.name]
-    return (
-        [f"{node.name}::{test}" for inner in node.body for test in _tests(inner)]
-        if isinstance(node, ast.ClassDef)
-        else []
-    )
+def _tests(node: ast.stmt, place: str) -> Iterator[str]:
+    if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        return
+    name = f"{place}::{node.name}"
+    if len(name) > MAX_NAME:
+        return
+    if isinstance(node, ast.ClassDef):
+        for inner in node.body:
+            yield from _tests(inner, name)
+    else:
+        yield name
 
 
 def parse_claims(data: bytes) -> Claims | None:

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from autograder.plain_text import clean
+from autograder.plain_text import MAX_NAME, MAX_NAMES, clean, comparable, nearest
 
 
 @settings(deadline=None)
@@ -27,3 +27,15 @@ def test_ordinary_text_is_left_as_it_is(text: str) -> None:
 
 def test_colours_and_window_titles_of_a_terminal_are_dropped() -> None:
     assert clean("\x1b[1;31mFAILED\x1b[0m \x1b]0;title\x07done\r\n") == "FAILED done\n"
+
+
+def test_the_nearest_name_is_the_likeliest_misspelling() -> None:
+    assert nearest("/cmd_vel", ["/odom", "/cmd_val", "/scan"]) == "/cmd_val"
+    assert nearest("/cmd_vel", ["/odom"]) == ""
+
+
+def test_of_very_many_and_very_long_names_only_some_are_compared() -> None:
+    names = ["/cmd_vel" * 100_000, *(f"/cmd_val{number:06}" for number in range(300_000)), "/cmd_vel"]
+    assert nearest("/cmd_vel", names) != "/cmd_vel"
+    assert len(comparable(names)) == MAX_NAMES
+    assert max(map(len, comparable(names))) <= MAX_NAME

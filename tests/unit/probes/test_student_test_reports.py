@@ -7,8 +7,12 @@ import pytest
 from autograder.probes.student_test_reports import (
     MAX_BYTES,
     MAX_MESSAGE,
+    MAX_NAME,
+    MAX_SOURCE,
+    MAX_SOURCES,
     ClaimedOutcome,
     Claims,
+    Source,
     parse_claims,
 )
 
@@ -68,3 +72,27 @@ def test_bytes_that_are_not_a_valid_small_report_give_no_claims(data: bytes) -> 
 def test_a_report_has_the_outcome_of_each_test() -> None:
     claims = parse_claims(b'<testsuite><testcase classname="t" name="a"/></testsuite>')
     assert claims == Claims({"t::a": ClaimedOutcome.PASSED}, {"t::a": ""})
+
+
+def names_in(**files: str) -> frozenset[str]:
+    """Return the names of the tests in test files, by their names without the suffix."""
+    source = Source("speed", {f"test/{name}.py": text.encode() for name, text in files.items()})
+    return source.test_names(tuple(f"{name}.py" for name in files))
+
+
+def test_the_names_of_tests_are_read_from_functions_and_classes() -> None:
+    text = "def test_a(): pass\nclass TestB:\n class TestC:\n  async def test_d(self): pass\nnumber = 1"
+    assert names_in(test_speed=text) == {"test_speed::test_a", "test_speed::TestB::TestC::test_d"}
+
+
+def test_names_that_are_very_long_with_those_of_their_classes_are_left_out() -> None:
+    long = "A" * MAX_NAME
+    text = f"def test_{long}(): pass\nclass Test{long}:\n def test_b(self): pass\ndef test_c(): pass"
+    assert names_in(test_speed=text) == {"test_speed::test_c"}
+
+
+def test_only_some_bytes_of_all_test_files_are_read() -> None:
+    count = MAX_SOURCES // MAX_SOURCE
+    full = "def test_a(): pass\n".ljust(MAX_SOURCE, "#")
+    found = names_in(test_huge=full + "#", **{f"test_{number}": full for number in range(count + 2)})
+    assert found == {f"test_{number}::test_a" for number in range(count)}

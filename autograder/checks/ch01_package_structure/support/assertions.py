@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import configparser
 import contextlib
-import difflib
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
-from autograder.checking import OK, CheckFailed, Diagnosis, StudentError, Workspace, expect, find_packages
+from autograder.checking import OK, CheckFailed, Diagnosis, StudentError, Workspace, expect, find_packages, nearest
 from autograder.checking.probes import files, imports, installed, manifest
 from autograder.checks.ch01_package_structure.support import contract
 
@@ -104,8 +103,8 @@ def expect_shared(installation: installed.Installed, source: Path, name: str) ->
     data = installation.read(name)
     if data is None:
         there = [shared for shared in installation.shared if Path(shared).name == Path(name).name]
-        there = there or difflib.get_close_matches(name, installation.shared)
-        seen = f" ({there[0]} is)" if there else ""
+        near = there[0] if there else nearest(name, installation.shared)
+        seen = f" ({near} is)" if near else ""
         raise CheckFailed(
             f"share/{installation.package}/{name} was not installed{seen}: data_files in setup.py says what is."
         )

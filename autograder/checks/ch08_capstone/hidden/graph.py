@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from rclpy.node import Node
 
-from autograder.checking import Harness, expect
+from autograder.checking import Harness, expect, nearest
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, INTERFACES, MONITOR, PROCESSOR
 
 _SCAN, _CLEARANCE = "sensor_msgs/msg/LaserScan", f"{INTERFACES}/msg/Clearance"
@@ -61,8 +60,8 @@ def _describe_fault(node: Node, wanted: Endpoint) -> str:
     found = dict(_find(node, wanted.kind)(wanted.node, "/"))
     types = found.get(wanted.name)
     if types is None:
-        near = difflib.get_close_matches(wanted.name, found, 1, 0.5)
-        instead = f"; it has {near[0]}" if near else ""
+        near = nearest(wanted.name, found, 0.5)
+        instead = f"; it has {near}" if near else ""
         return f"{wanted.node} has no {wanted.kind} {wanted.name}{instead}."
     if list(types) != [wanted.type]:
         return f"{wanted.node}: {wanted.name} has the type {', '.join(types)}, instead of {wanted.type}."

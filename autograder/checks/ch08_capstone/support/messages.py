@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from autograder.checking import Workspace, expect, load_interfaces
+from autograder.checking import Workspace, expect, load_interfaces, nearest
 from autograder.checking.probes import files, interfaces
 from autograder.checks.ch08_capstone.support.contract import INTERFACES, LEVELS
 from autograder.checks.ch08_capstone.support.sources import source_of
@@ -107,7 +106,7 @@ def _differences_of_text(workspace: Workspace, wanted: Message) -> list[str]:
 
 def _field(message: str, name: str, kind: str, fields: Mapping[str, str]) -> str:
     if name not in fields:
-        near = _near(name, fields)
+        near = nearest(name, fields)
         return f"{message} has no field {name}{f'; it has {near}' if near else ''}."
     if fields[name] != kind:
         return f"{message}.{name} is {_word(fields[name])}, the contract asks {_word(kind)}."
@@ -116,11 +115,7 @@ def _field(message: str, name: str, kind: str, fields: Mapping[str, str]) -> str
 
 def _stands_for(name: str, wanted: Message, fields: Mapping[str, str]) -> bool:
     """Say whether a field that is not asked for was named as the near miss of one that is missing."""
-    return any(_near(missing, fields) == name for missing in wanted.fields if missing not in fields)
-
-
-def _near(name: str, fields: Mapping[str, str]) -> str:
-    return next(iter(difflib.get_close_matches(name, fields, 1, 0.6)), "")
+    return any(nearest(missing, fields) == name for missing in wanted.fields if missing not in fields)
 
 
 def _word(kind: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -23,6 +22,7 @@ from autograder.checking import (
     explain,
     find_packages,
     load_interfaces,
+    nearest,
 )
 from autograder.checking.probes import parameters
 from autograder.checks.ch09_assessment.support.contract import (
@@ -170,7 +170,7 @@ def near(one: float, other: float) -> bool:
 def _expect_topics(node: str, verb: str, found: Mapping[str, list[str]], wanted: Mapping[str, str]) -> None:
     for topic, kind in wanted.items():
         full = f"{INTERFACES}/msg/{kind}"
-        near = next(iter(difflib.get_close_matches(topic, found, 1, 0.5)), "")
+        near = nearest(topic, found, 0.5)
         instead = f", {node} {verb} {near}" if near else ""
         expect(topic in found, f"{node} should have {topic[1:]}{instead or ', and it has nothing like it'}.")
         expect(found[topic] == [full], f"{node} {verb} {topic} as {', '.join(found[topic])}, instead of {full}.")
