@@ -8,6 +8,7 @@ import sys
 
 import click
 
+from autograder.ros.domains import Domain
 from autograder.ros.environment import activate, find, path_with_scripts
 from autograder.ros.exceptions import RosError
 
@@ -19,6 +20,8 @@ def ros(command: tuple[str, ...]) -> None:
 
     Without a command, the environment variables are printed as shell code. `eval "$(autograder ros)"` is equivalent to
     sourcing the setup.bash of a ROS installation.
+
+    Unless ROS_DOMAIN_ID is set, COMMAND is in your ROS domain, which your notebooks share and no other user has.
     """
     sys.exit(_run(command))
 
@@ -26,11 +29,16 @@ def ros(command: tuple[str, ...]) -> None:
 def _run(command: tuple[str, ...]) -> int:
     """Replace this process by the command, or print the variables. Return the exit status if that fails."""
     try:
+        # The command, and all that it starts, must not choose again. For a shell, the number is only a promise.
+        domain = None if os.environ.get("ROS_DOMAIN_ID") else Domain(user=os.getuid())
+        number = None if domain is None else domain.number
         if not command:
-            for name, value in {**find().variables(), "PATH": path_with_scripts()}.items():
+            for name, value in {**find().variables(domain=number), "PATH": path_with_scripts()}.items():
                 click.echo(f"export {name}={shlex.quote(value)}")
             return 0
-        activate()
+        activate(domain=number)
+        if domain is not None:
+            domain.keep_in_next_program()
         os.execvp(command[0], command)
     except RosError as error:
         click.echo(f"ROS 2: {error}.", err=True)

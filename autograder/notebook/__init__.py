@@ -68,11 +68,11 @@ def ros() -> None:
 
     From then on, `%%writefile` never overwrites a student's changes from the editor (see `writefile`).
 
-    The kernel gets a separate ROS domain, unless `ROS_DOMAIN_ID` is set. Two notebooks, or two students on the same
-    network, therefore do not receive each other's messages.
+    Unless `ROS_DOMAIN_ID` is set, the kernel is in the user's ROS domain: with the user's other notebooks and what
+    `autograder ros` runs, and without other users' robots. When the notebook is graded, it has a domain for itself.
 
     Raises:
-        RosError: there is no usable ROS 2. The message says how to fix it.
+        RosError: there is no usable ROS 2, or no domain is left. The message says how to fix it.
     """
     if not grading():
         from IPython.core.getipython import get_ipython
@@ -82,8 +82,8 @@ def ros() -> None:
         writefile.register(get_ipython())
         # Where it is set, setuptools warns, and colcon shows a block "stderr" for a build without a fault.
         os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-    domain_id = os.environ.get("ROS_DOMAIN_ID")
-    activate(domain=Domain().number if domain_id is None else int(domain_id))
+    chosen = os.environ.get("ROS_DOMAIN_ID")
+    activate(domain=int(chosen) if chosen else Domain(user=None if grading() else os.getuid()).number)
     os.environ.update(LOGS_TO_STDOUT)
 
 

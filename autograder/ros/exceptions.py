@@ -2,7 +2,8 @@
 
 RosError
 ├── RosNotFoundError   neither a sourced ROS 2 nor the wheels are there
-└── WrongDistroError   a ROS 2 is sourced, but it is of another distribution
+├── WrongDistroError   a ROS 2 is sourced, but it is of another distribution
+└── NoDomainLeftError  each ROS domain of this machine is in use
 """
 
 
@@ -16,3 +17,7 @@ class RosNotFoundError(RosError):
 
 class WrongDistroError(RosError):
     """The sourced ROS 2 is of another distribution than the course's."""
+
+
+class NoDomainLeftError(RosError):
+    """Each ROS domain of this machine is in use."""

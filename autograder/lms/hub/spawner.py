@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import grp
 import os
+import pwd
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 from jupyterhub.spawner import LocalProcessSpawner
 from traitlets import Unicode
 
 from autograder.ros.domains import DOMAINS, Domain
+from autograder.ros.exceptions import NoDomainLeftError
 
 SYSTEM_PATH = "/usr/local/bin:/usr/bin:/bin"
 
 
-class NoDomainLeftError(Exception):
+class NoServerError(Exception):
     """All ROS domains of this machine are in use. The hub shows the message to the user."""
 
     jupyterhub_message = (
@@ -28,7 +30,7 @@ class CourseSpawner(LocalProcessSpawner):
     """Starts the servers of users of this machine with the course, ROS and nbgrader's exchange.
 
     A user's notebooks and terminals are all in one ROS domain, which the user keeps until the server stops. The hub
-    holds the claim, also after a restart of the hub.
+    holds a claim, also after a restart of the hub. What the user runs by `autograder ros` elsewhere is in it, too.
     """
 
     course = Unicode(help="The release that students run: a folder after `make setup`.").tag(config=True)
@@ -36,7 +38,6 @@ class CourseSpawner(LocalProcessSpawner):
     exchange = Unicode(help="nbgrader's exchange folder.").tag(config=True)
     teachers = Unicode(help="The group of this machine whose users are teachers.").tag(config=True)
 
-    _given: ClassVar[set[int]] = set()
     _domain: Domain | None = None
 
     async def start(self) -> Any:
@@ -77,21 +78,22 @@ class CourseSpawner(LocalProcessSpawner):
         return Path(self.repository if is_teacher else self.course)
 
     def claim_domain(self, number: int | None = None) -> None:
-        """Claim the first free domain, or the one that this user's running server has already.
+        """Claim the domain that the user has already, or a free one.
+
+        Args:
+            number: where to begin to look; the domain of this user's running server.
 
         Raises:
-            NoDomainLeftError: another user has each of them.
+            NoServerError: other users and programs have each of them.
         """
-        domain = Domain((number or DOMAINS[0]) - DOMAINS[0])
-        if domain.number in self._given:  # shared, since all are taken
-            domain.close()
-            raise NoDomainLeftError(NoDomainLeftError.jupyterhub_message)
-        self._given.add(domain.number)
-        self._domain = domain
+        try:
+            first = None if number is None else DOMAINS.index(number)
+            self._domain = Domain(first, user=pwd.getpwnam(self.user.name).pw_uid)
+        except NoDomainLeftError as error:
+            raise NoServerError(NoServerError.jupyterhub_message) from error
 
     def leave_domain(self) -> None:
         """Let another user have the domain."""
         if self._domain is not None:
-            self._given.discard(self._domain.number)
             self._domain.close()
             self._domain = None

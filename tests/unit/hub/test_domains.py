@@ -1,19 +1,33 @@
-"""No two users of a hub are in one ROS domain: above what there is, a server is refused with a sentence."""
+"""No two users of a hub are in one ROS domain, and where none is left, a server is refused with a sentence."""
 
 from __future__ import annotations
 
+import os
+import pwd
 from collections.abc import Iterator
+from types import SimpleNamespace
 
 import pytest
 
-from autograder.lms.hub.spawner import CourseSpawner, NoDomainLeftError
-from autograder.ros.domains import DOMAINS
+from autograder.lms.hub.spawner import CourseSpawner
+from autograder.ros.domains import DOMAINS, Domain
+from tests.unit.ros.test_domains import TAKE_ALL, alone
+
+NAMES = [user.pw_name for user in pwd.getpwall() if user.pw_uid not in (0, os.getuid())][:3]  # of any machine
+REFUSED = """
+from types import SimpleNamespace
+from autograder.lms.hub.spawner import CourseSpawner, NoServerError
+try:
+    CourseSpawner(user=SimpleNamespace(name="root")).claim_domain()
+except NoServerError as refused:
+    print(refused.jupyterhub_message)  # the hub shows it
+"""
 
 
 @pytest.fixture
 def spawners() -> Iterator[list[CourseSpawner]]:
-    """A list for spawners; in the end their servers are stopped."""
-    made: list[CourseSpawner] = []
+    """Spawners of three users; in the end their servers are stopped."""
+    made = [CourseSpawner(user=SimpleNamespace(name=name)) for name in NAMES]
     yield made
     for spawner in made:
         spawner.clear_state()
@@ -23,41 +37,32 @@ def domain_of(spawner: CourseSpawner) -> int:
     return int(spawner.get_state()["ros_domain"])
 
 
-def start_until_refused(spawners: list[CourseSpawner]) -> None:
-    """Let one user after the other start a server, as far as domains go, until one is refused."""
-    while True:
-        spawners.append(CourseSpawner())
-        spawners[-1].claim_domain()
+def test_each_user_has_a_domain_also_for_programs_that_the_hub_does_not_start(spawners: list[CourseSpawner]) -> None:
+    for spawner in spawners:
+        spawner.claim_domain()
+    assert len({domain_of(spawner) for spawner in spawners}) == len(spawners) == 3
+    with Domain(user=pwd.getpwnam(NAMES[0]).pw_uid) as elsewhere:
+        assert elsewhere.number == domain_of(spawners[0])
 
 
-def test_each_of_many_users_has_a_domain_and_the_next_one_is_told_why_there_is_none(
-    spawners: list[CourseSpawner],
-) -> None:
-    with pytest.raises(NoDomainLeftError, match="A server that is stopped gives its domain back") as refused:
-        start_until_refused(spawners)
-    assert refused.value.jupyterhub_message == str(refused.value)  # what the hub shows
-    with_domain = spawners[:-1]
-    assert len({domain_of(spawner) for spawner in with_domain}) == len(with_domain) <= len(DOMAINS)
-    assert len(with_domain) > 1
+def test_a_server_is_refused_with_a_sentence_if_no_domain_is_left() -> None:
+    assert alone(TAKE_ALL + REFUSED).stdout.startswith("All 101 ROS domains of this machine are in use. A server that")
 
 
 def test_a_server_that_was_stopped_gives_its_domain_to_another_user(spawners: list[CourseSpawner]) -> None:
-    with pytest.raises(NoDomainLeftError):
-        start_until_refused(spawners)
-    left = domain_of(spawners[0])
+    spawners[0].claim_domain()
+    number = domain_of(spawners[0])
     spawners[0].clear_state()
-    spawners.append(CourseSpawner())
-    spawners[-1].claim_domain()
-    assert domain_of(spawners[-1]) == left
+    spawners[1].claim_domain(number)
+    assert domain_of(spawners[1]) == number
 
 
 def test_a_hub_that_starts_again_keeps_the_domains_of_running_servers(spawners: list[CourseSpawner]) -> None:
-    spawners.extend((CourseSpawner(), CourseSpawner()))
     spawners[0].claim_domain()
     state = spawners[0].get_state()
     spawners[0].clear_state()  # the hub's process has ended
-    spawners[1].load_state(state)
-    assert domain_of(spawners[1]) == state["ros_domain"]
-    with pytest.raises(NoDomainLeftError):
-        start_until_refused(spawners)
-    assert [spawner for spawner in spawners[2:-1] if domain_of(spawner) == state["ros_domain"]] == []
+    again = CourseSpawner(user=SimpleNamespace(name=NAMES[0]))
+    again.load_state(state)
+    with Domain(DOMAINS.index(domain_of(again))) as other:
+        assert domain_of(again) == state["ros_domain"] != other.number
+    again.clear_state()
