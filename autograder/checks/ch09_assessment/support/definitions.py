@@ -17,12 +17,24 @@ def expect_definitions(workspace: Workspace) -> None:
     for path, text in MESSAGES.items():
         wanted = interfaces.parse(INTERFACES, path, text)
         try:
-            differences = interfaces.compare(wanted, interfaces.parse(INTERFACES, path, _text(folder, path)))
+            found = interfaces.parse(INTERFACES, path, _text(folder, path))
         except interfaces.Unreadable as error:
             raise CheckFailed(str(error)) from None
+        differences = (*interfaces.compare(wanted, found), *_empty_defaults(path, found))
         sentences += [difference.sentence for difference in differences]
         shares.append(interfaces.share(wanted, differences))
     expect(not sentences, " ".join(sentences[:3]), fraction=round(0.5 * sum(shares) / len(shares), 2))
+
+
+def _empty_defaults(path: str, found: interfaces.Interface) -> list[interfaces.Difference]:
+    """Return the defaults that change no value, which `compare` lets pass: the contract says "without defaults"."""
+    fields = [field for part in found.parts for field in part.fields if field.default is not None and not field.default]
+    return [
+        interfaces.Difference(
+            interfaces.Aspect.DEFAULTS, f"{path}: {field.name} has the default {field.default!r}, it should be none."
+        )
+        for field in fields
+    ]
 
 
 def _text(folder: Path, path: str) -> str:
