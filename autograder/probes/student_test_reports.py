@@ -65,13 +65,14 @@ class TestRun:
 
 @dataclass(frozen=True)
 class Report:
-    """The report of a run; all of it but `exit_reason`, `left` and `joined_domain` is the run's own claim."""
+    """The report of a run; all but `exit_reason`, `left`, `is_logging` and `joined_domain` is the run's own claim."""
 
     exit_reason: ExitReason | None  # how its process ended; None when the grader ended it after pytest was done
     status: int | None  # pytest's exit status, None when it never came to that
     claims: Claims  # the reported outcomes of its tests
-    left: int  # UDP sockets that were still open after the last test: each ROS context that is not ended holds some
+    left: int  # UDP sockets that were still open after the last test: each ROS context that still exists holds some
     output: str  # its output
+    is_logging: bool = False  # whether a log file was still open then: rclpy closes its own when no context is left
     joined_domain: bool = False  # whether a program joined the default domain, where the run was sniffed
     known: frozenset[str] | None = None  # of a closed report: the tests in the student's source, `module::name`
 

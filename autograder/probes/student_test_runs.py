@@ -186,15 +186,15 @@ def _start_pytest(spec: Sandbox, test_run: TestRun, arguments: list[str], launch
             os.close(go_read)
         with process:
             status = _status(status_read, process)
-            left = open_sockets(process.innermost()) if status is not None else 0
+            left, is_logging = leftovers(process.innermost()) if status is not None else (0, False)
             os.close(go_write)
             process.wait(spec.limits.wall_seconds)
             exit_reason = process.exit_reason
         report.seek(0)
         claims = None if status is None else parse_claims(report.read(MAX_BYTES + 1))
     if claims is None:
-        return Report(exit_reason, None, Claims(), left, process.output)
-    return Report(exit_reason, status, claims, left, process.output)
+        return Report(exit_reason, None, Claims(), left, process.output, is_logging)
+    return Report(exit_reason, status, claims, left, process.output, is_logging)
 
 
 def _status(descriptor: int, process: Process) -> int | None:
@@ -209,15 +209,13 @@ def _status(descriptor: int, process: Process) -> int | None:
         os.close(descriptor)
 
 
-def open_sockets(pid: int) -> int:
-    """Count the UDP sockets that a process holds."""
-    inodes = set()
+def leftovers(pid: int) -> tuple[int, bool]:
+    """Count the UDP sockets that a process holds, and look whether a log file is open."""
+    folder = Path("/proc") / str(pid)
     try:
-        for link in (Path("/proc") / str(pid) / "fd").iterdir():
-            target = str(link.readlink())
-            if target.startswith("socket:["):
-                inodes.add(target[len("socket:[") : -1])
-        rows = (Path("/proc") / str(pid) / "net" / "udp").read_text().splitlines()[1:]
+        targets = [str(link.readlink()) for link in (folder / "fd").iterdir()]
+        rows = (folder / "net" / "udp").read_text().splitlines()[1:]
     except OSError:
-        return 0
-    return sum(row.split()[9] in inodes for row in rows)
+        return 0, False
+    inodes = {target[len("socket:[") : -1] for target in targets if target.startswith("socket:[")}
+    return sum(row.split()[9] in inodes for row in rows), any(target.endswith(".log") for target in targets)

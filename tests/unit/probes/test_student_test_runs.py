@@ -272,10 +272,14 @@ def test_a_context_that_a_test_does_not_shut_down_is_detected(workspace: Workspa
     (left,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
     write(workspace, made + "    node.destroy_node()\n    rclpy.try_shutdown(context=context)\n")
     (clean,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    write(workspace, made + "    node.destroy_node()\n")
+    (dropped,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
     assert left.passed
     assert left.left > 0
     assert clean.passed
-    assert clean.left == 0
+    assert (clean.left, clean.is_logging) == (0, False)
+    assert dropped.passed
+    assert (dropped.left, dropped.is_logging) == (0, True)
 
 
 @pytest.mark.parametrize(
