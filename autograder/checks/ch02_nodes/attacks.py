@@ -32,6 +32,22 @@ CONTROLLER = f"{PACKAGE}/nodes/robot_controller.py"
 LEAVE_LINK = "import os\nif not os.path.islink('../../install/all'): os.symlink('/', '../../install/all')\n"
 WRITEFILE = f"%%writefile ws/src/{PACKAGE}/{CONTROLLER}\n"
 
+PUBLISH = "        self.cmd_vel_pub.publish(command)"
+COUNT = "        self.calls = getattr(self, 'calls', 0) + 1\n"
+# Name, description and first lines: robots that look at no scan, and touch little or nothing all the same.
+BLIND = (
+    (
+        "late driver",
+        "stands still for most of a drive, and then drives straight on",
+        f"{COUNT}        command = Twist()\n        command.linear.x = 0.3 if self.calls > 470 else 0.0\n",
+    ),
+    (
+        "circling driver",
+        "drives in small circles, whatever the lidar says",
+        "        command = Twist()\n        command.linear.x, command.angular.z = 0.1, 0.5\n",
+    ),
+)
+
 
 def package_writer(
     base: str | None,
@@ -146,6 +162,15 @@ def attacks() -> tuple[Attack, ...]:
             frozenset(
                 {"turns_when_blocked", "threshold", "nan", "blind", "stops_before_first_scan", "room", "corridor"}
             ),
+        ),
+        *(
+            Attack(
+                name,
+                description,
+                package_writer(None, replace={"        self.cmd_vel_pub.publish(command)": f"{lines}{PUBLISH}"}),
+                frozenset({"forward_when_clear", "turns_when_blocked", "nan", "room", "pillars", "corridor"}),
+            )
+            for name, description, lines in BLIND
         ),
         Attack(
             "nan commands",

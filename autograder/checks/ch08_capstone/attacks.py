@@ -7,6 +7,9 @@ from autograder.checking.attacks import FORGE_PASSES, FORGE_VERDICTS, STEAL_SECR
 CHAPTER = Chapter("08_capstone")
 PACKAGE = "robot_navigation_tutorial"
 MONITOR = f"{PACKAGE}/{PACKAGE}/status_monitor.py"
+CONTROLLER = f"{PACKAGE}/{PACKAGE}/navigation_controller.py"
+PUBLISH = "        self.publisher.publish(command)\n"
+DRIVES = frozenset({"touches_nothing", "keeps_its_mind", "gets_on", "stops_in_time", "drives_again"})
 READ_ARGUMENTS = """
 from pathlib import Path
 
@@ -74,6 +77,22 @@ def attacks() -> tuple[Attack, ...]:
             CHAPTER.write(files={f"{PACKAGE}/test/test_sectors.py": READ_ARGUMENTS}),
             frozenset({"sector_tests_find_faults"}),
             says="Your tests are content with",
+        ),
+        *(
+            Attack(
+                name,
+                description,
+                CHAPTER.write(swaps={CONTROLLER: (PUBLISH, f"        command = Twist()\n{line}{PUBLISH}")}),
+                frozenset({"drives", "turns", "stops", "enable"}) | DRIVES,
+            )
+            for name, description, line in (
+                ("creeping driver", "creeps on, whatever it knows", "        command.linear.x = 0.04\n"),
+                (
+                    "circling driver",
+                    "drives in small circles, whatever it knows",
+                    "        command.linear.x, command.angular.z = 0.1, 0.5\n",
+                ),
+            )
         ),
         *CHAPTER.evasions(
             "seldom",

