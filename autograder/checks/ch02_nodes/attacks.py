@@ -42,7 +42,7 @@ BLIND = (
         f"{COUNT}        command = Twist()\n        command.linear.x = 0.3 if self.calls > 470 else 0.0\n",
     ),
     (
-        "circling driver",
+        "circling robot",
         "drives in small circles, whatever the lidar says",
         "        command = Twist()\n        command.linear.x, command.angular.z = 0.1, 0.5\n",
     ),
