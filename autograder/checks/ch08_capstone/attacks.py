@@ -83,7 +83,7 @@ def attacks() -> tuple[Attack, ...]:
                 name,
                 description,
                 CHAPTER.write(swaps={CONTROLLER: (PUBLISH, f"        command = Twist()\n{line}{PUBLISH}")}),
-                frozenset({"drives", "turns", "stops", "enable"}) | DRIVES,
+                frozenset({"turns", "stops", "enable"}) | DRIVES,
             )
             for name, description, line in (
                 ("creeping driver", "creeps on, whatever it knows", "        command.linear.x = 0.04\n"),
