@@ -14,7 +14,7 @@ from urllib.parse import urljoin
 import nbformat
 import pytest
 from nbformat import NotebookNode
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Page, expect
 
 from autograder import course_paths
 from autograder.author.course.forms import Form, in_form
@@ -134,20 +134,31 @@ def grade_by_hand(room: Classroom, everybody: list[Student], home: Path, chromiu
         page = context.new_page()
         page.set_default_timeout(PATIENCE * 1000)
         page.goto(f"{server.url}/login?token={server.token}")
-        page.goto(f"{server.url}/formgrader/gradebook/{ASSIGNMENT}/{ASSIGNMENT}")
-        listed = page.locator("a.name-hidden[href*='/submissions/']")
-        expect(listed).to_have_count(len(everybody), timeout=PATIENCE * 1000)
-        for link in [str(each.get_attribute("href")) for each in listed.all()]:
-            page.goto(urljoin(server.url, link))
-            page.wait_for_function("window.formgrader?.grades?.loaded")  # before, it does not hear what is typed
-            words = page.locator("body").inner_text()
-            assert SCHEME in words
-            for text in [text for text in points if text in words]:
-                score = page.locator(f"input#{QUESTION}.score")
-                score.fill(f"{points.pop(text):g}")
-                with page.expect_response(
-                    lambda answer: "/api/grade/" in answer.url and answer.request.method == "PUT"
-                ):
-                    score.press("Tab")
+        give_points(page, f"{server.url}/formgrader", len(everybody), points)
     context.close()
-    assert points == {}
+
+
+def give_points(page: Page, formgrader: str, submissions: int, points: dict[str, float]) -> None:
+    """Open each submission in formgrader, and give the answer that contains a text its points.
+
+    Args:
+        page: of the person who grades, logged in.
+        formgrader: the address of formgrader.
+        submissions: how many are listed.
+        points: the points by the texts; each is in one submission.
+    """
+    page.goto(f"{formgrader}/gradebook/{ASSIGNMENT}/{ASSIGNMENT}")
+    listed = page.locator("a.name-hidden[href*='/submissions/']")
+    expect(listed).to_have_count(submissions, timeout=PATIENCE * 1000)
+    left = dict(points)
+    for link in [str(each.get_attribute("href")) for each in listed.all()]:
+        page.goto(urljoin(formgrader, link))
+        page.wait_for_function("window.formgrader?.grades?.loaded")  # before, it does not hear what is typed
+        words = page.locator("body").inner_text()
+        assert SCHEME in words
+        for text in [text for text in left if text in words]:
+            score = page.locator(f"input#{QUESTION}.score")
+            score.fill(f"{left.pop(text):g}")
+            with page.expect_response(lambda answer: "/api/grade/" in answer.url and answer.request.method == "PUT"):
+                score.press("Tab")
+    assert left == {}

@@ -29,12 +29,11 @@ ABOUT = (
 )
 
 CLOSED = closed_to_other_users(Path(sys.executable).resolve(), course_paths.ROOT)
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.timeout(1800),
+ON_A_HUB = [
     pytest.mark.skipif(os.geteuid() != 0, reason="only root can start the servers of other users"),
     pytest.mark.skipif(CLOSED is not None, reason=str(CLOSED)),
 ]
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(1800), *ON_A_HUB]
 
 
 @pytest.fixture
