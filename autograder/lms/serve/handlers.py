@@ -4,6 +4,7 @@
     GET  ./feedback/NUMBER                the page of one; 403 for another student's
     GET  ./class/ASSIGNMENT               the class, for instructors
     GET  ./class/ASSIGNMENT/results.json  its results that count, for `autograder export`
+    POST ./class/ASSIGNMENT/regrade       lets all that the class handed in be graded again
     PUT  ./hand-ins/ASSIGNMENT/KEY        hands in the body, by a token of the hub's
 
 The same key again is the same hand-in: a client that got no answer can ask again.
@@ -11,12 +12,8 @@ The same key again is the same hand-in: a client that got no answer can ask agai
 
 from __future__ import annotations
 
-import asyncio
 import json
 import sqlite3
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from datetime import datetime, timezone
 from http import HTTPStatus
 from typing import Any
 
@@ -25,27 +22,12 @@ from tornado.web import Application, HTTPError, RequestHandler, stream_request_b
 
 from autograder.grade.store import RESULT
 from autograder.lms.serve import pages
-from autograder.lms.serve.grading import Grader
 from autograder.lms.serve.hand_in import HandIn, counting
-from autograder.lms.serve.settings import AssignmentSettings, Settings, Shown
-from autograder.lms.serve.store import Store
+from autograder.lms.serve.settings import AssignmentSettings, Shown
+from autograder.lms.serve.shared import Refused, Service
 from autograder.notebook.handing_in import MAX_ANSWER
 
-MOST_QUESTIONS = 8  # to the hub at once
 KEY = r"[0-9a-f]{32}"  # of a hand-in, which its client draws
-
-
-@dataclass(frozen=True)
-class Service:
-    """The handlers' shared state. `now` returns the current time, with its zone."""
-
-    settings: Settings
-    store: Store
-    grader: Grader
-    prefix: str
-    now: Callable[[], datetime] = lambda: datetime.now(timezone.utc)
-    # A whole class at once waits here: in the queue of the client that asks the hub, it would time out.
-    asking: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MOST_QUESTIONS))
 
 
 def application(service: Service, cookie_secret: bytes) -> Application:
@@ -55,6 +37,7 @@ def application(service: Service, cookie_secret: bytes) -> Application:
         (r"feedback/([0-9]{1,9})", Feedback),
         (r"class/([^/]+)", Class),
         (r"class/([^/]+)/results\.json", Results),
+        (r"class/([^/]+)/regrade", Regrade),
         (rf"hand-ins/([^/]+)/({KEY})", HandingIn),
         ("oauth_callback", HubOAuthCallbackHandler),
     ]
@@ -64,14 +47,6 @@ def application(service: Service, cookie_secret: bytes) -> Application:
         cookie_secret=cookie_secret,
         default_handler_class=NotThere,
     )
-
-
-class Refused(HTTPError):
-    """An answer to a wrong request: a status, and the sentence that its page or its JSON says."""
-
-    def __init__(self, status: int, sentence: str) -> None:
-        super().__init__(status, sentence)
-        self.sentence = sentence
 
 
 class Known(HubOAuthenticated, RequestHandler):
@@ -180,8 +155,20 @@ class Class(Known):
         self.require_instructor()
         self.assignment(assignment)
         store = self.service.store
-        hand_ins, waiting = store.of_assignment(assignment), len(store.waiting())
-        self.finish(pages.class_page(self.service.settings, assignment, hand_ins, waiting, self.service.prefix))
+        hand_ins, waiting, form = store.of_assignment(assignment), len(store.waiting()), self.xsrf_form_html()
+        self.finish(pages.class_page(self.service.settings, assignment, hand_ins, waiting, self.service.prefix, form))
+
+
+class Regrade(Known):
+    """Grades a class again, for example after a check was fixed."""
+
+    async def post(self, assignment: str) -> None:
+        """Let each graded answer wait again. The hub's library has checked that a page of the service sent the form."""
+        self.require_instructor()
+        self.assignment(assignment)
+        self.service.store.grade_again(assignment)
+        await self.service.grader.notify()
+        self.redirect(f"{self.service.prefix}class/{assignment}")
 
 
 class Results(Known):
@@ -225,10 +212,11 @@ class HandingIn(Known):
 
     async def put(self, assignment: str, key: str) -> None:
         """Keep the answer, and acknowledge it once it is on the disk."""
-        service, each, now = self.service, self.assignment(assignment), self.service.now()
+        self.assignment(assignment)
+        service, now = self.service, self.service.now()
         known = service.store.with_key(self.student, key)
         if known is None:
-            self._require_a_try(assignment, each, now)
+            service.require_a_try(self.student, assignment, now)
             if not self._answer:
                 raise Refused(400, "The answer is empty.")
             try:
@@ -243,23 +231,10 @@ class HandingIn(Known):
             {
                 "number": known.number,
                 "handed_in": known.at.isoformat(),
-                "tries_left": self._tries_left(assignment, now),
+                "tries_left": service.tries_left(self.student, assignment, now),
                 "page": f"{service.prefix}feedback/{known.number}",
             }
         )
-
-    def _require_a_try(self, assignment: str, each: AssignmentSettings, now: datetime) -> None:
-        due = each.due_of(self.student)
-        if due is not None and not each.is_open(self.student, now):
-            when = due.astimezone(self.service.settings.zone).strftime(pages.TIME)
-            raise Refused(403, f"{assignment} was due at {when}. Ask your instructor.")
-        if self._tries_left(assignment, now) == 0:
-            raise Refused(429, f"You have handed in {each.tries_a_day} times today. Hand in again tomorrow.")
-
-    def _tries_left(self, assignment: str, now: datetime) -> int:
-        own = self.service.store.of_student(self.student)
-        times = [one.at for one in own if one.assignment == assignment and one.costs_a_try]
-        return self.service.settings.tries_left(assignment, times, now)
 
     def write_error(self, status_code: int, **more: Any) -> None:
         self.set_header("Content-Type", "application/json")

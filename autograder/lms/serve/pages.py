@@ -108,8 +108,13 @@ def home(student: str, listed: Sequence[Section], *, teaches: bool, prefix: str,
     return _render("serve_home.html.j2", student=student, sections=listed, teaches=teaches, prefix=prefix, zone=zone)
 
 
-def class_page(settings: Settings, assignment: str, hand_ins: Sequence[HandIn], waiting: int, prefix: str) -> str:
-    """Return the page of a class for its instructors: a row for each student, with the mark that counts."""
+def class_page(
+    settings: Settings, assignment: str, hand_ins: Sequence[HandIn], waiting: int, prefix: str, form: str
+) -> str:
+    """Return the page of a class for its instructors: a row for each student, with the mark that counts.
+
+    `form` is the hidden field by which the service knows a form of its own page.
+    """
     best = settings.assignments[assignment].best_counts
     listed = []
     for student in sorted({one.student for one in hand_ins}):
@@ -118,7 +123,9 @@ def class_page(settings: Settings, assignment: str, hand_ins: Sequence[HandIn], 
         state = "waits" if counted.mark is None else counted.mark.status.words
         at = counted.at.astimezone(settings.zone).strftime(TIME)
         listed.append((student, len(own), Row(counted, at, state, points_text(counted))))
-    return _render("serve_class.html.j2", assignment=assignment, rows=listed, waiting=waiting, prefix=prefix)
+    graded = sum(one.mark is not None for one in hand_ins)
+    values = {"assignment": assignment, "rows": listed, "waiting": waiting, "prefix": prefix}
+    return _render("serve_class.html.j2", **values, graded=graded, form=form)
 
 
 def feedback(hand_in: HandIn, folder: Path, shown: Shown) -> bytes:

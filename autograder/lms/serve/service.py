@@ -14,9 +14,11 @@ from urllib.parse import urlsplit
 from tornado.httpserver import HTTPServer
 
 from autograder.exceptions import UsageError
+from autograder.lms.serve.exchange import Exchange
 from autograder.lms.serve.grading import Grader, Way
-from autograder.lms.serve.handlers import Service, application
+from autograder.lms.serve.handlers import application
 from autograder.lms.serve.settings import Settings
+from autograder.lms.serve.shared import Service
 from autograder.lms.serve.store import Store
 from autograder.notebook.handing_in import MAX_ANSWER
 from autograder.run.sandbox import require
@@ -74,4 +76,7 @@ async def _serve(settings: Settings, store: Store, way: Way, place: Address) -> 
         server.listen(place.port, place.host)
     except OSError as error:
         raise UsageError(f"{place.host}:{place.port}: cannot listen there ({os.strerror(error.errno or 0)})") from None
-    await grader.run()
+    if settings.exchange is None:
+        await grader.run()
+    else:
+        await asyncio.gather(grader.run(), Exchange(service, settings.exchange).watch())

@@ -2,6 +2,7 @@
 
     instructors: [grace]              they see the class and everybody's feedback
     timezone: Europe/Berlin           of the times below, and of the day of the tries; UTC by default
+    exchange: /srv/ros2/exchange/ros2-python/inbound   what students submit there is graded, too
     assignments:
       10_mapping:
         due: 2026-10-12 23:59         nothing is taken after it; never by default
@@ -75,6 +76,7 @@ class Settings:
     assignments: Mapping[str, AssignmentSettings]
     instructors: frozenset[str] = frozenset()
     zone: tzinfo = timezone.utc
+    exchange: Path | None = None
 
     def tries_left(self, assignment: str, earlier: Iterable[datetime], now: datetime) -> int:
         """Return how often a student, with hand-ins at these times, can hand in today."""
@@ -88,7 +90,7 @@ def read_settings(path: Path) -> Settings:
     try:
         top = _composed(path)
         read = Reader(path, Units())
-        fields = read.fields(top, "the file", ("assignments",), ("instructors", "timezone"))
+        fields = read.fields(top, "the file", ("assignments",), ("instructors", "timezone", "exchange"))
         zone = _zone(read, fields.get("timezone"))
         instructors = (_text(read, node, "an instructor") for node in _items(read, fields.get("instructors")))
         names = suites.graded_assignments()
@@ -96,7 +98,7 @@ def read_settings(path: Path) -> Settings:
         assignments = {name: _assignment(read, name, node, zone) for name, node in entries.items()}
         if not assignments:
             raise bad(path, fields["assignments"], "there is no assignment", f"Name one, such as {names[0]}")
-        return Settings(assignments, frozenset(instructors), zone)
+        return Settings(assignments, frozenset(instructors), zone, _exchange(read, fields.get("exchange")))
     except WorldError as error:  # of the readers that the simulator's files have, too
         raise UsageError(str(error)) from None
 
@@ -163,6 +165,16 @@ def _time(read: Reader, node: yaml.Node, what: str, zone: tzinfo) -> datetime:
     if len(text) <= len("2026-10-12"):  # Python takes a day for its first instant, and people for its last
         raise bad(read.path, node, f"{what} has no time of day", f"Write {text} 23:59")
     return time if time.tzinfo is not None else time.replace(tzinfo=zone)
+
+
+def _exchange(read: Reader, node: yaml.Node | None) -> Path | None:
+    if node is None:
+        return None
+    path = Path(_text(read, node, "exchange"))
+    if not path.is_absolute() or path.name != "inbound":
+        example = "/srv/ros2/exchange/ros2-python/inbound"
+        raise bad(read.path, node, f"exchange is {str(path)!r}", f"Give the course's folder in it, such as {example}")
+    return path
 
 
 def _zone(read: Reader, node: yaml.Node | None) -> tzinfo:

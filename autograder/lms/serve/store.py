@@ -108,6 +108,15 @@ class Store:
                 (mark.status.value, mark.points, mark.max_points, number),
             )
 
+    def grade_again(self, assignment: str) -> None:
+        """Let all graded hand-ins of an assignment wait again. They have no marks until then."""
+        with self._transaction():
+            self._base.execute(
+                "UPDATE hand_in SET turn = NULL, status = NULL, points = NULL, max_points = NULL WHERE assignment = ? "
+                "AND status NOT NULL",
+                (assignment,),
+            )
+
     def folder(self, number: int) -> Path:
         """Return the folder of a hand-in's result."""
         return self._gradings / f"{number:06}"

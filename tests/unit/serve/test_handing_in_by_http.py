@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import http.cookiejar
 import json
+import re
 import urllib.parse
 import urllib.request
 from pathlib import Path
@@ -152,22 +153,48 @@ def test_students_take_turns_however_much_one_of_them_hands_in(classroom: Classr
     assert order.read_text().split() == ["ada", "bob", "cleo", "ada", "bob", "ada", "ada"]
 
 
-def test_a_browser_is_sent_to_the_login_of_the_hub_and_back(classroom: Classroom) -> None:
-    started(classroom)
-    classroom.hand_in("ada", answer())
+def logged_in(classroom: Classroom, user: str) -> tuple[urllib.request.OpenerDirector, str]:
+    """Log a user in by the hub's form; return the browser, and the page to which it is sent back."""
     jar = http.cookiejar.CookieJar()
     browser = urllib.request.build_opener(urllib.request.HTTPCookieProcessor(jar))
     with browser.open(classroom.url) as reply:
         assert urllib.parse.urlsplit(reply.url).path == "/hub/login"
         login = reply.url
     secret = next(cookie.value for cookie in jar if cookie.name == "_xsrf" and cookie.path == "/hub/")
-    form = urllib.parse.urlencode({"username": "ada", "password": "", "_xsrf": secret}).encode()
+    form = urllib.parse.urlencode({"username": user, "password": "", "_xsrf": secret}).encode()
     with browser.open(login, form) as reply:
         assert reply.url.startswith(classroom.url)
-        page = reply.read().decode()
+        return browser, reply.read().decode()
+
+
+def test_a_browser_is_sent_to_the_login_of_the_hub_and_back(classroom: Classroom) -> None:
+    started(classroom)
+    classroom.hand_in("ada", answer())
+    browser, page = logged_in(classroom, "ada")
     assert "<h1>Handed in</h1>" in page
     with pytest.raises(urllib.error.HTTPError, match="403"):  # a cookie hands nothing in
         browser.open(urllib.request.Request(f"{classroom.url}hand-ins/02_nodes/{KEY}", answer(), method="PUT"))
+
+
+def test_an_instructor_lets_a_class_be_graded_again(classroom: Classroom) -> None:
+    started(classroom)
+    order = classroom.folder / serving.ORDER
+    for student in ("ada", "bob"):
+        classroom.hand_in(student, answer(student))
+    classroom.wait_for_marks(2)
+    address = f"{classroom.url}class/02_nodes"
+    assert ask(f"{address}/regrade", classroom.hub.token("ada"), "POST", b"")[0] == 403
+    browser, _ = logged_in(classroom, "grace")
+    with pytest.raises(urllib.error.HTTPError, match="403"):  # a form of another page
+        browser.open(f"{address}/regrade", b"")
+    assert len(order.read_text().split()) == 2
+    with browser.open(address) as reply:
+        (field,) = re.findall(r'<input type="hidden" name="_xsrf" value="([^"]*)"', reply.read().decode())
+    with browser.open(f"{address}/regrade", urllib.parse.urlencode({"_xsrf": field}).encode()) as reply:
+        assert reply.url == address
+    classroom.wait(lambda: len(order.read_text().split()) == 4)
+    classroom.wait_for_marks(2)
+    assert sorted(order.read_text().split()) == ["ada", "ada", "bob", "bob"]
 
 
 def handed_in_at_once(classroom: Classroom, students: int) -> None:

@@ -12,6 +12,7 @@ from autograder.lms.serve.settings import AssignmentSettings, Settings, Shown, r
 WHOLE = """
 instructors: [grace, alan]
 timezone: Europe/Berlin
+exchange: /srv/exchange/ros2-python/inbound
 assignments:
   02_nodes:
     due: 2026-10-12 23:59
@@ -37,6 +38,7 @@ def test_all_that_can_be_set_is_read(tmp_path: Path) -> None:
     later = DUE + timedelta(days=7)
     assert found.instructors == {"grace", "alan"}
     assert found.zone == BERLIN
+    assert found.exchange == Path("/srv/exchange/ros2-python/inbound")
     assert found.assignments == {
         "02_nodes": AssignmentSettings(DUE, 3, Shown.POINTS, best_counts=True, extensions={"ada": later}),
         "01_package_structure": AssignmentSettings(),
@@ -46,25 +48,31 @@ def test_all_that_can_be_set_is_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("line", "instead", "said"),
     [
-        ("due: 2026-10-12 23:59", "due: tomorrow", "5: due is 'tomorrow'. Give a time such as 2026-10-12 23:59"),
-        ("due: 2026-10-12 23:59", "due: 2026-10-12", "5: due has no time of day. Write 2026-10-12 23:59"),
-        ("due: 2026-10-12 23:59", "due:", "5: due is blank"),
-        ("tries_a_day: 3", "tries_a_day: 0", "6: tries_a_day is 0. Give a whole number from 1 to 1000"),
-        ("tries_a_day: 3", "tries_a_day: many", "6: tries_a_day is 'many'. Give a number"),
-        ("tries_a_day: 3", "trys_a_day: 3", "6: 02_nodes has no field 'trys_a_day'. Did you mean 'tries_a_day'?"),
-        ("shown: points", "shown: all", "7: shown is 'all'. Give everything or visible or points or nothing"),
-        ("counts: best", "counts: mean", "8: counts is 'mean'. Give best or last"),
-        ("extensions: {ada: 2026-10-19 23:59}", "extensions: [ada]", "9: extensions are not a mapping"),
-        ("ada: 2026-10-19 23:59", "ada: later", "9: the extension of ada is 'later'"),
-        ("  02_nodes:", "  02_node:", "4: assignments has no field '02_node'. Did you mean '02_nodes'?"),
-        ("  01_package_structure:", "  02_nodes:", "10: assignments has the field '02_nodes' twice"),
+        ("inbound", "outbound", "3: exchange is '/srv/exchange/ros2-python/outbound'. Give the course's folder in it"),
+        (
+            "/srv/exchange/",
+            "exchange/",
+            "3: exchange is 'exchange/ros2-python/inbound'. Give the course's folder in it",
+        ),
+        ("due: 2026-10-12 23:59", "due: tomorrow", "6: due is 'tomorrow'. Give a time such as 2026-10-12 23:59"),
+        ("due: 2026-10-12 23:59", "due: 2026-10-12", "6: due has no time of day. Write 2026-10-12 23:59"),
+        ("due: 2026-10-12 23:59", "due:", "6: due is blank"),
+        ("tries_a_day: 3", "tries_a_day: 0", "7: tries_a_day is 0. Give a whole number from 1 to 1000"),
+        ("tries_a_day: 3", "tries_a_day: many", "7: tries_a_day is 'many'. Give a number"),
+        ("tries_a_day: 3", "trys_a_day: 3", "7: 02_nodes has no field 'trys_a_day'. Did you mean 'tries_a_day'?"),
+        ("shown: points", "shown: all", "8: shown is 'all'. Give everything or visible or points or nothing"),
+        ("counts: best", "counts: mean", "9: counts is 'mean'. Give best or last"),
+        ("extensions: {ada: 2026-10-19 23:59}", "extensions: [ada]", "10: extensions are not a mapping"),
+        ("ada: 2026-10-19 23:59", "ada: later", "10: the extension of ada is 'later'"),
+        ("  02_nodes:", "  02_node:", "5: assignments has no field '02_node'. Did you mean '02_nodes'?"),
+        ("  01_package_structure:", "  02_nodes:", "11: assignments has the field '02_nodes' twice"),
         ("Europe/Berlin", "Europe/Atlantis", "2: there is no time zone 'Europe/Atlantis'"),
         ("Europe/Berlin", "../../etc/passwd", "2: there is no time zone"),
         ("[grace, alan]", "grace", "1: instructors is 'grace'. Give a list"),
         ("timezone", "timezones", "2: the file has no field 'timezones'"),
         ("assignments:", "assignments: [", ": this is not YAML"),
         ("instructors: [grace, alan]", "- instructors", ": this is not YAML"),
-        ("    due: 2026-10-12 23:59\n", "", "8: 02_nodes has extensions and is never due"),
+        ("    due: 2026-10-12 23:59\n", "", "9: 02_nodes has extensions and is never due"),
     ],
 )
 def test_a_mistake_is_named_with_its_line(tmp_path: Path, line: str, instead: str, said: str) -> None:

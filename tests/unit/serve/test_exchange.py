@@ -1,0 +1,121 @@
+"""What students submit through nbgrader's exchange is taken once, as its owner's, with the owner's rights."""
+
+from __future__ import annotations
+
+import os
+import pwd
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from autograder.exceptions import StudentError, UsageError
+from autograder.lms.serve.exchange import LAST, Submitted, find, pack
+from autograder.notebook.handing_in import MAX_ANSWER
+from autograder.submission import intake
+from tests.unit.serve import serving
+from tests.unit.serve.classroom import Classroom
+
+STUDENT = pwd.getpwuid(os.geteuid()).pw_name
+NOBODY = pwd.getpwnam("nobody")
+MANIFEST = "ws/src/package/package.xml"
+SETTINGS = """
+instructors: [grace]
+exchange: INBOUND
+assignments:
+  02_nodes: {tries_a_day: 2}
+"""
+needs_root = pytest.mark.skipif(os.geteuid() != 0, reason="only root can give a file to another user")
+
+
+@pytest.fixture
+def inbound() -> Iterator[Path]:
+    """The folder into which students submit; other users can enter it."""
+    with tempfile.TemporaryDirectory(dir="/tmp") as folder:
+        place = Path(folder)
+        place.chmod(0o755)
+        (place / "inbound").mkdir()
+        yield place / "inbound"
+
+
+def submit(inbound: Path, random: str, student: str = STUDENT, assignment: str = "02_nodes") -> Path:
+    """Submit an assignment as nbgrader does; return the folder."""
+    folder = inbound / f"{student}+{assignment}+2026-05-04 09:00:00 UTC+{random}"
+    (folder / MANIFEST).parent.mkdir(parents=True)
+    (folder / MANIFEST).write_text(student)
+    (folder / LAST).touch()
+    return folder
+
+
+def only(inbound: Path) -> Submitted:
+    (submitted,) = find(inbound)
+    return submitted
+
+
+def test_a_submission_is_found_when_nbgrader_has_written_its_last_file(inbound: Path) -> None:
+    assert list(find(inbound / "missing")) == []
+    folder = submit(inbound, "r4nd0m")
+    (folder / LAST).unlink()
+    assert list(find(inbound)) == []
+    (folder / LAST).touch()
+    found = only(inbound)
+    assert (found.student, found.assignment, found.folder) == (STUDENT, "02_nodes", folder)
+
+
+def test_a_submission_in_the_name_of_another_user_is_none(inbound: Path) -> None:
+    submit(inbound, "r4nd0m", student="somebody-else")
+    (inbound / f"{STUDENT}+02_nodes+link").symlink_to(submit(inbound, "own"))
+    assert only(inbound).folder.name.endswith("+own")
+
+
+def test_a_packed_submission_is_read_like_an_answer_from_a_notebook(inbound: Path, tmp_path: Path) -> None:
+    submit(inbound, "r4nd0m")
+    (tmp_path / "answer.zip").write_bytes(pack(only(inbound)))
+    files = {str(file.path): file.data for file in intake.read_files(tmp_path / "answer.zip", "02_nodes")}
+    assert files[MANIFEST] == STUDENT.encode()
+
+
+def test_a_link_is_packed_as_a_link(inbound: Path, tmp_path: Path) -> None:
+    folder = submit(inbound, "r4nd0m")
+    (tmp_path / "secret").write_text("SECRET")
+    (folder / MANIFEST).unlink()
+    (folder / MANIFEST).symlink_to(tmp_path / "secret")
+    (tmp_path / "answer.zip").write_bytes(pack(only(inbound)))
+    with pytest.raises(StudentError, match="link"):
+        intake.read_files(tmp_path / "answer.zip", "02_nodes")
+
+
+@needs_root
+def test_a_file_that_its_student_cannot_read_is_not_packed(inbound: Path) -> None:
+    folder = submit(inbound, "r4nd0m", student=NOBODY.pw_name)
+    for path in (folder, *folder.rglob("*")):
+        os.chown(path, NOBODY.pw_uid, NOBODY.pw_gid)
+    assert pack(only(inbound))
+    (folder / "hard link").write_text("SECRET")  # of root, and closed to others
+    (folder / "hard link").chmod(0o600)
+    with pytest.raises(UsageError, match="tar ended with 2"):
+        pack(only(inbound))
+
+
+def test_a_submission_that_is_too_large_is_refused(inbound: Path) -> None:
+    (submit(inbound, "r4nd0m") / "noise").write_bytes(os.urandom(MAX_ANSWER + 1))
+    with pytest.raises(UsageError, match="its archive is larger than 16 MiB"):
+        pack(only(inbound))
+
+
+def test_submissions_are_graded_once_and_by_the_rules_of_the_settings(classroom: Classroom, inbound: Path) -> None:
+    classroom.settings = SETTINGS.replace("INBOUND", str(inbound))
+    for number in range(3):  # one more than the tries of a day
+        submit(inbound, f"r{number}")
+    submit(inbound, "other", assignment="03_interfaces")
+    classroom.start()
+    order = classroom.folder / serving.ORDER
+    classroom.wait(lambda: order.exists() and len(order.read_text().split()) == 2)
+    classroom.wait_for_marks(1)
+    classroom.kill()
+    classroom.start()
+    classroom.wait(classroom.listens)
+    submit(inbound, "late")
+    classroom.wait(lambda: "53 of 53" in classroom.get(STUDENT)[1])
+    assert order.read_text().split() == [STUDENT] * 2
