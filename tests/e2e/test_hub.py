@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -63,6 +64,13 @@ def hand_in(student: User, *, flawed: bool) -> list[str]:
     return about.split()
 
 
+def outside_the_hub(student: User, *arguments: str) -> str:
+    """Run autograder as the student, as after a login by SSH; return what it prints."""
+    command = [str(Path(sys.executable).with_name("autograder")), *arguments]
+    environment = {"PATH": os.defpath, "HOME": str(student.hub.homes / student.name)}
+    return subprocess.check_output(command, user=student.name, env=environment, cwd="/", text=True).strip()
+
+
 def check_a_class(hub: Hub, *, with_reference: bool) -> None:
     """Let students of a running hub hand in, and the teacher release, collect and autograde by formgrader.
 
@@ -77,6 +85,7 @@ def check_a_class(hub: Hub, *, with_reference: bool) -> None:
     folder, domain, can_write = hand_in(ben, flawed=True)
     assert (folder, can_write) == (ASSIGNMENT, "False")
     assert ben.in_terminal("printenv ROS_DOMAIN_ID") == domain
+    assert outside_the_hub(ben, "ros", "printenv", "ROS_DOMAIN_ID") == domain
     assert ben.in_terminal("type -t autograder ros2 colcon | sort -u") == "file"
     assert ada.in_terminal("printenv ROS_DOMAIN_ID") != domain
     if with_reference:
@@ -99,6 +108,7 @@ def check_a_class(hub: Hub, *, with_reference: bool) -> None:
     "This starts a hub on this machine alone, with three students and a teacher",
     "`autograder ros jupyterhub-singleuser`",
     "`autograder`, `ros2` and `colcon` work in each terminal.",
+    "A login by SSH is in the same domain",
 )
 def test_students_log_in_and_hand_in_and_the_teacher_grades_on_a_hub(place: Path) -> None:
     with serving(place, course_paths.ROOT) as hub:
