@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -112,11 +113,10 @@ class GraderNode:
             if taken is None:
                 return False
             self._inflow.add(topic, len(taken[0]))
-            try:
+            with suppress(rclpy_implementation.RMWError, TypeError):
                 message = deserialize_message(taken[0], kind)
-            except (rclpy_implementation.RMWError, TypeError):  # the bytes are not a message of the student's type
-                return True
-            receive(message, taken[1]["received_timestamp"])
+                if message is not None:  # None, or an error: the bytes are not a message of the student's type
+                    receive(message, taken[1]["received_timestamp"])
             return True
 
         transient_local = qos.durability == DurabilityPolicy.TRANSIENT_LOCAL
