@@ -52,6 +52,12 @@ class User:
         assert answer.ok, f"{method} {path}: {answer.status_code} {answer.text[:2000]}"
         return json.loads(answer.text) if answer.text else None
 
+    def read(self, path: str) -> str:
+        """Return the text of a file in this user's home folder."""
+        answer = self.session.get(f"{self.hub.url}/user/{self.name}/files/{path}", timeout=PATIENCE)
+        answer.raise_for_status()
+        return answer.text
+
     def nbgrader(self, path: str, **arguments: Any) -> Any:
         """Do something in nbgrader's extensions by a POST, and return its value; it must succeed."""
         answer = self.ask("POST", path, **arguments)

@@ -72,7 +72,7 @@ def outside_the_hub(student: User, *arguments: str) -> str:
 
 
 def check_a_class(hub: Hub, *, with_reference: bool) -> None:
-    """Let students of a running hub hand in, and the teacher release, collect and autograde by formgrader.
+    """Let students of a running hub hand in, and the teacher grade by formgrader and release the feedback.
 
     Args:
         hub: in which nobody has logged in yet.
@@ -102,6 +102,14 @@ def check_a_class(hub: Hub, *, with_reference: bool) -> None:
     assert marks[ben.name] == suite.max_score - sum(check.points for check in suite.checks if check.id == LOST)
     if with_reference:
         assert marks[ada.name] == suite.max_score
+
+    for step in ("generate_feedback", "release_feedback"):
+        teacher.nbgrader(f"formgrader/api/assignment/{ASSIGNMENT}/{step}")
+    ben.nbgrader("assignments/fetch_feedback", data=COURSE)
+    listed = ben.ask("GET", f"assignments?course_id={COURSE['course_id']}")["value"]
+    (submission,) = (each for one in listed if one["status"] == "submitted" for each in one["submissions"])
+    page = ben.read(f"{submission['local_feedback_path']}/{ASSIGNMENT}.html")
+    assert f"(Score: {marks[ben.name]:.1f} / {suite.max_score:.1f})" in page
 
 
 @pytest.mark.promise(
