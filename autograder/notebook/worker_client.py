@@ -101,6 +101,7 @@ def run_on(
             tell = _Early(Path(folder) / EARLY_FILE, early)
             # It asks for interface packages. Between its questions, it is looked after.
             keeper.attend(ours, isolation, lambda: tell.has_looked() and process.exit_reason is not None)
+            tell.has_looked()  # the worker may have written the file and ended since the last look
             report = ended(process)
         reply = Path(folder) / REPLY_FILE
         if report.returncode != 0 or not reply.is_file():
