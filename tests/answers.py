@@ -30,12 +30,12 @@ class Answer:
 
     @property
     def cells(self) -> dict[str, bytes]:
-        """The folder of a student who has written in the cell and never ran it."""
+        """The folder of a student who edited the cell but never ran it."""
         return {**self.released, BOOK: self.files[BOOK]}
 
     @property
     def editor(self) -> dict[str, bytes]:
-        """The folder of a student who has written in the editor, and never in the cell."""
+        """The folder of a student who edited the file, but never the cell."""
         return {**self.files, BOOK: self.released[BOOK]}
 
     def notebook(self, change: Callable[[dict[str, Any]], None]) -> bytes:

@@ -1,4 +1,4 @@
-"""What all tests share: ROS switched on, a ROS domain of its own for each test, and results to report on."""
+"""What all tests share: Activates ROS, gives each test a separate ROS domain, and provides results for reports."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from autograder.run.sandbox.launcher import restore_sigint
 from autograder.suite import Check, Outcome, Visibility
 
 # The same examples in each run: a test that fails now and then would be no gate. `make fuzz` looks further.
-# A busy machine is slow, and that is no failure.
+# Slowness on a busy machine is not a failure.
 _PATIENT = hypothesis.settings(deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow])
 hypothesis.settings.register_profile("course", _PATIENT, derandomize=True)
 hypothesis.settings.register_profile("fuzz", _PATIENT, derandomize=False)
@@ -36,14 +36,14 @@ hypothesis.settings.load_profile("course")
 
 # Before any test module imports rclpy. Fixtures that outlive a test meet in the worker's own domain.
 _OURS = Domain()
-_NEXT = itertools.count(_OURS.number)  # one that was just left may still have somebody in it who is on the way out
+_NEXT = itertools.count(_OURS.number)  # a domain just released may still have a participant shutting down
 activate(domain=_OURS.number)
 os.environ.update(LOGS_TO_STDOUT)  # as for students' programs in the grader and in notebooks
 restore_sigint()  # programs end on Ctrl-C also when the tests are a job in the background
 
 
 _CHAPTER = re.compile(r"\b[0-9]{2}_[a-z_]+")
-# Files of long tests that share nothing. What takes longest comes first, so that all workers end at the same time.
+# Files of long tests without shared fixtures. What takes longest comes first, so that all workers end at the same time.
 _NOTEBOOKS, _VERIFICATION = "tests/notebooks/test_chapters.py", "tests/e2e/test_mutants.py"
 _JUPYTERLAB = "tests/browser/test_solve_in_jupyterlab.py"
 _APART = (_NOTEBOOKS, _VERIFICATION, "tests/e2e/test_attacks.py", "tests/e2e/test_seeds.py")
@@ -51,7 +51,7 @@ _FIRST = (_NOTEBOOKS, "tests/e2e/test_nbgrader.py", _JUPYTERLAB, _VERIFICATION, 
 
 
 class ByFile(LoadScopeScheduling):
-    """Keeps a file's tests, or its tests of one chapter, on one worker, which makes what they share once."""
+    """Runs the tests of a file, or of a chapter in it, on one worker, which creates their shared fixtures once."""
 
     def _split_scope(self, nodeid: str) -> str:
         file, _, test = nodeid.partition("::")
@@ -90,7 +90,7 @@ def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
 
 @pytest.fixture(autouse=True)
 def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
-    """Give the test, and the processes it starts, a ROS domain of its own; return its number."""
+    """Give the test and its child processes a separate ROS domain; return its number."""
     with Domain(next(_NEXT)) as domain:
         monkeypatch.setenv("ROS_DOMAIN_ID", str(domain.number))
         yield domain.number
@@ -98,7 +98,7 @@ def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
 
 @pytest.fixture
 def entered_tmp_path(tmp_path: Path) -> Path:
-    """A temporary folder that other users can enter: root's cells become other users, who come from here."""
+    """A temporary folder that other users can enter: root's sandboxes run as other users."""
     for folder in (tmp_path, *(each for each in tmp_path.parents if each.name.startswith(("pytest-", "popen-")))):
         folder.chmod(0o711)
     return tmp_path

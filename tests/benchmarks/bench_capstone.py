@@ -32,6 +32,9 @@ def _grade(folder: Path, name: str) -> None:
 
 
 def _spent() -> float:
-    """Return the processor time of the whole machine, in seconds: nobody waits for what is killed in a sandbox."""
+    """Return the processor time of the whole machine, in seconds.
+
+    A sandbox kills processes that no parent waits for, so their own times are lost.
+    """
     user, nice, system, _, _, irq, softirq = map(int, Path("/proc/stat").read_text().split()[1:8])
     return (user + nice + system + irq + softirq) / os.sysconf("SC_CLK_TCK")

@@ -1,4 +1,4 @@
-"""Measures what a cluster costs beside the gradings. A pause and a reply of usual size replace each grading."""
+"""Measures the overhead of a cluster. A pause and a reply of usual size replace each grading."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ SOURCE = "x = 1\n" * 4000  # 24 kB, as an answer to 02 has
 
 
 def figures() -> dict[str, float]:
-    """Return the milliseconds that a submission costs when its grading takes none."""
+    """Return the overhead of a submission in milliseconds, with a grading that takes no time."""
     with connected(LOCAL, THREADS, Path()) as client:
         spent, _ = seconds(client, SUBMISSIONS, [0.0])
     return {"cluster.overhead_ms": round(1000 * spent / SUBMISSIONS, 2)}
 
 
 def seconds(client: Client, submissions: int, pauses: Sequence[float]) -> tuple[float, float]:
-    """Return the seconds that a class takes on a cluster, and the sum of its pauses, of which each has one."""
+    """Return the seconds that a class takes on a cluster, and the sum of the submissions' pauses."""
     with tempfile.TemporaryDirectory() as name:
         jobs = [_job(Path(name), number) for number in range(submissions)]
         grade_on(client, jobs[:1], lambda _: None, report=print, grade=partial(_answered, [0.0]))  # imports

@@ -24,7 +24,7 @@ RUNS = 3
 def figures() -> dict[str, float]:
     """Return seconds and, where there is something to compute, core-seconds: medians of several runs, colcon's of one.
 
-    `interface.cold_*` makes the classes and their type supports, `interface.cached_s` finds what was made, and
+    `interface.cold_*` makes the classes and their type supports, `interface.cached_s` finds them in the cache, and
     `interface.colcon_*` is `colcon build`.
     """
     activate()

@@ -1,4 +1,4 @@
-"""Measures how many steps a second the grader makes: with one node, and with three that send each other messages.
+"""Measures how many steps a second the grader makes: with one node, and with three that exchange messages.
 
 The one is the reference controller at 10 Hz, shown a scan of 360 beams each step. The three pass each step's message
 on, from one to the next and to the grader. The nodes run in sandboxes, the grader's side in a cell, as in grading.

@@ -34,7 +34,7 @@ SECONDS = 10.0
 
 
 def room(walls: int, longest: float, seed: int = 1) -> World:
-    """A closed room with so many walls in all, half of `longest` to `longest` metres long."""
+    """A closed room with the given number of walls, half of `longest` to `longest` metres long."""
     random = np.random.default_rng(seed)
     begin = random.uniform(-10, 10, (walls - 4, 2))
     angle = random.uniform(0, math.tau, walls - 4)

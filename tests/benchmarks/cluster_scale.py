@@ -2,7 +2,7 @@
 
 `python -m tests.benchmarks.cluster_scale RESULTS` takes the durations of gradings from stored results; each submission
 waits for one of them instead of being graded. So 64 workers fit on any machine. They are Dask's own, with a connection
-each, and share a process; the scheduler is in it, too. `... draw` draws again what was measured.
+each, and share a process; the scheduler runs in the same process. `... draw` draws stored measurements again.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Measures what students need on a hub: memory and processor time of some who run chapter 02 whole, at the same time.
+"""Measures what students need on a hub: memory and processor time while several run all of chapter 02 at the same time.
 
 `sudo .venv/bin/python -m tests.benchmarks.hub_sizing 2` prints a line for each and the sum; docs/jupyterhub.md has the
 figures. Students run this clone's own environment.
@@ -28,7 +28,7 @@ TICKS = os.sysconf("SC_CLK_TCK")
 
 
 def use_of(name: str) -> tuple[float, float]:
-    """Return what a user's processes use: their memory in MiB, shared pages by their part, and their seconds so far."""
+    """Return the memory of a user's processes in MiB (proportional set size), and their CPU seconds so far."""
     uid, memory, seconds = pwd.getpwnam(name).pw_uid, 0.0, 0.0
     for process in Path("/proc").glob("[0-9]*"):
         try:
@@ -59,7 +59,7 @@ def run_the_chapter(hub: Hub, name: str) -> float:
 
 
 def main() -> None:
-    """Run the chapter as so many students as are asked for (two by default), and print what each has used."""
+    """Run the chapter as the given number of students (two by default), and print what each has used."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 2
     with tempfile.TemporaryDirectory(dir="/tmp") as scratch:
         Path(scratch).chmod(0o755)

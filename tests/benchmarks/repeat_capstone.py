@@ -2,11 +2,11 @@
 
     make capstones TIMES=1000
 
-One half is graded by as many at once as the machine has cores; the other half under load: three for each core. A trace
-is the fingerprint of a run in a hidden world: what the robot sensed, was told and did, at every instant.
+The first half runs one grading for each core at a time; the second half runs three for each core, under load. A trace
+is the fingerprint of a run in a hidden world: the robot's scans, commands and motion at every step.
 
-Each grading is a line of a file. A run that was stopped goes on with what is left, as long as checks and grader are the
-same. Exit status: 0 when all gradings agree.
+Each grading is a line of a file. An interrupted run continues where it stopped, unless the checks or the grader have
+changed. Exit status: 0 when all gradings agree.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ REPORT = ROOT / ".build" / "capstones.jsonl"
 
 @dataclass(frozen=True)
 class Grading:
-    """One grading: its percentage, what was lost, each hidden run's fingerprint, how long it took, among how many."""
+    """One grading: its percentage, failed checks, fingerprints, duration and number of parallel gradings."""
 
     version: str  # of checks and grader
     number: int
@@ -49,7 +49,7 @@ class Grading:
 
 
 def stored(report: Path, version: str) -> dict[int, Grading]:
-    """Return the gradings that a report holds of one version, by their numbers. A line that was cut off is none."""
+    """Return the gradings of one version in a report, by their numbers. An incomplete line is ignored."""
     found = {}
     for line in report.read_text().splitlines() if report.is_file() else ():
         try:
@@ -62,7 +62,7 @@ def stored(report: Path, version: str) -> dict[int, Grading]:
 
 
 def cut_off(report: Path) -> bool:
-    """Return whether the last line of a report has no end: what is written next would be part of it."""
+    """Return whether the last line of a report lacks its line feed, so that the next line would be appended to it."""
     return report.is_file() and report.read_bytes()[-1:] not in (b"", b"\n")
 
 
@@ -77,7 +77,7 @@ def grade(folder: Path, version: str, at_once: int, number: int) -> Grading:
 
 
 def gradings(folder: Path, version: str, times: int, known: dict[int, Grading]) -> Iterator[Grading]:
-    """Yield what is left to grade: the first half on a machine that has room for them, the others under load."""
+    """Yield the remaining gradings: the first half with a core for each, the others under load."""
     cores = os.cpu_count() or 1
     half = range(1, times // 2 + 1)
     for numbers, at_once in ((half, cores), (range(half.stop, times + 1), CROWD * cores)):
@@ -93,7 +93,7 @@ def gradings(folder: Path, version: str, times: int, known: dict[int, Grading]) 
 
 
 def main() -> int:
-    """Grade it as often as the command line says; say what differs."""
+    """Grade it the given number of times, and report the differences."""
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.repeat_capstone", description="See above.")
     parser.add_argument("-n", type=int, default=10, metavar="N", help="how often (default: 10)")
     parser.add_argument("--report", type=Path, default=REPORT, help=f"default: {REPORT.relative_to(ROOT)}")
@@ -117,7 +117,7 @@ def main() -> int:
 
 
 def summarise(found: list[Grading]) -> int:
-    """Say how many gradings agree, and what is different about each other one. Return the exit status."""
+    """Report how many gradings agree, and describe how each of the others differs. Return the exit status."""
     first = found[0].traces
     bad = [grading for grading in found if grading.percent != 100.0 or not grading.traces or grading.traces != first]
     for grading in bad:

@@ -1,4 +1,4 @@
-"""A real headless Chromium, shared by the tests of what people see in a browser."""
+"""A real headless Chromium, shared by the tests of pages."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Browser]:
-    """A Chromium from this machine (`CHROMIUM` names another one), closed at the end of the module.
+    """A Chromium from this machine (`CHROMIUM` selects another), closed at the end of the module.
 
     While it is open, Playwright keeps an event loop running in this thread, in which no other test can start its own.
     """

@@ -1,4 +1,4 @@
-"""A JupyterLab of its own, opened in a browser's page."""
+"""A separate JupyterLab, opened in a browser page."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Lab:
 
 @pytest.fixture(scope="module")
 def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
-    """A JupyterLab of its own on loopback, with a token, a port and settings of its own."""
+    """A separate JupyterLab on loopback, with its own token, port and settings."""
     home = tmp_path_factory.mktemp("jupyter")
     folder = home / "notebooks"
     folder.mkdir()
@@ -79,7 +79,7 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
 
 @contextmanager
 def serving(module: str, home: Path, folder: Path, *options: str) -> Iterator[Lab]:
-    """Serve a folder by a server of Jupyter, which is started in it and has a home of its own."""
+    """Start a Jupyter server in a folder, with a separate home."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]

@@ -1,6 +1,6 @@
 """A class on a hub, in the browser from the first login to the feedback: the sums are the same everywhere.
 
-`tests/e2e/test_hub.py` shows the short half by HTTP in `make test`.
+`tests/e2e/test_hub.py` covers the main steps over HTTP in `make test`.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ RUN = """async ids => {
 
 @dataclass(frozen=True)
 class Person:
-    """Somebody who is logged in to the hub, with a browser of their own."""
+    """A user who is logged in to the hub in a separate browser context."""
 
     hub: Hub
     name: str
@@ -78,7 +78,7 @@ class Person:
         self.page.evaluate("() => { window.jupyterapp.commands.execute('nbgrader:open-assignment-list'); }")
 
     def press(self, button: str, *, until: str) -> None:
-        """Press a button of the assignment in that list, and wait for the one that comes next."""
+        """Press a button of the assignment in that list, and wait for the next button."""
         row = self.page.locator(".list_item", has_text=ASSIGNMENT)
         row.get_by_role("button", name=button, exact=True).first.click()
         expect(row.get_by_role("button", name=until, exact=True).first).to_be_visible(timeout=PATIENCE)
@@ -88,12 +88,12 @@ class Person:
         Lab(self.url, "", self.home).show(self.page, NOTEBOOK)
 
     def run(self, *cells: str) -> str:
-        """Run cells of the notebook, save it, and return what the last of them shows."""
+        """Run cells of the notebook, save it, and return the output of the last one."""
         self.page.evaluate(RUN, list(cells))
         return str(outputs(self.page)[cells[-1]])
 
     def manage(self, page: str, row: str, column: str) -> None:
-        """Click in a row of one of formgrader's tables, and wait until nbgrader has done what is asked."""
+        """Click in a row of one of formgrader's tables, and wait until nbgrader has finished."""
         self.page.goto(f"{self.url}/formgrader/{page}")
         self.page.locator("tr", has_text=row).locator(f".{column} a").click()
         told = self.page.locator("#success-modal, #error-modal")
@@ -145,7 +145,7 @@ def solve_all(student: Person) -> None:
 
 
 def answer_in_the_editor(student: Person) -> None:
-    """Answer two questions. The check finds a letter that is none, and the editor gets another one, also wrong."""
+    """Answer two questions. The check rejects an invalid letter; then the editor gets a wrong one."""
     student.show()
     type_in(student.page, "answers", solved_cells()["answers"].replace(RIGHT, NO_LETTER))
     type_in(student.page, QUESTION, f"The words of {student.name} about `package.xml`.")
@@ -168,7 +168,7 @@ def score_in_formgrader(teacher: Person, student: Person) -> str:
 
 
 def check_a_class(hub: Hub, chromium: Browser) -> None:
-    """Let two students and the teacher of a hub, in which nobody has logged in yet, do their work in the browser."""
+    """Two students and the teacher of a new hub do their work in the browser."""
     suite = suites.hidden(ASSIGNMENT)
     most = suite.max_score + MOST
     with (

@@ -52,7 +52,7 @@ def names(table: Locator) -> list[str]:
 @pytest.mark.promise("sorts by name and by score")
 def test_the_table_sorts_by_a_click_on_a_header(page: Page, table: Locator) -> None:
     assert names(table) == ["alice", "bob", "carol", "dave", "Zoë Müller"]
-    by_score = ["carol", "bob", "alice", "Zoë Müller", "dave"]  # who has no mark comes first
+    by_score = ["carol", "bob", "alice", "Zoë Müller", "dave"]  # students without a mark come first
     for direction, order in (("ascending", by_score), ("descending", by_score[::-1])):
         table.get_by_role("button", name="Score").click()
         assert names(table) == order

@@ -1,4 +1,4 @@
-"""A class through nbgrader, with a person who grades question 2 in formgrader: the sums are the same everywhere."""
+"""Grades a class with nbgrader, and question 2 by hand in formgrader: all systems show the same sums."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ SCHEME = "Mark scheme, 6 points."
 
 @dataclass(frozen=True)
 class Student:
-    """One of the class: what the code is, and what a person gives for the words (None: there are none to read)."""
+    """A student: the submitted code, and the points that the text gets by hand (None if there is no text)."""
 
     name: str
     code: str
@@ -46,7 +46,7 @@ class Student:
 
 
 def students(size: int) -> list[Student]:
-    """Return a class; every third or fourth has handed in what was released, and two of three have no code."""
+    """Return a class, in which every third or fourth student submits the released notebook unchanged."""
     codes = ["no code", "no code", "untouched"] if size == 3 else ["no code", "reference", "flawed", "untouched"]
     found = []
     for number in range(size):
@@ -124,7 +124,7 @@ def test_points_given_in_formgrader_are_added_everywhere(size: int, tmp_path: Pa
 
 
 def grade_by_hand(room: Classroom, everybody: list[Student], home: Path, chromium: Browser) -> None:
-    """Give each student's words their points in formgrader, which opens one submission after the other."""
+    """Enter the points for each student's text in formgrader, which opens one submission after another."""
     home.mkdir()
     points = {
         f"The words of {student.name} about": student.points for student in everybody if student.points is not None
@@ -153,7 +153,7 @@ def give_points(page: Page, formgrader: str, submissions: int, points: dict[str,
     left = dict(points)
     for link in [str(each.get_attribute("href")) for each in listed.all()]:
         page.goto(urljoin(formgrader, link))
-        page.wait_for_function("window.formgrader?.grades?.loaded")  # before, it does not hear what is typed
+        page.wait_for_function("window.formgrader?.grades?.loaded")  # until then, it ignores keys
         words = page.locator("body").inner_text()
         assert SCHEME in words
         for text in [text for text in left if text in words]:

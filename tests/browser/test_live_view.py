@@ -56,7 +56,7 @@ def pixels(image: Locator) -> Any:
 
 
 def changed(before: Any, after: Any) -> int:
-    """How many pixels are clearly not what they were."""
+    """Return how many pixels have clearly changed."""
     return int((np.abs(before - after).max(axis=2) > 60).sum())
 
 
@@ -71,7 +71,7 @@ def wait_until_moved(image: Locator, before: Any, least: int = 40) -> int:
 
 
 def wait_until_still(page: Page, image: Locator) -> None:
-    """Wait until the image has been the same one for five looks in a row."""
+    """Wait until the image has been the same five times in succession."""
     page.wait_for_function(
         """image => {
             image.looks = image.src === image.last ? (image.looks || 0) + 1 : 0;

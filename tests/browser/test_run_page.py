@@ -88,7 +88,7 @@ def test_a_run_opens_at_its_end_with_all_that_its_picture_shows(
     page.screenshot(path=screenshots / f"run-page-{width}.png")
     page.keyboard.press("Home")
     late, own = count(canvas, LATE, LIGHT.robot)
-    assert late < 5  # what is to come is thin, in the robot's own colour
+    assert late < 5  # the future path is thin, in the robot's colour
     assert own > 5
     assert complaints == []
 

@@ -35,7 +35,7 @@ CHOSEN = [
     for chapter in chapters()
 ]
 
-# The cell's editor gets the focus, all its text selected; what is typed next takes its place.
+# Focuses the cell's editor and selects its text, so that typing replaces it.
 EDIT = """async id => {
     const notebook = window.jupyterapp.shell.currentWidget.content;
     const index = notebook.widgets.findIndex(cell => cell.model.id === id);
@@ -84,7 +84,7 @@ OUTPUTS = """() => JSON.stringify(window.jupyterapp.shell.currentWidget.content.
 
 
 def type_in(page: Page, cell: str, text: str) -> None:
-    """Replace a cell's text as somebody at the keyboard would who pastes an answer."""
+    """Replace a cell's text by pasting an answer from the keyboard."""
     page.evaluate(EDIT, cell)
     page.keyboard.insert_text(text)
     page.keyboard.press("Escape")
@@ -97,7 +97,7 @@ def outputs(page: Page) -> dict[str, list[dict[str, Any]]]:
 
 
 def photograph(page: Page, cell: str, path: Path) -> None:
-    """Keep what a cell shows; all its pictures are there, and none is wider than the page."""
+    """Take a screenshot of a cell's output; all its pictures have loaded, and none is wider than the page."""
     page.evaluate(SCROLL, cell)
     page.wait_for_function(LOADED, arg=cell)
     page.evaluate(CENTRE, cell)
@@ -130,7 +130,7 @@ def test_a_chapters_release_is_solved_in_jupyterlab(page: Page, lab: Lab, screen
     shown = outputs(page)
     errors = [output for cell in shown.values() for output in cell if output["output_type"] == "error"]
     assert not errors, errors[0]["traceback"]
-    # Jupyter shows what ends a thread of the kernel, and goes on.
+    # Jupyter shows an exception that ends a thread of the kernel, and continues.
     streams = ["".join(output.get("text", "")) for cell in shown.values() for output in cell]
     assert not [text for text in streams if "Exception in thread" in text]
     said = json.dumps(shown, ensure_ascii=False)

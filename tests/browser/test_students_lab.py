@@ -1,4 +1,4 @@
-"""JupyterLab keeps all that a student wrote, and has no button that calls an unsolved notebook correct."""
+"""JupyterLab keeps a student's work, and has no button that reports an unsolved notebook as correct."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ OPEN = """async path => {
     await editor.context.ready;
 }"""
 # Jupyter's own command, without its question. It ends when the last cell has. It saves the notebook,
-# which JupyterLab would otherwise do two minutes later: until then a mark says that there are unsaved changes.
+# which JupyterLab would otherwise do two minutes later: until then, a marker shows unsaved changes.
 RUN_ALL = """async () => {
     const panel = window.jupyterapp.shell.currentWidget;
     await panel.sessionContext.session.kernel.restart();
@@ -64,7 +64,7 @@ def edit_in_the_editor(page: Page, folder: Path) -> None:
 
 
 def run_all(page: Page, lab: Lab, folder: Path) -> str:
-    """Open the notebook, restart its kernel, run all cells; return what they show."""
+    """Open the notebook, restart its kernel, run all cells, and return their outputs."""
     lab.show(page, f"{folder.name}/{FIRST.notebook_path.name}")
     assert page.evaluate(RUN_ALL) == [1, 2, 3]
     return str(page.evaluate(OUTPUTS))

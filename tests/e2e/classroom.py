@@ -1,4 +1,4 @@
-"""A class in a place of its own: an instructor's course directory, and students who hand their work in."""
+"""A class in a separate folder: an instructor's course directory, and students who submit their work."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Classroom:
 
     Args:
         place: a folder for all of it.
-        assignment: the one that the class works on.
+        assignment: the assignment of the class.
     """
 
     def __init__(self, place: Path, assignment: str) -> None:
@@ -41,7 +41,7 @@ class Classroom:
         shutil.copy(course_paths.ROOT / "nbgrader_config.py", self.course)
 
     def run(self, folder: Path, *command: str) -> str:
-        """Run a command that must succeed; return what it said."""
+        """Run a command that must succeed; return its output."""
         # Each person has settings and a cache of their own.
         own = {name: str(folder / ".jupyter") for name in ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "IPYTHONDIR")}
         environment = {**os.environ, **own, "NBGRADER_EXCHANGE": str(self.exchange)}
@@ -57,7 +57,7 @@ class Classroom:
         return self.run(folder or self.course, *command)
 
     def grade(self, *options: str) -> Path:
-        """Grade all that was handed in by `autograder grade`; return the folder of the results."""
+        """Grade all submissions with `autograder grade`; return the folder of the results."""
         out = self.place / "results" / self.assignment
         verb = (sys.executable, "-c", "from autograder.cli import main; main()", "grade")
         self.run(self.course, *verb, "submitted", "--assignment", self.assignment, "--out", str(out), *options)
@@ -75,8 +75,8 @@ class Classroom:
         """Put a student's released assignment where nbgrader collects them.
 
         Args:
-            student: whose it is.
-            answer: a source tree whose `src` the notebook is to write, or None for a notebook that nobody touched.
+            student: the student's name.
+            answer: a source tree whose `src` the notebook is to write, or None for an unchanged notebook.
         """
         folder = self.course / "submitted" / student / self.assignment
         shutil.copytree(self.course / "release" / self.assignment, folder)
@@ -98,13 +98,13 @@ def fill_in(released: NotebookNode, assignment: str) -> None:
 
 
 def write_down(notebook: NotebookNode, assignment: str, src: Path) -> None:
-    """Let a solved notebook write what differs from the reference in `src`: in the cell for the file, or in its own."""
+    """Make a solved notebook write the files of `src` that differ from the reference, each in its own or a new cell."""
     cells = {cell.source.partition("\n")[0]: cell for cell in notebook.cells if cell.cell_type == "code"}
     for name, text in changes(assignment, src):
         head = f"%%writefile ws/src/{name}"
         if text is None:
             notebook.cells.append(new_code_cell(f"!rm ws/src/{name}"))
-        elif not text:  # %%writefile does not write nothing
+        elif not text:  # %%writefile does not write an empty file
             notebook.cells.append(new_code_cell(f"!: > ws/src/{name}"))
         elif head in cells:
             cells[head].source = f"{head}\n{text}"

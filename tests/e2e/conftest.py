@@ -40,13 +40,13 @@ def forks() -> None:
 
 @dataclass(frozen=True)
 class Terminal:
-    """A terminal in a workspace: where it stands, and its environment variables."""
+    """A terminal in a workspace: its current folder and its environment variables."""
 
     root: Path
     variables: dict[str, str]
 
     def run(self, *command: str | Path) -> subprocess.CompletedProcess[str]:
-        """Run a command; what it said on both streams is its `stdout`."""
+        """Run a command; `stdout` contains both of its streams."""
         return subprocess.run(
             command, cwd=self.root, env=self.variables, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
         )
@@ -61,14 +61,14 @@ class Terminal:
 def reference(tmp_path_factory: pytest.TempPathFactory) -> Terminal:
     """A sourced workspace with every package of `solutions/`, as colcon built them; `log/build.txt` has its words.
 
-    Packages of messages, which take by far the longest, are built as the grader builds them, and kept where it keeps
-    them. The others are built as a student does it. The workers of a run share the workspace: the first one builds it.
+    Message packages, which take by far the longest, are built and cached in the same way as by the grader. The others
+    are built as a student does it. The workers of a run share the workspace: the first one builds it.
     """
     base = tmp_path_factory.getbasetemp()
     root = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "reference-workspace"
     ros = environment.find()
     variables = {**os.environ, **ros.variables(log_dir=root / "log/ros"), "PATH": environment.path_with_scripts()}
-    variables.pop("PYTHONDONTWRITEBYTECODE", None)  # setuptools warns where it is set
+    variables.pop("PYTHONDONTWRITEBYTECODE", None)  # setuptools warns if it is set
     terminal = Terminal(root, variables)
     with root.with_suffix(".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -78,7 +78,7 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> Terminal:
 
 
 def _build_reference(terminal: Terminal, ros: environment.RosEnvironment, scratch: Path) -> None:
-    """Build the workspace; its log is written last, and says that the whole is there."""
+    """Build the workspace. Its log is written last, so it shows that the build is complete."""
     found, broken = find_packages(SOLUTIONS)
     assert not broken
     for name, folder in found.items():

@@ -1,6 +1,6 @@
-"""Packages as `ros2 pkg create` writes them, and what a student adds to them.
+"""Packages as `ros2 pkg create` writes them, and a student's additions.
 
-`python -m tests.e2e.created_packages` prints what the tool writes. With the real ros2cli, that is the record.
+`python -m tests.e2e.created_packages` prints the files that the tool writes. With the real ros2cli, that is the record.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def create(folder: Path, package: str) -> Path:
 
 
 def fill_in(made: Path, target: Path, given: Collection[str] = ()) -> None:
-    """Put what the tool wrote into `target`, a copy of the reference package, and add to it what is the student's.
+    """Put the tool's files into `target`, a copy of the reference package, and add the student's files.
 
     Modules, launch files, configuration and further tests stay the reference's, and so do the folders of the package
     that the chapter gives.
@@ -94,7 +94,7 @@ def _generate(cmake: Path, reference: str) -> None:
 
 
 def facts(folder: Path) -> dict[str, Any]:
-    """Create a package of each kind in `folder` and return what they say, apart from the wording."""
+    """Create a package of each kind in `folder` and return their contents, apart from the wording."""
     found = {}
     for kind, more in ((PYTHON, ("--node-name", "hello")), (CMAKE, ())):
         package = f"of_{kind}"
@@ -124,7 +124,7 @@ def _all(manifest: Path) -> list[ElementTree.Element]:
 
 
 def _python(text: str) -> list[str]:
-    """Return the imports, the calls' arguments by name, the functions and their marks, and what is called."""
+    """Return the imports, the calls' arguments by name, the functions and their marks, and the called functions."""
     said = []
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import | ast.ImportFrom):

@@ -19,7 +19,7 @@ PATIENCE = 600.0  # seconds, a deadline and not an expectation
 
 @dataclass
 class User:
-    """A user who is logged in, with a server that runs."""
+    """A logged-in user with a running server."""
 
     hub: Hub
     name: str
@@ -65,7 +65,7 @@ class User:
         return answer.get("value")
 
     def run(self, notebook: str, *cells: str) -> list[str]:
-        """Run cells in a kernel in the notebook's folder; return what each printed. None may raise an error."""
+        """Run cells in a kernel in the notebook's folder; return the output of each. None may raise an error."""
         body = {"path": notebook, "name": notebook, "type": "notebook", "kernel": {"name": "python3"}}
         session = self.ask("POST", "api/sessions", json=body)
         line = self._connect(f"api/kernels/{session['kernel']['id']}/channels")

@@ -1,7 +1,7 @@
 """A leak monitor runs a grading and finds the processes, files, mounts, memory and shared memory that are left of it.
 
-It is a process with a scratch folder, shared memory and a control group of its own. The kernel gives it every process
-below it that has lost its parent. It sees nothing of what else runs on the machine.
+It is a process with its own scratch folder, shared memory and control group. The kernel gives it every process
+below it that has lost its parent. It does not see other processes of the machine.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def grade_monitored(place: Path, assignment: str, submissions: Mapping[str, Path
     scratch = tempfile.mkdtemp(prefix="monitor-", dir="/tmp")  # the path of a kernel's sockets must be short
     paths = {student: str(path) for student, path in submissions.items()}
     job = json.dumps({"place": str(place), "assignment": assignment, "paths": paths, "only": only})
-    # Root's cells become other users, of which a user namespace of bubblewrap's has none.
+    # Root's sandboxes run as other users, which do not exist in bubblewrap's user namespace.
     users = ["--unshare-user"] if os.geteuid() else ["--cap-add", "ALL"]
     space = ["bwrap", "--die-with-parent", *users, "--unshare-ipc", "--dev-bind", "/", "/"]
     space += ["--tmpfs", "/dev/shm", "--tmpfs", scratch, "--chdir", str(ROOT)]
@@ -77,7 +77,7 @@ def _grade(place: str, assignment: str, paths: dict[str, str], only: list[str]) 
 
 
 def _leftovers() -> dict[str, list[str]]:
-    """Return what a grading could leave, as the monitor sees it."""
+    """Return everything that a grading could leave behind, as the monitor sees it."""
     queues = (line for kind in ("shm", "sem", "msg") for line in Path("/proc/sysvipc", kind).read_text().splitlines())
     return {
         "processes": [name(pid) for pid in measure(os.getpid()).pids],
@@ -89,7 +89,7 @@ def _leftovers() -> dict[str, list[str]]:
 
 
 def _monitor(job: dict[str, Any]) -> None:
-    """Grade in a child, reap each process that ends here, and write down what was there before and after."""
+    """Grade in a child, reap orphaned processes, and record the state before and after."""
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
     before = _leftovers()
     if (child := os.fork()) == 0:

@@ -1,4 +1,4 @@
-"""A cluster on one machine: a scheduler and workers, each in a network namespace and with a view of files of its own.
+"""A cluster on one machine: a scheduler and workers, each with its own network and mount namespace.
 
 Where namespaces cannot be made (not root, no iproute2), all run side by side on the loopback address.
 """
@@ -40,7 +40,7 @@ class LocalCluster:
 
     Attributes:
         place: the folder of the client, which workers do not see in namespaces.
-        apart: whether each machine has namespaces of its own.
+        apart: whether each machine has its own namespaces.
     """
 
     place: Path
@@ -98,7 +98,7 @@ class LocalCluster:
         return self.running[machine]
 
     def kill(self, machine: str) -> None:
-        """Kill what runs on a machine, and all that it started there, as a power cut would."""
+        """Kill the processes of a machine and all of their children, as a power cut would."""
         process = self.running[machine]
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
@@ -111,7 +111,7 @@ class LocalCluster:
                 self.start(machine)
 
     def log(self, machine: str) -> str:
-        """Return what has been written on a machine so far."""
+        """Return a machine's output so far."""
         return (self.machines / machine / "log").read_text(errors="replace")
 
 

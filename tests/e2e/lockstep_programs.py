@@ -1,4 +1,4 @@
-"""Small programs such as students write, a feature of rclpy each, for the tests of lockstep."""
+"""Small student-like programs for the tests of lockstep, each with one feature of rclpy."""
 
 from __future__ import annotations
 
@@ -430,7 +430,7 @@ class Talker(Node):
 spin(Talker)
 """
 
-# Among words come bytes that are none: too few, of the other byte order, too many, and with a length that lies.
+# Publishes invalid bytes among valid messages: too few, wrong byte order, too many, and with a false length.
 FORGED_WORDS = """
 from lockstep_interfaces.msg import Word
 HEADER = bytes([0, 1, 0, 0])

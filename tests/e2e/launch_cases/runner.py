@@ -1,4 +1,4 @@
-"""Runs launch descriptions with whichever `launch` is installed, and writes down what it does.
+"""Runs launch descriptions with whichever `launch` is installed, and records the events.
 
 `python -m tests.e2e.launch_cases.runner` prints the records of all cases as YAML. The file `records.yaml` was made so
 with the real packages: `make real-launch`, then this program. Each case is run by a fork of this process.
@@ -139,7 +139,7 @@ def record(case: Case, scratch: Path) -> dict[str, Any]:
 
 
 def _launch(case: Case, file: Path) -> int:
-    """Do what `ros2 launch FILE` does, and note the events."""
+    """Run a file as `ros2 launch FILE` does, and record the events."""
     import launch
     from launch.launch_description_sources import AnyLaunchDescriptionSource
 
@@ -165,8 +165,8 @@ def _launch(case: Case, file: Path) -> int:
 def at_rest(pid: int) -> bool:
     """Return whether a launch waits for events, as it does by the time a person presses Ctrl-C; the stand-in need not.
 
-    In the real launch, Ctrl-C raises KeyboardInterrupt in whatever runs at that moment. A process of which it then
-    misses the start or the end is waited for without end.
+    In the real launch, Ctrl-C raises KeyboardInterrupt in whatever runs at that moment. It would wait forever for a
+    process whose start or end it misses.
     """
     import launch
 
@@ -174,7 +174,7 @@ def at_rest(pid: int) -> bool:
 
 
 def _read(reading: int, child: int, ctrl_c: Path | None) -> str:
-    """Return all that a case writes; press Ctrl-C when the file is there."""
+    """Return the output of a case; press Ctrl-C as soon as the file exists."""
     output, deadline = b"", time.monotonic() + SECONDS
     while time.monotonic() < deadline:
         if ctrl_c is not None and ctrl_c.exists() and at_rest(child):

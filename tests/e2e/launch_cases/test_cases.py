@@ -1,6 +1,7 @@
-"""The stand-ins for launch do what the real packages do: the same launch descriptions, with the same records.
+"""The stand-ins for launch behave like the real packages: the same launch descriptions give the same records.
 
-`records.yaml` was written with the real packages by `runner.py`. With them installed, this test compares them, too.
+`records.yaml` was written with the real packages by `runner.py`. If those are installed, this test compares them as
+well.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from autograder.ros.domains import Domain
 from tests.e2e.launch_cases.runner import HERE, RECORDS, cases
 
 EXPECTED: dict[str, dict[str, Any]] = yaml.safe_load(RECORDS.read_text())
-# Where the stand-ins say something else, and why.
+# Cases in which the stand-ins print something else, with reasons.
 DIFFERENCES: dict[str, dict[str, Any]] = yaml.safe_load((HERE / "differences.yaml").read_text())
 STAND_IN = "standins" in str(launch.__file__)
 

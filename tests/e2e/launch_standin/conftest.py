@@ -1,6 +1,6 @@
 """A package with nodes and launch files, and `ros2 launch` as a process whose output can be waited for.
 
-Each launch has a network of its own, so that nodes of tests that run at the same time do not discover each other. All
+Each launch has a separate network, so that nodes of parallel tests do not discover each other. All
 processes of a launch inherit a mark in their environment, by which those that are left over are found.
 
 With the real launch installed, the tests run that one, except those in differences.yaml.
@@ -40,7 +40,7 @@ STAND_IN = "standins" in str(launch_package.__file__)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """With the real launch, skip what it does otherwise, and let it leave log files and sockets open."""
+    """With the real launch, skip the tests of known differences, and allow open log files and sockets."""
     for item in items:
         if STAND_IN or item.path.parent != HERE:
             continue
@@ -98,7 +98,7 @@ class Launch:
         return code
 
     def interrupt(self) -> int:
-        """Do what Ctrl-C does and wait for the end; return the exit code."""
+        """Press Ctrl-C and wait for the end; return the exit code."""
         deadline = time.monotonic() + PATIENCE
         while not at_rest(self._process.pid):
             assert time.monotonic() < deadline, f"the launch does not come to rest:\n{self.text}"
@@ -116,7 +116,7 @@ class Launch:
         return found
 
     def clean_up(self) -> None:
-        """Kill what is left over."""
+        """Kill the remaining processes."""
         for pid in self.members():
             with contextlib.suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
@@ -176,7 +176,7 @@ Start = Callable[..., Launch]
 def start(fleet: Path, tmp_path: Path) -> Iterator[Start]:
     """Start `ros2 launch fleet <file> <argument>...`, after sourcing a workspace's `install` if one is given.
 
-    At the end of the test nothing may be left of it.
+    At the end of the test none of its processes may be left.
     """
     running: list[Launch] = []
 

@@ -1,4 +1,4 @@
-"""The harness for launch files sees from outside what they start, and what they leave running."""
+"""The launch harness sees from outside which nodes launch files start, and which processes they leave running."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The launch files of the course's package, built as a student builds it, and the one that the chapter prints."""
+"""The launch files of the course's package, built as by a student, and the launch file printed in the chapter."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def install(reference: Terminal) -> Path:
 
 
 def observe_and_interrupt(start: Start, install: Path, package: str, file: str) -> str:
-    """Launch, look at the nodes and their parameters, press Ctrl-C; return what the launch wrote."""
+    """Launch, look at the nodes and their parameters, press Ctrl-C, and return the launch's output."""
     launch = start("observed", f"package:={package}", f"file:={file}.launch.py", install=install)
     found = json.loads(launch.wait_for("found: (.*)")[1])
     assert set(found) == {f"/{node}" for node in NODES}

@@ -40,7 +40,7 @@ def _left_over(mark: str) -> list[str]:
 
 @pytest.fixture
 def mark(own_log: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """The mark that all processes of this test carry in their environment."""
+    """A variable that marks all processes of this test in their environment."""
     monkeypatch.setenv(MARK, str(tmp_path))
     return str(tmp_path)
 

@@ -1,4 +1,4 @@
-"""Runs launch tests with whichever `launch_testing` is installed, and writes down what is printed and how it ends.
+"""Runs launch tests with whichever `launch_testing` is installed, and records their output and exit status.
 
 `python -m tests.e2e.launch_test_cases.runner` prints the records of all calls as YAML. The file `records.yaml` was made
 so with the real packages: `make real-launch`, then this program. Each call is run by a fork of this process.
@@ -122,7 +122,7 @@ def records() -> Iterator[dict[str, Any]]:
 
 
 class _Readable(yaml.SafeDumper):
-    """Writes texts of several lines as such."""
+    """Writes texts of several lines as YAML blocks."""
 
 
 _Readable.add_representer(

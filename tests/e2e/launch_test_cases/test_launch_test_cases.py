@@ -1,6 +1,7 @@
 """The stand-in for launch_testing runs launch tests as the real package does, by pytest.
 
-`records.yaml` was written with the real packages by `runner.py`. With them installed, this test compares them, too.
+`records.yaml` was written with the real packages by `runner.py`. If those are installed, this test compares them as
+well.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
-"""Runs commands of whichever `ros2` is installed, and writes down what each printed and how it ended.
+"""Runs commands of whichever `ros2` is installed, and records the output and exit status of each.
 
-`python -m tests.e2e.ros2_records.runner` runs the commands of `records.yaml` and prints that file anew, or the groups
-that are named. It was made so with the real ros2cli: `make real-launch`, then this program. The nodes of
-`sample_nodes.py` answer. Each command is run by a fork of this process, which has imported what a command needs.
+`python -m tests.e2e.ros2_records.runner` runs the commands of `records.yaml`, or of the given groups, and prints the
+new records. It was made so with the real ros2cli: `make real-launch`, then this program. The nodes of
+`sample_nodes.py` answer. Each command runs in a fork of this process, which has already imported the modules that
+commands need.
 """
 
 from __future__ import annotations
@@ -31,17 +32,17 @@ RECORDS = HERE / "records.yaml"
 PREFIX = HERE.parent / "launch_cases" / "prefix"
 SECONDS = 120.0  # for one command, on a busy machine
 TOGETHER = 8
-# Groups whose commands change something run one after the other; questions run side by side.
+# Groups whose commands change something run one after another; the others run in parallel.
 IN_ORDER = ("change",)
-# Verbs that look at the graph take the time to do so. Those that list have no condition to wait for, nor have those
-# that will not find what was named.
+# Verbs that look at the graph take the time to do so. Listing commands have no condition to wait for, and neither do
+# commands with an unknown name.
 LOOKING = ("node", "topic", "service", "action", "param")
 WITHOUT_SPIN_TIME = ("topic pub", "service call", "action send_goal")
 # The real ones of these ask ros2cli's daemon.
 WITHOUT_CHOICE = ("topic hz", "topic bw")  # of asking it or not
 BY_DAEMON = ("service type", "service find", "action list", "action info", "action type", "param")  # it knows already
 LISTING, NAMED = 5, 60
-# The fields of a record that say what to do, and what the real one may do instead.
+# The fields of a record that describe the command, and the alternatives of the real one.
 ASKED = ("command", "stdin", "files", "until", "lines", "sorted", "or")
 # What differs from run to run.
 CHANGING = (
@@ -141,7 +142,7 @@ def is_stand_in() -> bool:
 
 
 def _ros2(call: Mapping[str, Any]) -> int:
-    """Do what the program `ros2` does; return its exit status."""
+    """Run the command as the program `ros2` does; return its exit status."""
     main = importlib.import_module("autograder.ros.ros2.main").main
     sys.stdout = open(1, "w", closefd=False)  # noqa: SIM115  # they end with this process
     sys.stderr = open(2, "w", buffering=1, closefd=False)  # noqa: SIM115
@@ -193,7 +194,7 @@ def records(groups: Mapping[str, list[Mapping[str, Any]]], scratch: Path) -> Ite
 
 
 def prepare() -> None:
-    """Import once, for all forks, what commands import."""
+    """Import the modules that commands need once, for all forks."""
     importlib.import_module("rclpy.action")
     if is_stand_in():
         for name in ("action", "interface", "launch", "node", "param", "pkg", "run", "service", "topic"):
@@ -244,7 +245,7 @@ def _daemon() -> Iterator[None]:
 
 
 class _Readable(yaml.SafeDumper):
-    """Writes texts of several lines as such, and each text where it belongs."""
+    """Writes texts of several lines as YAML blocks, and does not wrap lines."""
 
     def ignore_aliases(self, data: object) -> bool:
         return True

@@ -76,7 +76,7 @@ class Helper(Node):
         return response
 
     def execute(self, goal: Any) -> Any:
-        """Compute as many numbers as the order says; an order above 100 never comes to its end."""
+        """Compute as many numbers as the order says; a goal above 100 never ends."""
         numbers = [0, 1]
         while len(numbers) <= goal.request.order:
             # Slow enough for feedback to be heard before the result overtakes it.

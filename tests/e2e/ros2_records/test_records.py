@@ -1,6 +1,6 @@
-"""The stand-in for `ros2` prints what the real command prints, and ends as it does: the same commands, the same nodes.
+"""The stand-in for `ros2` has the same output and exit status as the real command, for the same commands and nodes.
 
-`records.yaml` was written with the real ros2cli by `runner.py`. With it installed, this test compares it, too.
+`records.yaml` was written with the real ros2cli by `runner.py`. If that is installed, this test compares it as well.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from autograder.ros.domains import Domain
 from tests.e2e.ros2_records.runner import HERE, RECORDS, is_stand_in
 
 EXPECTED: dict[str, list[dict[str, Any]]] = yaml.safe_load(RECORDS.read_text())
-# Where the stand-in does something else, and why.
+# Commands for which the stand-in differs, with reasons.
 DIFFERENCES: dict[str, dict[str, Any]] = {
     one.pop("command"): one for one in yaml.safe_load((HERE / "differences.yaml").read_text())
 }

@@ -1,4 +1,4 @@
-"""Integration tests of `fleet` as a student writes them; another test runs them and looks at what comes out."""
+"""Integration tests of `fleet` as a student writes them; another test runs them and checks the reports."""
 
 import launch_pytest
 import pytest
