@@ -74,7 +74,7 @@ def _piece(function: Callable[..., Any], arguments: tuple[Any, ...]) -> str:
 
 
 def is_forked(process: Process) -> bool:
-    """Return whether a sandboxed program is a fork server's; of one that has ended, nobody can say it was not."""
+    """Return whether a sandboxed program is a fork server's child; True if it has ended."""
     try:
         parent = Path(f"/proc/{process.innermost()}/stat").read_text().rpartition(")")[2].split()[1]
         words = Path(f"/proc/{parent}/cmdline").read_bytes()
@@ -123,7 +123,7 @@ _shared_cell = lru_cache(maxsize=1)(_SharedCell)
 
 
 def _serve(scratch: Path, requests: TextIO, replies: TextIO) -> None:
-    """Run pieces, each in a child of its own, until there are no more."""
+    """Run pieces, each in a separate child, until the input ends."""
     from autograder.run.fork_server.profiles import PROFILES
     from autograder.run.sandbox.launcher import warm_up
 
@@ -131,7 +131,7 @@ def _serve(scratch: Path, requests: TextIO, replies: TextIO) -> None:
     for profile in PROFILES:  # a server that a child warmed up would end with it
         warm_up(profile)
     gc.collect()
-    gc.freeze()  # what the children share is not theirs to look through
+    gc.freeze()  # keeps the garbage collector from copying pages that the children share
     for number, (variables, piece) in enumerate(map(json.loads, requests)):
         place, said = scratch / f"{number}", scratch / f"{number}.log"
         place.mkdir()

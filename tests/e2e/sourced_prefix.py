@@ -1,4 +1,4 @@
-"""Lays the ROS 2 of this virtual environment out as an installation from packages is, such as /opt/ros/jazzy.
+"""Arranges the ROS 2 of this virtual environment like an installation from packages, such as /opt/ros/jazzy.
 
 `python -m tests.e2e.sourced_prefix FOLDER` copies the wheels, the real launch and ros2cli (`make real-launch`), and the
 packages that colcon has built into the environment. A shell that sources FOLDER/setup.bash then has a ROS 2 Jazzy as
@@ -33,7 +33,7 @@ export PATH="{prefix}/bin:$PATH"
 
 
 def is_ros(distribution: Distribution) -> bool:
-    """Whether a distribution is one of ROS's own; those of the package index are no part of the prefix."""
+    """Whether a distribution is one of ROS's own; those of the package index are not part of the prefix."""
     name = distribution.name.lower().replace("-", "_")
     return name.startswith(("ros_", *REAL)) and name not in OURS and not name.startswith("ros_wheels")
 
@@ -61,7 +61,7 @@ def lay_out(target: Path) -> None:
     Python, for which apt installs these packages.
 
     Raises:
-        FileExistsError: `target` is there already.
+        FileExistsError: `target` exists.
         subprocess.CalledProcessError: the environment cannot be made.
     """
     target.mkdir(parents=True)

@@ -14,7 +14,7 @@ from tests.e2e.sandbox_support import in_worker_sandbox
 
 
 def executed(scratch: Path, cells: list[str]) -> dict[str, Any]:
-    """Run cells in the sandboxed kernel; return what each printed, and which processes are left of it."""
+    """Run cells in the sandboxed kernel; return the output of each, and the kernel's remaining processes."""
     from nbformat.v4 import new_code_cell, new_notebook
 
     from autograder.grade import run_notebook

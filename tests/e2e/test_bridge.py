@@ -31,7 +31,7 @@ PATIENCE = 60.0  # seconds: a deadline, not an expectation
 
 
 class Listener:
-    """A node that keeps what it hears and waits for conditions."""
+    """A node that keeps received messages and waits for conditions."""
 
     def __init__(self, context: rclpy.Context) -> None:
         self.node = rclpy.create_node("listener", context=context)
@@ -45,7 +45,7 @@ class Listener:
         return heard
 
     def wait(self, condition: Callable[[], Any], what: str) -> None:
-        """Spin until the condition holds."""
+        """Spin until the condition is true."""
         deadline = time.monotonic() + PATIENCE
         while not condition():
             assert time.monotonic() < deadline, f"waited in vain for {what}"

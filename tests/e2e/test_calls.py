@@ -161,7 +161,7 @@ def test_a_module_that_cannot_be_imported_is_diagnosed(
         calls(workspace, module, call("f"))
     assert caught.value.diagnosis.kind is kind
     assert words in caught.value.diagnosis.sentence
-    assert "importlib" not in caught.value.diagnosis.detail  # the loader's frames say nothing to a student
+    assert "importlib" not in caught.value.diagnosis.detail  # the loader's frames do not help a student
 
 
 def test_code_that_ends_the_process_gains_nothing(workspace: Workspace) -> None:

@@ -1,6 +1,6 @@
 """A class of five hands in each chapter. nbgrader's gradebook agrees with `autograder grade`, run with one job and two.
 
-Right answers, flawed ones and none are files; a student hands them in as a notebook that writes them. `make classes`
+Correct, flawed and missing answers are files; a student submits them as a notebook that writes them. `make classes`
 and `make nightly` take every chapter.
 """
 
@@ -36,7 +36,7 @@ Verifier = Callable[[Result], str]
 
 @dataclass(frozen=True)
 class Pupil:
-    """One of the class: what is written into the notebook (None: nothing), and what is claimed of the result."""
+    """A student: the answer in the notebook (None if there is none), and the expected result."""
 
     name: str
     write: Callable[[Path], None] | None
@@ -45,7 +45,7 @@ class Pupil:
 
 @dataclass(frozen=True)
 class Graded:
-    """A class after grading: its room, who is in it, and the results graded by one and by two at a time."""
+    """A class after grading: its classroom, its students, and the results with one and with two parallel jobs."""
 
     room: Classroom
     pupils: tuple[Pupil, ...]
@@ -65,7 +65,7 @@ def pupils(assignment: str) -> Iterator[Pupil]:
 
 
 def two_mutants(assignment: str) -> list[Mutant]:
-    """Return one whose files the notebook has cells for and one with others, where there are such."""
+    """Return two mutants: if possible, one whose files all have cells in the notebook, and one with other files."""
     heads = {cell.source.partition("\n")[0] for cell in Chapter(chapter(assignment)).read().cells}
     quick = [mutant for mutant in mutants(assignment) if not mutant.slow]
     inside = [m for m in quick if all(edit.replace and f"%%writefile ws/src/{edit.file}" in heads for edit in m.edits)]

@@ -122,7 +122,7 @@ def test_a_class_survives_kills_of_workers_scheduler_and_client(tmp_path: Path, 
 
 @pytest.fixture
 def todo(tmp_path: Path) -> list[Job]:
-    """Three submissions, each another one."""
+    """Three different submissions."""
     found = []
     for student in ("alice", "bob", "carol"):
         package = tmp_path / student / "src" / "package"
@@ -194,7 +194,7 @@ def test_ctrl_c_keeps_the_gradings_that_have_begun_and_resume_grades_the_rest(tm
     ) as process:
         assert process.stdout is not None
         assert process.stdout.readline().startswith("[1/3]")
-        os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the workers get it, too
+        os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the workers get it as well
         reports = process.stdout.read()
     assert process.returncode == 130, reports
     assert reports.endswith("\nStopped. Finished results are in out: the same command with --resume grades the rest.\n")

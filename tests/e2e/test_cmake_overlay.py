@@ -1,4 +1,4 @@
-"""Interface packages that are built with the overlay are what they are without it."""
+"""Interface packages that are built with the overlay are the same as without it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A forked colcon builds what a started one builds, and a setup.py sees and prints the same in both."""
+"""A forked colcon builds the same as a started one, and a setup.py sees and prints the same in both."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def build(workspace: Workspace, profile: str | None) -> tuple[int | None, str]:
 
 
 def builds(scratch: Path, packages: list[list[str]]) -> list[dict[str, Any]]:
-    """Build packages, each with its lines, started and forked; return what each build did."""
+    """Build packages, each with its lines, started and forked; return the outcome of each build."""
     workspace = Workspace(scratch / "ws", environment.find(), scratch / "home")
     for package, *lines in packages:
         bring(workspace, package, *lines)
@@ -91,7 +91,7 @@ def builds(scratch: Path, packages: list[list[str]]) -> list[dict[str, Any]]:
 def told(output: str) -> set[str]:
     """What a build says of packages and errors; colcon mixes its children's streams in any order.
 
-    Its own threads share stderr, too: what one logs may come before another's end of line. From Python 3.13 on, a
+    Its own threads also share stderr: one may log before another has ended its line. From Python 3.13 on, a
     traceback shows the source of `python -c`, if the program was started.
     """
     text = re.sub(r" (ERROR|WARNING):", r"\n\1:", FROM_RUN_TO_RUN.sub("", output))

@@ -18,7 +18,7 @@ def answer(tmp_path_factory: pytest.TempPathFactory) -> Answer:
 
 
 def grade(folder: Path, *options: str) -> tuple[subprocess.CompletedProcess[str], dict[str, dict[str, object]]]:
-    """Grade what lies in `folder`; return what the command said, and the results by student."""
+    """Grade the submissions in `folder`; return the command's output, and the results by student."""
     out = folder.parent / "results"
     command = [sys.executable, "-m", "autograder", "grade", str(folder), "--assignment", CHAPTER, "--out", str(out)]
     done = subprocess.run([*command, *options], capture_output=True, text=True, check=False)

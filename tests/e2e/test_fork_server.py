@@ -165,7 +165,7 @@ ENDS = {
 
 
 def in_any_order(lines: list[str]) -> list[list[str]]:
-    """Return the parts of each line, of which the order is the garbage collector's."""
+    """Return the sorted parts of each line, because their order depends on the garbage collector."""
     return [sorted(line.split("; ")) for line in lines]
 
 
@@ -259,7 +259,7 @@ def test_a_students_module_comes_first_on_the_path_of_a_forked_program(name: str
 
 
 def draws(scratch: Path) -> list[str]:
-    """Return what two forked programs draw."""
+    """Return the random numbers of two forked programs."""
     code = "import random, numpy\nprint(random.random(), numpy.random.default_rng().random(), numpy.random.random())"
     return [imports(scratch, "tests", code)[1] for _ in range(2)]
 

@@ -1,4 +1,4 @@
-"""A Python program that a forked program starts is forked, too, and has the same surroundings as a started one."""
+"""A Python program that a forked program starts is also forked, in the same environment as a started one."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.e2e.test_fork_server import ENDS, LONG, REPORT, in_any_order, workpla
 
 pytestmark = pytest.mark.usefixtures("forks")
 
-# Runs what it finds in `asked.json`, and prints what became of it.
+# Runs the commands in `asked.json`, and prints their outcomes.
 PARENT = """
 import json, os, subprocess, sys
 
@@ -57,7 +57,7 @@ def program(folder: Path, name: str, code: str, first: str = f"#!{sys.executable
 
 
 def both(scratch: Path, asked: list[tuple[str, list[str], dict[str, Any]]], spec: Sandbox) -> list[dict[str, Any]]:
-    """Return what becomes of commands that a started and a forked program start."""
+    """Return the outcome of commands that a started and a forked program start."""
     parent = spec.workdir / "parent.py"
     parent.write_text(PARENT)
     (spec.workdir / "asked.json").write_text(json.dumps(asked))

@@ -1,4 +1,4 @@
-"""Real gradings: a right submission has every point, errors are named, and a failure of the grader is no zero."""
+"""Real gradings: a correct submission gets full marks, errors are named, and a grader failure is not a zero."""
 
 from __future__ import annotations
 
@@ -215,7 +215,7 @@ def test_a_notebook_whose_kernel_dies_still_counts_with_the_files_it_wrote(tmp_p
 
 @pytest.fixture
 def worker(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
-    """Let other programs stand where the worker is started, one after another; each gets what the worker gets."""
+    """Start other programs instead of the worker, one after another, with the same input."""
 
     def put(*codes: str) -> None:
         left = itertools.cycle(codes)

@@ -78,7 +78,7 @@ def graded(place: Path, writers: Writers, only: tuple[str, ...]) -> dict[str, Re
 
 
 def untimed(folder: Path) -> dict[str, Any]:
-    """Return the files of a result by name; of those that hold times, all but the times."""
+    """Return the files of a result by name, without the times in them."""
     files: dict[str, Any] = {path.name: path.read_bytes() for path in folder.iterdir()}
     files[RESULT] = without_times(json.loads(files[RESULT]))
     if NOTEBOOK in files:

@@ -65,7 +65,7 @@ def hand_in(student: User, *, flawed: bool) -> list[str]:
 
 
 def outside_the_hub(student: User, *arguments: str) -> str:
-    """Run autograder as the student, as after a login by SSH; return what it prints."""
+    """Run autograder as the student, as after a login by SSH; return its output."""
     command = [str(Path(sys.executable).with_name("autograder")), *arguments]
     environment = {"PATH": os.defpath, "HOME": str(student.hub.homes / student.name)}
     return subprocess.check_output(command, user=student.name, env=environment, cwd="/", text=True).strip()

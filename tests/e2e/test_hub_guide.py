@@ -1,4 +1,4 @@
-"""The guide to a JupyterHub for a class, run as it stands."""
+"""Runs the guide to a JupyterHub for a class exactly as written."""
 
 from __future__ import annotations
 

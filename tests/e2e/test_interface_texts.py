@@ -1,4 +1,4 @@
-"""Texts of a definition stay texts in what rosidl generates: no compiler and no interpreter runs them as code."""
+"""Strings of a definition stay strings in rosidl's generated files: nothing runs them as code."""
 
 from __future__ import annotations
 

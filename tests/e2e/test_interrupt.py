@@ -24,7 +24,7 @@ SLEEPS = "import time\n\ntime.sleep(10.0)\n"
 
 @contextmanager
 def resume(folder: Path) -> Iterator[subprocess.Popen[str]]:
-    """Grade what is not graded of the class in `folder`, one at a time."""
+    """Grade the ungraded submissions of the class in `folder`, one at a time."""
     command = [sys.executable, "-u", "-m", "autograder", "grade", "class", "--assignment", "02_nodes"]
     with subprocess.Popen(
         [*command, "-j", "1", "--resume"],

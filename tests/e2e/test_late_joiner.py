@@ -17,7 +17,7 @@ from autograder.ros.domains import Domain
 
 @pytest.fixture
 def board() -> Iterator[Node]:
-    """A node in a domain of its own."""
+    """A node in a separate domain."""
     with Domain() as domain:
         context = Context()
         rclpy.init(args=[], context=context, domain_id=domain.number)

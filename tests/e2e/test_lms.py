@@ -118,7 +118,7 @@ def test_a_zip_of_moodle_is_graded_and_its_worksheet_gets_the_marks(
         return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
 
     graded = autograder("grade", "download.zip", "--assignment", assignment, "--roster", "worksheet.csv", "-j", "2")
-    assert graded.returncode == 1, graded.stderr  # somebody is not in the roster
+    assert graded.returncode == 1, graded.stderr  # a student is not in the roster
     assert (
         "Not graded: Eve Stranger_999_assignsubmission_file_: it matches no student in worksheet.csv." in graded.stderr
     )

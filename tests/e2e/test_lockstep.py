@@ -112,7 +112,7 @@ STEP_NS = 100_000_000  # the period of the programs' timers
 
 
 def trace(scratch: Path, program: str, runs: int) -> list[Any]:
-    """Run a program several times in lockstep; return what it said in each run."""
+    """Run a program several times in lockstep; return its messages in each run."""
     from std_msgs.msg import String
 
     from autograder.harness import SteppedHarness, Workspace

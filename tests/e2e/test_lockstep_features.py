@@ -1,4 +1,4 @@
-"""Lockstep carries what rclpy publishes: services, actions, several programs; the same run every time."""
+"""Lockstep supports rclpy's features: services, actions, several programs; every run is the same."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ def write_workspace(scratch: Path, **texts: str) -> Any:
 
 
 def said(harness: Any, topic: str = "/said") -> list[Any]:
-    """Return what was said, when and in which words."""
+    """Return the times and texts of the messages."""
     return [[round(stamped.seconds, 3), stamped.message.data] for stamped in harness.messages(topic)]
 
 
 def twice(run: Any) -> Any:
-    """Run something twice; return what came of it, once it is the same."""
+    """Run something twice, require the same outcome, and return it."""
     first, second = run(), run()
     assert first == second, f"{first}\n{second}"
     return first
@@ -154,7 +154,7 @@ def test_an_action_gives_feedback_and_a_result_in_ros_time(name: str) -> None:
         assert stopped == 3
     elif "synchronous" in name and "asynchronous" not in name:
         assert times == pytest.approx([0.0, 0.2, 0.4])
-        assert stopped == 40  # its one thread was busy, so nobody could take the request to cancel
+        assert stopped == 40  # its only thread was busy, so nothing could handle the cancel request
     else:
         assert times == [0.0, 0.0, 0.0]
 
@@ -398,7 +398,7 @@ def test_programs_that_answer_each_other_without_end_are_stopped() -> None:
 
 
 def flooded(scratch: Path, text: str) -> list[Any]:
-    """Return what the grader heard in half a second of a program."""
+    """Return the messages that the grader received in half a second of a program."""
     with open_lab(write_workspace(scratch, node=text), "node") as harness:
         harness.run(0.5)
         return said(harness)

@@ -36,7 +36,7 @@ def grade(folder: Path, assignment: str = "02_nodes", checks: tuple[str, ...] = 
 
 
 def outcomes(result: Result, checks: tuple[str, ...] = CHECKS) -> dict[str, str]:
-    """Return what became of the checks that were run."""
+    """Return the outcomes of the checks."""
     return {check.id: check.outcome.value for check in result.checks if check.id in checks}
 
 
@@ -135,7 +135,7 @@ def test_all_programs_run_in_real_time_if_one_of_them_cannot_be_stepped(tmp_path
 
 
 def spin_in_a_thread(path: Path) -> None:
-    """Let a program of the reference spin in a thread of its own."""
+    """Make a program of the reference spin in a separate thread."""
     text = path.read_text()
     assert text.count("        rclpy.spin(node)\n") == 1
     text = text.replace("        rclpy.spin(node)\n", f"        {THREADED}")
@@ -234,7 +234,7 @@ def test_a_message_that_the_grader_reads_late_keeps_its_time_of_arrival() -> Non
 
 
 def refused(scratch: Path, text: str) -> list[str]:
-    """Step a program that cannot be stepped; return what the student is told."""
+    """Step a program that cannot be stepped; return the message to the student."""
     from autograder.exceptions import StudentError
     from autograder.harness import SteppedHarness
 

@@ -45,7 +45,7 @@ def work_of(student: str, released: NotebookNode) -> NotebookNode:
     if student != "empty":
         fill_in(released, ASSIGNMENT)
     if student == "reference":
-        released.cells.append(new_code_cell("print('mine')"))  # of which nobody knows what it does: the notebook runs
+        released.cells.append(new_code_cell("print('mine')"))  # its effect is unknown, so the notebook is run
     if student == "odd":  # JupyterLab opens it, and nbformat's schema refuses it
         released.nbformat_minor = 4
         released.cells[1].outputs = [NotebookNode(output_type="stream", text="hi")]
@@ -140,7 +140,7 @@ def test_the_feedback_explains_and_shows_no_source_of_the_suite(student: str, gr
     (stored,) = load(graded.course / ".build" / "nbgrader" / ASSIGNMENT / student)
     for check in stored.checks:
         assert check.title in html
-        if check.outcome is Outcome.FAILED:  # what was not checked is folded under what failed
+        if check.outcome is Outcome.FAILED:  # skipped checks are folded below the failed one
             assert check.message in html
     assert html.count("data:image/png;base64,") >= len(stored.artifacts)
     assert [line for file in suite.files for line in code_lines(file) if line in html] == []

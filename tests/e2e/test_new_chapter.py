@@ -26,7 +26,7 @@ def shell(script: str, folder: Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="module")
 def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A new course with two new chapters, one of them with other names than its own."""
+    """A new course with two new chapters, one of which has custom names."""
     folder = tmp_path_factory.mktemp("new")
     new = "autograder --course mine new chapter"
     script = f"autograder new course mine\n{new} 10_mapping\n{new} 18_launch --package launch_lab --node watcher"

@@ -25,7 +25,7 @@ def right(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def stop(report: DriveReport | Notice) -> float:
-    """Return how far from the wall the robot stands in the end."""
+    """Return the robot's final distance from the wall."""
     assert isinstance(report, DriveReport)
     return WALL - float(report.recording.poses[-1, 0, 0])
 

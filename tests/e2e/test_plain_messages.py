@@ -1,4 +1,4 @@
-"""Messages of plain values are, on the wire, what rosidl's generated messages are."""
+"""Messages of plain values have the same bytes on the wire as rosidl's generated messages."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ DEFAULTS = ("float32[3] a [1, 2.5, -3]", "int64[<=4] b [7]", "string[] c ['x', '
 TEXTS = {
     "msg/Nothing.msg": "int8 ONE=1\n",
     "msg/Inner.msg": "bool b true\nfloat64 d\nint16[] s [1, -2]\nstring text 'a b'\n",
-    # In an order in which alignments meet each other.
+    # In an order that mixes alignments.
     "msg/All.msg": "\n".join(LINES[::3] + LINES[1::3] + LINES[2::3]) + "\n",
     "msg/Defaults.msg": "\n".join(DEFAULTS),
     "srv/Ask.srv": "Inner[] question\n---\nfloat32 answer\n",

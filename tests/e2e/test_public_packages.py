@@ -1,4 +1,4 @@
-"""Public ROS packages, as they are, build here, their tests run, and their programs talk to each other.
+"""Unmodified public ROS packages build here, their tests run, and their programs communicate.
 
 Each variable names a clone of a repository, branch jazzy: ROS2_EXAMPLES_SOURCE of github.com/ros2/examples,
 ROS2_DEMOS_SOURCE of github.com/ros2/demos. `make public-packages` clones them.

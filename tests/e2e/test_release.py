@@ -1,4 +1,4 @@
-"""The students' release works by itself, and holds no hidden check and no solution."""
+"""The student release works on its own, and contains neither hidden checks nor solutions."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def test_a_release_of_one_chapter_updates_a_release_of_all_chapters(release: Pat
 
 
 def test_a_students_pytest_does_not_use_the_options_of_the_courses_tests(release: Path) -> None:
-    """The students' lock has no pytest-timeout, and a warning in a student's test is no error."""
+    """The students' lock has no pytest-timeout, and a warning in a student's test is not an error."""
     folder = release / "chapters" / "06_testing" / "ws"
     test = folder / "test_warns.py"
     test.write_text("import warnings\n\n\ndef test_warns():\n    warnings.warn('an old way', DeprecationWarning)\n")

@@ -21,7 +21,7 @@ NODES = Path(__file__).parent / "ros2_records" / "sample_nodes.py"
 ROS2 = [sys.executable, "-m", "autograder.ros.ros2"]
 # Far above what a loaded machine needs: a command that hangs must end the test.
 PATIENCE = 120.0
-# For verbs that wait for something which is there.
+# For verbs that wait for something that exists.
 WAIT = ("--spin-time", "60")
 
 # The real one has other options, and writes what it is given into setup.py as it is; its records are in ros2_records.

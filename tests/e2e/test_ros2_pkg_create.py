@@ -36,7 +36,7 @@ def generate_launch_description():
         Node(package='py_pkg', executable='hello', output='screen'),
     ])
 """
-# Ends only when told to, with an exit code of its own.
+# Ends only on request, with its own exit code.
 STUBBORN = """import signal
 import sys
 import threading

@@ -1,4 +1,4 @@
-"""What code in a real sandbox can see, reach and leave behind, started there or forked into it."""
+"""Code in a real sandbox, started or forked: what it can see, reach and leave behind."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def _run(code: str, *, network: bool = False, **limits: Any) -> dict[str, Any]:
 
 
 def tries(scratch: Path, name: str, port: int) -> str:
-    """Try one way out of a sandbox in this worker sandbox, and return what got out."""
+    """Try one way to escape from a sandbox in this worker sandbox, and return what it reached."""
     os.environ["CANARY"] = CANARY
     profile = "lockstep" if os.environ[WAY] == "forked" else None
     if profile:
@@ -271,7 +271,7 @@ while True: signal.pause()
 
 
 def waits(scratch: Path) -> list[str]:
-    """Start a sandboxed program, and wait until somebody ends this process."""
+    """Start a sandboxed program, and wait until this process is ended."""
     spec = Sandbox(scratch, mounts=(Mount(scratch, writable=True),))
     process = run("print('up', flush=True)\n" + ENDLESS, spec)
     _until(lambda: "up" in process.output)

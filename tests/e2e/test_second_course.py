@@ -28,7 +28,7 @@ def run(*command: str, cwd: Path, **variables: str) -> subprocess.CompletedProce
 
 @pytest.fixture(scope="module")
 def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The second course in a folder of its own, brought up to date."""
+    """The second course in a separate folder, updated."""
     course = tmp_path_factory.mktemp("second") / "course"
     shutil.copytree(SECOND, course, ignore=course_paths.NOT_COPIED)
     for verb in ("sync", "tables"):
@@ -39,7 +39,7 @@ def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def autograder(course: Path, tmp_path: Path) -> Run:
-    """Run a verb on the second course, from a folder that has nothing to do with it."""
+    """Run a verb on the second course, from an unrelated folder."""
     return lambda *words, **variables: run(
         "autograder", *words, cwd=tmp_path, AUTOGRADER_COURSE=str(course), **variables
     )

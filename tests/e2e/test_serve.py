@@ -28,7 +28,7 @@ assignments:
 
 @pytest.fixture(scope="module")
 def classroom(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Classroom]:
-    """The real service of a real hub, on a folder of its own."""
+    """The real service of a real hub, with its own folder."""
     folder = tmp_path_factory.mktemp("classroom")
     (folder / "serve.yaml").write_text(SETTINGS)
     command = [sys.executable, "-c", "from autograder.cli import main; main()", "serve", str(folder / "serve.yaml")]

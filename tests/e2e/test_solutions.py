@@ -94,7 +94,7 @@ def executable(terminal: Terminal, name: str) -> Path:
 
 @pytest.fixture(scope="module")
 def tested(reference: Terminal) -> str:
-    """What `colcon test` said about all packages. Those of messages have no test that calls the linters: we do."""
+    """The output of `colcon test` for all packages. Those of messages have no test that calls the linters: we do."""
     said = reference.run("colcon", "test", "--packages-select", *PYTHON).stdout
     for package in MESSAGES:
         for linter in LINTERS:
@@ -136,7 +136,7 @@ def test_the_definitions_of_an_interface_package_can_be_used(terminal: Terminal,
 
 
 def ended(process: subprocess.Popen[str], how: signal.Signals) -> str:
-    """Send a signal, and SIGTERM again to a node that has not heard of it; return what the node says.
+    """Send a signal, and SIGTERM again if the node missed it; return the node's output.
 
     At SIGTERM rclpy first wakes the executor and then shuts the context down. An executor that is quicker finds the
     context still up, and waits for the next thing to happen: for ever, in a node without a timer that nobody talks to.

@@ -1,4 +1,4 @@
-"""The interface packages of ROS's tutorials are there after set-up, with the types of the real ones."""
+"""The interface packages of ROS's tutorials are installed by set-up, with the same types as the real ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The Python tutorials of ROS 2 Jazzy run here as they are printed: commands, code, and what they say one sees.
+"""The Python tutorials of ROS 2 Jazzy run here as printed: commands, code and expected output.
 
 ROS2_DOCUMENTATION_SOURCE names a clone of github.com/ros2/ros2_documentation, branch jazzy; `make tutorials` makes one.
 `tutorials/pages.yaml` says what a reader does on each page; commands, code and changes of files are the page's own.
@@ -53,7 +53,7 @@ class Page:
 
 @dataclass
 class Program:
-    """A command that goes on in a terminal; a thread reads what it prints."""
+    """A command that keeps running in a terminal; a thread reads its output."""
 
     process: subprocess.Popen[str]
     lines: queue.SimpleQueue[str | None] = field(default_factory=queue.SimpleQueue)
@@ -90,7 +90,7 @@ class Program:
 
 @dataclass
 class Reader:
-    """Who does what a page says, in a workspace."""
+    """A reader who follows a page in a workspace."""
 
     folder: Path
     turtles: Path
@@ -156,7 +156,7 @@ class Reader:
 
 @pytest.fixture(scope="module")
 def turtles(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Build what the tutorials use and has no wheel."""
+    """Build the packages of the tutorials that have no wheel."""
     folder = tmp_path_factory.mktemp("turtles")
     (folder / "src").symlink_to(HERE / "packages")
     built = subprocess.run(**Reader(folder, folder, 0).call("colcon build"), timeout=PATIENCE)
@@ -166,7 +166,7 @@ def turtles(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def reader(turtles: Path, tmp_path: Path, ros_domain: int) -> Iterator[Reader]:
-    """A new workspace; what goes on at the end gets Ctrl-C, and has to end."""
+    """A new workspace; commands still running at the end get Ctrl-C, and must end."""
     (tmp_path / "src").mkdir()
     reader = Reader(tmp_path, turtles, ros_domain)
     yield reader

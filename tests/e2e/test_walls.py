@@ -1,4 +1,4 @@
-"""A worker that was taken over, with any code in its place, harms only the result of its own submission."""
+"""A compromised worker, which can run any code, harms only the result of its own submission."""
 
 from __future__ import annotations
 

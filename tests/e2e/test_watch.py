@@ -34,7 +34,7 @@ def test_a_saved_file_is_checked_again_what_failed_first_until_ctrl_c(tmp_path: 
         assert process.stdout is not None
 
         def summaries() -> list[str]:
-            """Return the summaries of what is checked until it waits."""
+            """Return the summaries of the checks until it waits."""
             assert process.stdout is not None
             lines = iter(process.stdout.readline, "")
             said = [line.rstrip() for line in iter(lambda: next(lines, WAITING).rstrip(), WAITING)]

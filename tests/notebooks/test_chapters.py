@@ -90,7 +90,7 @@ def meaning(cell: str) -> object:
 
 
 def text(element: ElementTree.Element) -> str:
-    """Return an element's own text; one that holds others has none that counts."""
+    """Return an element's own text; the text of an element with children is ignored."""
     return "" if len(element) else (element.text or "")
 
 

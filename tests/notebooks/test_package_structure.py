@@ -1,4 +1,4 @@
-"""The packages that chapter 01_package_structure gives are broken as it says, and its repairs lead to the reference."""
+"""The packages of chapter 01_package_structure are broken as described, and its repairs lead to the reference."""
 
 from __future__ import annotations
 

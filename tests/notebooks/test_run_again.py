@@ -29,7 +29,7 @@ def shown(cell: NotebookNode) -> set[str]:
 
 
 def twice(notebook: NotebookNode) -> NotebookNode:
-    """Return a notebook that holds all cells two times."""
+    """Return a notebook that contains each cell twice."""
     doubled = copy.deepcopy(notebook)
     again = copy.deepcopy(notebook.cells)
     for cell in again:

@@ -103,7 +103,7 @@ class Student:
                 self.exercises.append([])
             elif cell.cell_type == "code":
                 self.exercises[-1].append(cell)
-        for exercise in self.exercises:  # what stands below the last file tries it
+        for exercise in self.exercises:  # the cells below the last file try it
             while exercise and not (is_solution(exercise[-1]) or "source" in metadata(exercise[-1])):
                 exercise.pop()
 

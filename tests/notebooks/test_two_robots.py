@@ -1,4 +1,4 @@
-"""Chapter 4's two robots, run as a student runs them: what the cell shows is what the text above it says.
+"""Chapter 4's two robots, run as by a student: the cell's output matches the text above it.
 
 `RUNS` says how often at night, half of the runs beside two programs that keep two cores busy.
 """

@@ -245,7 +245,7 @@ def _daemon() -> Iterator[None]:
 
 
 class _Readable(yaml.SafeDumper):
-    """Writes texts of several lines as YAML blocks, and does not wrap lines."""
+    """Writes texts of several lines as YAML blocks, and uses no aliases."""
 
     def ignore_aliases(self, data: object) -> bool:
         return True

@@ -42,7 +42,7 @@ class Commands:
         return 0
 
     def take(self) -> list[str]:
-        """Return what was run since the last call, in a word each."""
+        """Return the commands since the last call, one word each."""
         words = {
             "-m venv": "venv",
             "requirements.lock": "base",

@@ -30,7 +30,7 @@ def entries(lock: str) -> list[str]:
 
 
 def pins(lock: str) -> set[str]:
-    """Return each pin, `name==version`, without the marker that says where it holds."""
+    """Return each pin, `name==version`, without its environment marker."""
     return {entry.split()[0] for entry in entries(lock)}
 
 

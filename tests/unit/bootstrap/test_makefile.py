@@ -17,7 +17,7 @@ STUDENTS = ROOT / "assets" / "students" / "Makefile"
 
 
 def make(*arguments: str, path: str | None = None, **environ: str) -> str:
-    """Run make in the project and return what it prints."""
+    """Run make in the project and return its output."""
     clean = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS", "PYTHON"))}
     done = subprocess.run(
         [shutil.which("make") or "make", *arguments],
@@ -63,7 +63,7 @@ def test_make_cluster_installs_the_pinned_packages_of_a_cluster_beside_the_cours
 
 @pytest.fixture
 def interpreters(tmp_path: Path) -> Path:
-    """A folder that holds the shell and nothing else to run."""
+    """A folder that contains only the shell."""
     for tool in ("sh", "sed", "expand"):
         (tmp_path / tool).symlink_to(shutil.which(tool) or tool)
     return tmp_path

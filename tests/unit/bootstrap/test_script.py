@@ -42,7 +42,7 @@ def script(root: Path, *arguments: str, **environ: str) -> subprocess.CompletedP
 
 @pytest.fixture
 def script_clone(clone: Path) -> Path:
-    """A clone that holds the bootstrap script itself, and a lock that pip refuses at once."""
+    """A clone with the bootstrap script itself, and a lock that pip rejects at once."""
     for name in ("bootstrap.py", "ros/distribution.json"):
         (clone / "autograder" / name).write_bytes((ROOT / "autograder" / name).read_bytes())
     for name in ("requirements.lock", "requirements-dev.lock"):

@@ -1,4 +1,4 @@
-"""Failures that came with another one stand below it, and the dearest cause comes first."""
+"""Dependent failures are listed below their cause, and the most expensive cause comes first."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def result(make_check: MakeCheck) -> Make:
 
 
 def told(*checks: CheckResult, diagnosis: str = "") -> list[tuple[str, str, str]]:
-    """Return each cause with what failed and what was not checked because of it, as ids."""
+    """Return each cause with the ids of the checks that failed or were skipped because of it."""
     found = causes(checks, diagnosis)
     assert sorted(check.id for cause in found for check in cause.checks) == sorted(check.id for check in checks)
     return [(c.check.id, " ".join(o.id for o in c.failed), " ".join(o.id for o in c.unchecked)) for c in found]

@@ -1,6 +1,6 @@
 """A grading of a class that kills itself, as `kill -9` does, before a chosen change of a file of its results.
 
-It is run in a process of its own. The workers are stood in for; all that writes and replaces results is the real code.
+It runs in a separate process. The workers are replaced; the code that writes and replaces results is real.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def grade(folder: Path, lost: Mapping[str, tuple[str, ...]], version: str, *opti
         version: the version of the suite.
         options: more words of the command.
         kill_at: the number of the change to the results before which the process kills itself, from 0; -1 for none.
-            The file `changes` says how many there were if it did not.
+            If it does not, the file `changes` contains their number.
     """
     results, changes = folder / "results", 0
     printed = os.open(folder / "printed", os.O_WRONLY | os.O_CREAT | os.O_APPEND)

@@ -1,4 +1,4 @@
-"""The command line: what it says, and its exit status."""
+"""The output and exit status of the command line."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def test_regrading_with_resume_lists_the_students_whose_mark_changed(
     for name in ("alice", "bob", "carol"):
         _submission(tmp_path / "class" / name)
     alice, bob, carol = make_result("alice"), make_result("bob"), make_result("carol")
-    for before in (alice, bob):  # nobody has graded carol yet
+    for before in (alice, bob):  # carol is not graded yet
         result.write_json(tmp_path / "out" / before.student / "result.json", before.to_json())
     mended = replace(alice, checks=(*alice.checks[:2], replace(alice.checks[2], points=4.0), *alice.checks[3:]))
     graded(mended, bob, carol)

@@ -36,7 +36,7 @@ erin (02_nodes): 51 -> 53
 
 
 def run(folder: Path, lost: Lost, version: str, *options: str, kill_at: int = -1) -> int | None:
-    """Grade the class in a process of its own; return its exit status."""
+    """Grade the class in a separate process; return its exit status."""
     process = FORKS.Process(target=grade, args=(folder, lost, version, *options), kwargs={"kill_at": kill_at})
     process.start()
     process.join()
@@ -45,7 +45,7 @@ def run(folder: Path, lost: Lost, version: str, *options: str, kill_at: int = -1
 
 @pytest.fixture(scope="module")
 def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A class that was graded with the old version. What erin handed in is what alice did."""
+    """A class that was graded with the old version. Erin's submission is a copy of Alice's."""
     folder = tmp_path_factory.mktemp("graded")
     for student in (*BEFORE, "erin"):
         package = folder / "class" / student / "src" / "package"

@@ -31,7 +31,7 @@ def stored(make_result: Callable[..., Result], tmp_path: Path) -> Path:
 def test_the_stored_run_of_a_check_is_shown_on_its_own(stored: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(variable, raising=False)
-    for path in (stored, stored / "result.json"):  # the page of the first time is no second result
+    for path in (stored, stored / "result.json"):  # the first run's page is not a second result
         said = CliRunner().invoke(cli.group, ["replay", str(path), "--check", "turns"])
         assert said.exit_code == 0, said.output
         page = stored / "replay" / "turns" / "feedback.html"

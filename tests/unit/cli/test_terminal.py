@@ -1,4 +1,4 @@
-"""No text of a student's steers the terminal of the person who grades, whichever verb prints it."""
+"""No text of a student controls the grader's terminal, whichever verb prints it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ HOSTILE = "a\x1b]0;t\x07\x1b]52;c;eA==\x07\x1b[2A\x9b1m\u202eb\u2066\u200f\u200b
 MakeResult = Callable[..., Result]
 
 
-MARKS = "\u200b\u200f\ufeff"  # a page may hold them: some languages need them, and they turn nothing round
+MARKS = "\u200b\u200f\ufeff"  # allowed on a page: some languages need them, and they do not reverse text
 
 
 def expect_harmless(text: str, allowed: str = "") -> None:

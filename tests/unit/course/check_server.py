@@ -1,6 +1,6 @@
 """Runs `autograder course check` for each line that it reads, in a fork of a process that has all modules already.
 
-Each answer is what the command said, and a last line with its exit status. The arguments stand in the line.
+Each answer is the command's output, and a last line with its exit status. The line contains the arguments.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def serve() -> None:
                 main(["course", "check", *line.split()])
             except SystemExit as ended:
                 sys.stdout.flush()
-                os._exit(int(ended.code or 0))  # without what ROS's libraries do at the end of a process
+                os._exit(int(ended.code or 0))  # without the exit handlers of ROS's libraries
         _, status = os.waitpid(child, 0)
         print(END, os.waitstatus_to_exitcode(status), flush=True)
 

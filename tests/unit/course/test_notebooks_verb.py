@@ -1,4 +1,4 @@
-"""`autograder notebooks` says of each notebook and form how it ran, and its status is that of the worst."""
+"""`autograder notebooks` reports how each notebook and form ran, and its exit status is the worst of them."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_the_named_forms_run_and_a_failed_form_is_reported_with_its_cell(course:
 def test_several_notebooks_run_at_once_each_in_its_own_domain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     place = tmp_path / "place"
     place.mkdir()
-    # Each waits until the other one has come: one after the other, both would fail.
+    # Each waits for the other: if run one after another, both would fail.
     meet = f"""import os, time
 from pathlib import Path
 Path('{place}', os.environ['ROS_DOMAIN_ID']).touch()

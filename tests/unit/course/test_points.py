@@ -1,4 +1,4 @@
-"""Grade cells, groups and points hold together."""
+"""Grade cells, groups and points are consistent."""
 
 from __future__ import annotations
 

@@ -165,7 +165,7 @@ def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def check(course: Path) -> Iterator[CheckCourse]:
-    """Run `autograder course check` on the course, and return what it says, with its exit status in the last line."""
+    """Run `autograder course check` on the course, and return its output, with its exit status in the last line."""
     command = [sys.executable, "-m", "tests.unit.course.check_server"]
     environment = {**os.environ, "AUTOGRADER_COURSE": str(course)}
     pipe = subprocess.PIPE
@@ -191,7 +191,7 @@ def check(course: Path) -> Iterator[CheckCourse]:
 
 
 def slip(course: Path, file: str, text: str | None, put: str) -> Callable[[], None]:
-    """Make a slip in a file of the course, and return what undoes it."""
+    """Make a slip in a file of the course, and return a function that undoes it."""
     path = course / file
     if text is None:
         path.parent.mkdir(exist_ok=True)
@@ -228,7 +228,7 @@ def test_slips_in_several_files_are_all_said_at_once(course: Path, check: CheckC
         for each in undo:
             each()
     missing = [sentence for *_, sentence in chosen if sentence not in said]
-    assert missing == [SLIPS[17][4]]  # what a check holds is known where its suite can be imported
+    assert missing == [SLIPS[17][4]]  # the requirements that a check covers are known only if its suite can be imported
     assert check() == f"\n{END} 0"
 
 

@@ -79,7 +79,7 @@ def test_an_installed_autograder_uses_the_course_that_contains_the_working_folde
 
 @pytest.mark.slow  # it imports all of them
 def test_no_module_of_the_autograder_reads_the_course_when_it_is_imported(tmp_path: Path) -> None:
-    # The checks and attacks of chapters are a part of the course. `payloads` is what attacks are made of.
+    # The checks and attacks of chapters are a part of the course. Attacks are built from `payloads`.
     names = [
         ".".join(path.relative_to(course_paths.ROOT).with_suffix("").parts)
         for path in sorted((course_paths.ROOT / "autograder").rglob("*.py"))

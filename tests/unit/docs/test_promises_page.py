@@ -1,4 +1,4 @@
-"""Each promise of the README and of the guides has a test that says so, and no test names words that no page has."""
+"""Each promise of the README and of the guides has a test, and no test names words that are on no page."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ def answers(failing: Mapping[str, CommandResult]) -> Callable[[Sequence[str], Ma
 
 
 def good(**lack: Any) -> System:
-    """Return a machine that has everything, but for what is replaced."""
+    """Return a machine that lacks nothing, with some attributes replaced."""
     system = System()
     vars(system).update({**GOOD, **lack})
     return system
@@ -467,7 +467,7 @@ def test_a_command_that_does_not_end_is_stopped(monkeypatch: pytest.MonkeyPatch)
 
 @pytest.fixture
 def forgets_tries() -> Iterator[None]:
-    """Namespaces are tried anew in the test, and again after it."""
+    """Discard the cached probe of namespaces before and after the test."""
     namespaces_failure.cache_clear()
     yield
     namespaces_failure.cache_clear()

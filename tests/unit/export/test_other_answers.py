@@ -1,4 +1,4 @@
-"""Students with full marks get other good answers, and nobody else does."""
+"""Only students with full marks get other good answers."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
     python -m tests.unit.fingerprint.record
 
-What changes no mark by itself is left out of a module's digest: comments of a whole line, docstrings, empty lines.
+A module's digest excludes parts that cannot change a mark: full-line comments, docstrings and empty lines.
 There is a line for each file, so that two branches that change two files do not collide.
 """
 

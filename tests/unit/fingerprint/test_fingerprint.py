@@ -1,4 +1,4 @@
-"""The version of a suite changes with the chapter's files and the grader's number, the digest with all that is read."""
+"""A suite's version changes with the chapter's files and the grader's number, its digest with every file read."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Finding a class's submissions, and keeping results that still hold."""
+"""Finding a class's submissions, and keeping results that are still valid."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ def submissions(tmp_path: Path) -> dict[str, Path]:
 def grade(
     tmp_path: Path, submissions: dict[str, Path], make_result: MakeResult, monkeypatch: pytest.MonkeyPatch
 ) -> Callable[..., list[str]]:
-    """Grade the class; return who was really graded."""
+    """Grade the class; return the students who were actually graded."""
 
     def run(*, together: int = 1, **options: Any) -> list[str]:
         grader = Grader(make_result, together)

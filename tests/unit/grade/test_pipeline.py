@@ -1,4 +1,4 @@
-"""What a worker says is checked, a point lost on a busy machine is graded once more, and all has one budget of time."""
+"""Workers' replies are validated, points lost on a busy machine are graded again, and one time budget limits all."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ DONE, FAILED = WorkerReport(ExitReason.EXITED, 0, ""), WorkerReport(ExitReason.E
 
 
 class Worker:
-    """Stands for the workers: comes to one result after the other, and notes whether it was alone."""
+    """Replaces the workers: returns one result after another, and records whether it ran alone."""
 
     def __init__(self, *results: Result | None) -> None:
         self.left, self.alone, self.times = list(results), list[bool](), list[float]()
-        self.last: list[bool] = []  # whether each try was said to be the last one
+        self.last: list[bool] = []  # whether each try was announced as the last one
 
     def __call__(self, job: Job) -> WorkerReport:
         self.alone.append(pipeline._machine._turn.locked())

@@ -27,7 +27,7 @@ def waits() -> list[float]:
 
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """A clock that shows what it is told, one value after the other."""
+    """A clock that returns given values, one after another."""
     instants: list[float] = []
     monkeypatch.setattr(cpu_starvation, "time", SimpleNamespace(monotonic=lambda: instants.pop(0)))
     return instants
@@ -58,7 +58,7 @@ def test_an_ended_process_does_not_count_as_stalled(clock: list[float], waits: l
 
 @contextmanager
 def spinning(nice: int, *, adopted: bool = False) -> Iterator[int]:
-    """Keep the first processor busy with a process, the child of another one if `adopted`; yield its id."""
+    """Keep the first processor busy with a process, an orphan if `adopted`; yield its id."""
     code = f"import os; os.sched_setaffinity(0, [{min(os.sched_getaffinity(0))}]); os.nice({nice})"
     code += "; print(os.getpid(), flush=True)\nwhile True: pass"
     command = [sys.executable, "-c", code]

@@ -49,7 +49,7 @@ def test_large_messages_are_bounded_in_all() -> None:
 
 @pytest.fixture
 def programs_node() -> Iterator[Node]:
-    """A node such as a student's, in the domain of the grader's node."""
+    """A node like a student's, in the domain of the grader's node."""
     context = Context()
     rclpy.init(args=[], context=context, domain_id=DOMAIN)
     node = Node("flood", context=context)

@@ -1,4 +1,4 @@
-"""The pipe for a launch's exit status can be written to by all that the launch starts."""
+"""Every process of a launch can write to the pipe for the launch's exit status."""
 
 from __future__ import annotations
 

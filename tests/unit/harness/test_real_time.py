@@ -1,4 +1,4 @@
-"""The usual rate of messages is right on a busy machine, too."""
+"""The usual rate of messages is also correct on a busy machine."""
 
 from __future__ import annotations
 

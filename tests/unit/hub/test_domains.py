@@ -1,4 +1,4 @@
-"""No two users of a hub are in one ROS domain, and where none is left, a server is refused with a sentence."""
+"""No two users of a hub share a ROS domain, and if none is left, a server is refused with an explanation."""
 
 from __future__ import annotations
 

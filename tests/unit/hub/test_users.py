@@ -1,4 +1,4 @@
-"""Users of this machine that a trial did not make are not touched, and who cannot make any is told why."""
+"""A trial changes only users that it has created, and explains why it cannot create any."""
 
 from __future__ import annotations
 

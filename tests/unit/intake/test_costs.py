@@ -1,4 +1,4 @@
-"""What a submission costs to read: a small one takes neither gigabytes nor minutes."""
+"""The cost of reading a submission: a small one takes neither gigabytes nor minutes."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def understated_zip(packed: bytes, method: int) -> bytes:
 def tar_of_zeros(size: int) -> bytes:
     file = io.BytesIO()
     with tarfile.open(fileobj=file, mode="w") as archive:
-        info = tarfile.TarInfo("build/zeros")  # which nobody reads, and whose bytes pass by
+        info = tarfile.TarInfo("build/zeros")  # which is never parsed; its bytes are skipped
         info.size = size
         archive.addfile(info, io.BytesIO(bytes(size)))
     return bz2.compress(file.getvalue())

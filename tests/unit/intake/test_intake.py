@@ -224,7 +224,7 @@ def test_folders_nested_without_a_file_are_refused_too(tmp_path: Path) -> None:
 
 
 def _nest(folder: Path, names: list[str]) -> None:
-    """Make folders in each other, whose path is too long for any call that takes a path."""
+    """Make nested folders whose path is too long for any system call."""
     opened = [os.open(folder, os.O_RDONLY)]
     for name in names:
         os.mkdir(name, dir_fd=opened[-1])
@@ -423,7 +423,7 @@ def test_an_answer_counts_and_not_one_in_a_folder_below_it() -> None:
     assert found.unused == (f"a/old/{CHAPTER}.ipynb",)
 
 
-# What a notebook leaves behind.
+# Files that a notebook leaves behind.
 
 
 def test_the_packages_that_a_notebook_wrote_are_taken_as_plain_files(tmp_path: Path) -> None:

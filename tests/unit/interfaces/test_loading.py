@@ -1,4 +1,4 @@
-"""Packages of messages that use each other's are loaded within the bounds of one."""
+"""Message packages that depend on each other are loaded within the limits of a single one."""
 
 from __future__ import annotations
 

@@ -293,7 +293,7 @@ def test_a_name_that_resembles_a_download_does_not_replace_another_student(tmp_p
     moodle = 'Identifier,Full name\nParticipant 1,Ada Lovelace\nParticipant 2,"{}"\n'
     brightspace = 'OrgDefinedId,Name\n1,Ada Lovelace\n2,"{}"\n'
     sakai = 'Display ID,Last Name,First Name\nada,Lovelace,Ada\neve,"{}",\n'
-    tries = [  # a table, Ada's item, Eve's name, Eve's item, and whether it is plainly hers
+    tries = [  # a table, Ada's item, Eve's name, Eve's item, and whether it is clearly hers
         (
             moodle,
             "Ada Lovelace_1_assignsubmission_file_/",

@@ -1,4 +1,4 @@
-"""Callbacks that wait for each other work in turns, in the same order every time."""
+"""Callbacks that wait for each other take turns, always in the same order."""
 
 from __future__ import annotations
 

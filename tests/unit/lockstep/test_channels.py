@@ -1,4 +1,4 @@
-"""Channels are named alike on both sides, and join what DDS joins."""
+"""Channels have the same names on both sides, and connect the same endpoints as DDS."""
 
 from __future__ import annotations
 

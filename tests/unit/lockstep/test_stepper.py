@@ -26,7 +26,7 @@ Open = Callable[[str], Stepper]
 
 @pytest.fixture
 def host(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Open]:
-    """Open a stepper on a program that stands in the host's place and says what a forger would."""
+    """Open a stepper on a program that replaces the runner and sends forged messages."""
     monkeypatch.setenv(launcher.ISOLATION_VARIABLE, "process")
     monkeypatch.setattr(stepper, "START_TIMEOUT", Timeout(30.0, 10.0))
     with ExitStack() as stack:

@@ -1,4 +1,4 @@
-"""A tiny course in a folder of its own, worked on with nbgrader's own API and this repository's configuration."""
+"""A tiny course in a separate folder, processed with nbgrader's API and this repository's configuration."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ class Course:
 
 
 def course_in(root: Path) -> Course:
-    """Open the course directory `root`, as its configuration file there says."""
+    """Open the course directory `root` with its configuration file."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("PATH", os.environ["PATH"])  # the configuration changes it; this brings it back
         config = PyFileConfigLoader("nbgrader_config.py", path=str(root)).load_config()

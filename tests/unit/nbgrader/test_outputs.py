@@ -167,7 +167,7 @@ def test_markdown_keeps_its_form_and_loses_what_could_run(markdown: str, kept: s
 
 
 class Loaded(HTMLParser):
-    """Collects what a page loads by itself."""
+    """Collects the addresses that a page loads automatically."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -20,7 +20,7 @@ DIFFERS = "ws/src/robot/robot/node.py differs from the cell that writes it. The 
 def write(
     folder: Path, cell: str | None, file: str | None, last: str | None = None, *, saved_later: bool = True
 ) -> tuple[str, ...]:
-    """Make a chapter's folder: the saved cell, the file, and what a cell wrote last. Return what is said."""
+    """Make a chapter's folder: the saved cell, the file, and what a cell wrote last. Return the notices."""
     workspace = folder / "ws"
     (workspace / "src/robot/robot").mkdir(parents=True)
     source = [] if cell is None else [{"cell_type": "code", "source": f"%%writefile ws/{FILE}\n{cell}"}]

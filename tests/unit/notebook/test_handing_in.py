@@ -13,7 +13,7 @@ from autograder.notebook.notices import Notice
 from autograder.submission.intake import SubmittedFile, read_files
 
 CHAPTER = "02_nodes"
-NOWHERE = "http://127.0.0.1:9/services/autograder/"  # the port of nobody
+NOWHERE = "http://127.0.0.1:9/services/autograder/"  # a port on which nothing listens
 
 
 @pytest.fixture

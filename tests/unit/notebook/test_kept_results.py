@@ -152,7 +152,7 @@ def test_a_cell_lets_them_run_again_and_what_it_has_shown_does_not(machine: Mach
     machine.change_cell(outputs=[{"output_type": "stream", "name": "stdout", "text": "hello"}], execution_count=7)
     assert not machine.has_run()
     text = machine.notebook.read_text()
-    machine.notebook.write_text(text[:-100])  # half of a save
+    machine.notebook.write_text(text[:-100])  # an incomplete save
     assert machine.has_run()
     machine.notebook.write_text(text)
     assert machine.has_run()
@@ -169,7 +169,7 @@ def test_another_environment_lets_them_run_again(
     assert machine.has_run()
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_other_cpp")
     assert machine.has_run()
-    monkeypatch.setenv("ROS_DOMAIN_ID", "77")  # each kernel has another one, and programs get neither
+    monkeypatch.setenv("ROS_DOMAIN_ID", "77")  # they differ in each kernel, and programs do not get them
     assert not machine.has_run()
 
 

@@ -30,7 +30,7 @@ def drive(speed: float, world: World = ROOM) -> DriveReport:
 
 
 def test_the_first_instant_in_the_goal_counts_and_the_way_until_then() -> None:
-    fast = score_of(drive(0.5).recording, "fast")  # 2.5 m to the circle; it ends at the wall, which counts no more
+    fast = score_of(drive(0.5).recording, "fast")  # 2.5 m to the circle; it ends at the wall, which no longer counts
     assert fast.arrived == pytest.approx(2.5 / 0.5, abs=0.6)  # it speeds up first
     assert (fast.left, fast.metres) == (0.0, pytest.approx(2.5, abs=0.06))
     assert fast.margin == pytest.approx(0.82, abs=0.01)  # to the side walls

@@ -15,7 +15,7 @@ from autograder.notebook import source
 from autograder.notebook.notices import Notice
 from sim.grading import GRADING_VARIABLE
 
-# A process of its own, as a kernel is: what it imports and sets would stay in this one.
+# A separate process, like a kernel: its imports and settings would otherwise stay in this one.
 KERNEL = """
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The course's `%%writefile` keeps what a student wrote."""
+"""The course's `%%writefile` keeps a student's changes."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def shell() -> InteractiveShell:
 def run(
     shell: InteractiveShell, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> Run:
-    """Run a `%%writefile` cell in an empty folder; return what it says."""
+    """Run a `%%writefile` cell in an empty folder; return its output."""
     monkeypatch.chdir(tmp_path)
     Path(FILE).parent.mkdir(parents=True)
 
@@ -123,7 +123,7 @@ def test_appending_and_names_in_quotes_work_as_before(run: Run) -> None:
     run(SOLVED)
     assert run("# end\n", f"-a {FILE}") == f"Appending to {FILE}\n"
     assert Path(FILE).read_text() == SOLVED + "# end\n"
-    assert run(SOLVED) == f"Overwriting {FILE}\n"  # no editor has touched what cells appended
+    assert run(SOLVED) == f"Overwriting {FILE}\n"  # the text that cells appended was not edited
     assert run(SOLVED, '"ws/a file.py"') == "Writing ws/a file.py\n"
     assert Path("ws/a file.py").read_text() == SOLVED
 

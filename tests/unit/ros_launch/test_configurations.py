@@ -1,4 +1,4 @@
-"""Arguments and scopes: who sees which launch configuration, and which part of the environment."""
+"""Arguments and scopes: where each launch configuration and environment variable is visible."""
 
 from __future__ import annotations
 

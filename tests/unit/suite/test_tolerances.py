@@ -1,4 +1,4 @@
-"""The tolerance of each comparison: what is within it is right, twice as far is wrong, and it has a reason."""
+"""Each comparison accepts values within its tolerance, rejects a deviation of twice that, and states a reason."""
 
 from __future__ import annotations
 
