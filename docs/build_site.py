@@ -166,7 +166,7 @@ def with_number(text: str, assignment: str) -> str:
 
 
 def verification_table() -> str:
-    """Return how much proves each suite, as a Markdown table."""
+    """Return the numbers of test cases of each suite, as a Markdown table."""
     rows = []
     for name in suites.graded_assignments():
         suite = suites.hidden(name)

@@ -35,7 +35,7 @@ MAX_REPLY = 100_000  # bytes
 MAX_ANSWER = 16 * 1024 * 1024  # bytes of an answer, packed
 UNSURE = "Your answer may have arrived, or not. Run the cell again: it is handed in once."
 
-_unsure: dict[tuple[str, str], str] = {}  # the keys of answers, by assignment and digest, of which nobody knows
+_unsure: dict[tuple[str, str], str] = {}  # the keys of answers, by assignment and digest, without a receipt
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def hand_in(service: str, token: str, assignment: str, key: str, answer: bytes) 
     url = urljoin(f"{service.rstrip('/')}/", f"hand-ins/{quote(assignment, safe='')}/{key}")
     headers = {"Authorization": f"token {token}", "Content-Type": "application/zip"}
     request = urllib.request.Request(url, answer, headers, method="PUT")
-    opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))  # the hub is near
+    opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))  # the hub is reached without a proxy
     for pause in (*PAUSES, None):
         try:
             with opener.open(request, timeout=TIMEOUT) as reply:

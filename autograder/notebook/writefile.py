@@ -20,7 +20,7 @@ from autograder.notebook.notices import Notice
 from autograder.notebook.written_record import RECORD, digest, read_record
 from autograder.result.model import write_json
 
-STUB = "YOUR CODE HERE"  # what a released cell holds where an answer belongs
+STUB = "YOUR CODE HERE"  # the placeholder for an answer in a released cell
 REPLACED = "replaced"
 
 

@@ -30,7 +30,7 @@ class CourseSpawner(LocalProcessSpawner):
     """Starts the servers of users of this machine with the course, ROS and nbgrader's exchange.
 
     A user's notebooks and terminals are all in one ROS domain, which the user keeps until the server stops. The hub
-    holds a claim, also after a restart of the hub. What the user runs by `autograder ros` elsewhere is in it, too.
+    holds a claim, also after a restart of the hub. The user's programs elsewhere join it by `autograder ros`.
     """
 
     course = Unicode(help="The release that students run: a folder after `make setup`.").tag(config=True)

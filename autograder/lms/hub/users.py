@@ -1,4 +1,4 @@
-"""Users and groups of this machine for a hub that is tried: made, and removed with all that is theirs."""
+"""Creates users and groups of this machine for a trial hub, and removes them with all their files."""
 
 from __future__ import annotations
 

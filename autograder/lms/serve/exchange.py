@@ -114,7 +114,7 @@ class Exchange:
 
     def __init__(self, service: Service, inbound: Path) -> None:
         self._service, self._inbound = service, inbound
-        self._said: set[str] = set()  # what the log says already
+        self._said: set[str] = set()  # lines that are already in the log
 
     async def watch(self) -> None:
         """Look again and again for as long as the process lives."""

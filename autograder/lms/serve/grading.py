@@ -92,7 +92,7 @@ class Grader:
                 await self._came.wait()
 
     def _grade(self, handed_in: HandIn, answer: bytes, out: Path) -> Mark:
-        """Grade an answer into its folder, with its page. A folder that a killed process left is written anew."""
+        """Grade an answer into its folder, with its page. A folder left by a killed process is rewritten."""
         with TemporaryDirectory(prefix="answer-") as scratch:
             path = Path(scratch) / ANSWER
             path.write_bytes(answer)

@@ -78,7 +78,7 @@ class Store:
         self._base.close()
 
     def receive(self, student: str, assignment: str, key: str, answer: bytes, at: datetime) -> HandIn:
-        """Keep an answer, and return its hand-in. The same student's of the same key is the one that is there."""
+        """Keep an answer, and return its hand-in. A repeated key of a student returns the existing one."""
         with self._transaction():
             row = (student, assignment, key, at.isoformat())
             cursor = self._base.execute(

@@ -32,7 +32,7 @@ WANTED = Interface(
 
 
 def said(text: str) -> list[tuple[Aspect, str]]:
-    """Return what is different in a text from the contract."""
+    """Return the differences between a text and the contract."""
     return [(found.aspect, found.sentence) for found in compare(WANTED, parse("pkg", PATH, text))]
 
 
