@@ -16,7 +16,7 @@ import ast
 import os
 import random
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeGuard
@@ -116,7 +116,7 @@ def _installed(prefix: Path, package: str, name: str) -> Path | None:
 
 
 def _obfuscated(text: str, draw: random.Random) -> str:
-    tree = ast.parse(text)
+    tree, words = ast.parse(text), _words(draw)
     nodes = list(ast.walk(tree))  # walking a tree takes long, and this is done for hundreds of trees
     for node in nodes:
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
@@ -124,13 +124,13 @@ def _obfuscated(text: str, draw: random.Random) -> str:
             node.body = [ast.Expr(ast.Constant(draw_marker(draw))), *own]
     for function in (node for node in nodes if isinstance(node, ast.FunctionDef)):
         inner = list(ast.walk(function))
-        names = {name: _word(draw) for name in sorted(_own_names(inner))}
+        names = {name: next(words) for name in sorted(_own_names(inner))}
         for node in inner:
             if isinstance(node, ast.Name) and node.id in names:
                 node.id = names[node.id]
     for owner in (node for node in nodes if isinstance(node, ast.ClassDef)):
         mine = [node for node in ast.walk(owner) if _is_of_self(node)]
-        fresh = {name: _word(draw) for name in sorted({n.attr for n in mine if isinstance(n.ctx, ast.Store)})}
+        fresh = {name: next(words) for name in sorted({n.attr for n in mine if isinstance(n.ctx, ast.Store)})}
         for attribute in mine:
             attribute.attr = fresh.get(attribute.attr, attribute.attr)
     return ast.unparse(tree) + "\n"
@@ -151,5 +151,11 @@ def _is_of_self(node: ast.AST) -> TypeGuard[ast.Attribute]:
     return isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self"
 
 
-def _word(draw: random.Random) -> str:
-    return "_" + "".join(draw.choice(SYLLABLES) for _ in range(4))
+def _words(draw: random.Random) -> Iterator[str]:
+    """Yield private names without end, each of them once: two attributes with one name are one attribute."""
+    yielded: set[str] = set()
+    while True:
+        word = "_" + "".join(draw.choice(SYLLABLES) for _ in range(4))
+        if word not in yielded:
+            yielded.add(word)
+            yield word

@@ -66,6 +66,17 @@ def test_an_obfuscated_version_behaves_the_same_and_looks_different_for_each_see
     assert obfuscate(version, 1).files["config/a.yaml"].startswith("x: 1\n# ")
 
 
+def test_no_two_names_of_an_obfuscated_version_become_one() -> None:
+    many = range(3000)  # among so many, some names are drawn twice
+    assignments = "\n".join(f"        self.attribute_{number} = local_{number} = {number}" for number in many)
+    version = Version({"p/p.py": f"class Crowded:\n    def __init__(self):\n{assignments}\n"}, {})
+    tree = ast.parse(obfuscate(version, 1).files["p/p.py"])
+    attributes = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+    locals_ = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    assert (len(attributes), len(locals_)) == (len(many), len(many))
+    assert not attributes & locals_
+
+
 def test_each_function_class_and_file_of_a_version_holds_a_leak_marker() -> None:
     files = obfuscate(Version({"a/b.py": SOURCE, "config/a.yaml": "x: 1", "a/__init__.py": ""}, {}), 1).files
     kinds = ast.Module | ast.ClassDef | ast.FunctionDef
