@@ -167,7 +167,7 @@ def attacks() -> tuple[Attack, ...]:
             Attack(
                 name,
                 description,
-                package_writer(None, replace={"        self.cmd_vel_pub.publish(command)": f"{lines}{PUBLISH}"}),
+                package_writer(None, replace={PUBLISH: f"{lines}{PUBLISH}"}),
                 frozenset({"forward_when_clear", "turns_when_blocked", "nan", "room", "pillars", "corridor"}),
             )
             for name, description, lines in BLIND
@@ -175,7 +175,7 @@ def attacks() -> tuple[Attack, ...]:
         Attack(
             "nan commands",
             "commands that compare equal to nothing",
-            package_writer(None, replace={"        self.cmd_vel_pub.publish(command)": PUBLISH_NAN}),
+            package_writer(None, replace={PUBLISH: PUBLISH_NAN}),
             frozenset({"forward_when_clear", "turns_when_blocked", "stops_before_first_scan", "room"}),
         ),
         Attack(

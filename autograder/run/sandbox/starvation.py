@@ -25,9 +25,6 @@ class Use:
     processes: Mapping[int, CpuTime]
 
 
-NONE = Use({}, {})
-
-
 def look(pids: Iterable[int]) -> Use:
     """Return the times of programs, and of this process with all that it has started and has not ended."""
     pids = tuple(pids)

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from autograder.run.sandbox.procfs import TICK, CpuTime, ThreadTime
-from autograder.run.sandbox.starvation import NONE, Use, look, starved, used
+from autograder.run.sandbox.starvation import Use, look, starved, used
 
 MAIN, CHILD = 11, 12  # process ids, and MAIN's thread
 
@@ -43,4 +43,4 @@ def test_the_time_of_a_started_process_and_of_its_children_is_found_after_their_
 
 
 def test_nothing_is_starved_that_is_not_there() -> None:
-    assert starved(NONE, NONE) == 0.0
+    assert starved(Use({}, {}), Use({}, {})) == 0.0
