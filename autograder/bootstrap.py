@@ -1,8 +1,8 @@
 """Creates `.venv`, the step between a clone and a running course: `python3 -I autograder/bootstrap.py`.
 
 It runs in the system's Python and needs only the standard library. A finished set-up writes a stamp of everything that
-it depends on. While the stamp is valid, another call does nothing. The stamp is removed before the first change and
-written after the last one, so that an interrupted set-up starts from the beginning.
+it depends on, and another call does nothing while the stamp is valid. The stamp is removed before the first change and
+written after the last one, so an interrupted set-up starts from the beginning.
 """
 
 from __future__ import annotations
@@ -26,14 +26,6 @@ from pathlib import Path
 
 STAMP = "course-set-up.json"
 ROS = json.loads(Path(__file__).with_name("ros").joinpath("distribution.json").read_text(encoding="utf-8"))
-
-# Packages from apt, and commands that show that the package or an equivalent is installed.
-TOOLS = {
-    "g++": ("g++",),
-    "bubblewrap": ("bwrap",),
-    "chromium": ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"),
-}
-
 Run = Callable[..., int]  # run(*command, quiet=False) -> exit status
 
 
@@ -48,23 +40,24 @@ def print_progress(line: str) -> None:
 
 @dataclass(frozen=True)
 class Interpreter:
-    """The environment's base Python: its path, version, full version text and extension suffix."""
+    """The environment's base Python."""
 
     executable: str
-    version: tuple[int, int]
-    build: str
-    suffix: str
+    version: str  # such as 3.12
+    build: str  # the complete version text
+    suffix: str  # of extension modules
 
     @classmethod
     def running(cls) -> Interpreter:
         """Describe the running interpreter, or the base interpreter of its virtual environment."""
         executable = os.path.realpath(getattr(sys, "_base_executable", None) or sys.executable)
-        return cls(executable, sys.version_info[:2], sys.version, str(sysconfig.get_config_var("EXT_SUFFIX")))
+        suffix = str(sysconfig.get_config_var("EXT_SUFFIX"))
+        return cls(executable, sysconfig.get_python_version(), sys.version, suffix)
 
 
-def check_machine(version: tuple[int, int], system: str, machine: str) -> None:
-    """Raise SetUpError if the pinned packages do not support this Python or this machine."""
-    if (python := "{}.{}".format(*version)) not in ROS["pythons"]:
+def check_machine(python: str, system: str, machine: str) -> None:
+    """Raise SetUpError if the pinned packages do not support this version of Python or this machine."""
+    if python not in ROS["pythons"]:
         title, own, (first, *_, last) = ROS["title"], ROS["pythons"][0], sorted(ROS["pythons"])
         raise SetUpError(
             f"Python {python} is not supported: ROS 2 {title}'s wheels are for Python {first} to {last}. "
@@ -80,7 +73,7 @@ def check_machine(version: tuple[int, int], system: str, machine: str) -> None:
 def sourced_ros(environ: Mapping[str, str], venv: Path, interpreter: Interpreter) -> str | None:
     """Return the site-packages folder of the sourced ROS 2, or None if the wheels should be used.
 
-    Entries from this project's own environment do not count as sourced.
+    Paths in this project's own environment `venv` do not count as sourced.
 
     Raises:
         SetUpError: another distribution is sourced, or this Python cannot import the sourced one.
@@ -102,11 +95,10 @@ def sourced_ros(environ: Mapping[str, str], venv: Path, interpreter: Interpreter
         return None
     if not (modules[0] / "rclpy" / f"_rclpy_pybind11{interpreter.suffix}").is_file():
         match = re.search(r"python3\.\d+", str(modules[0]))
-        built = match[0] if match else f"python{ROS['pythons'][0]}"
         raise SetUpError(
-            f"the sourced ROS 2 in {modules[0]} is not for Python {'.'.join(map(str, interpreter.version))}: "
-            f"run `make PYTHON={built}`, or use a shell that does not source it "
-            "(the wheels are used then)"
+            f"the sourced ROS 2 in {modules[0]} is not for Python {interpreter.version}: "
+            f"run `make PYTHON={match[0] if match else 'python' + ROS['pythons'][0]}`, "
+            "or use a shell that does not source it (the wheels are used then)"
         )
     return str(modules[0])
 
@@ -124,18 +116,14 @@ def closed_to_other_users(python: Path, course: Path) -> str | None:
 
 def without_ros(lock: str) -> str:
     """Return the text of a lock without the ROS packages, whose names all start with `ros-`."""
-    entries = re.split(r"(?m)^(?=[A-Za-z0-9])", lock)
-    return "".join(entry for entry in entries if not entry.startswith("ros-"))
+    return "".join(entry for entry in re.split(r"(?m)^(?=[A-Za-z0-9])", lock) if not entry.startswith("ros-"))
 
 
 def child_environment(environ: Mapping[str, str]) -> dict[str, str]:
-    """Return the environment variables for pip and for the new environment's Python.
-
-    pip treats packages on PYTHONPATH as installed. The wheels' start-up hook marks that it has run, but must run again
-    for a new environment.
-    """
-    unwanted = ("PYTHONPATH", "PYTHONHOME", "PYTHONSAFEPATH")  # the last one hides the project from `python -m`
-    child = {name: value for name, value in environ.items() if name not in unwanted}
+    """Return the environment variables for pip and for the new environment's Python."""
+    # pip treats packages on PYTHONPATH as installed, and PYTHONSAFEPATH hides the project from `python -m`.
+    child = {name: environ[name] for name in environ.keys() - {"PYTHONPATH", "PYTHONHOME", "PYTHONSAFEPATH"}}
+    # The wheels' start-up hook marks that it has run, but must run again in a new environment.
     if child.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None):
         child.pop("LD_LIBRARY_PATH", None)
     return {**child, "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
@@ -143,10 +131,8 @@ def child_environment(environ: Mapping[str, str]) -> dict[str, str]:
 
 def digest(*parts: str | Path) -> str:
     """Return a digest of texts and of the contents of files, in order."""
-    whole = hashlib.sha256()
-    for part in parts:
-        whole.update(hashlib.sha256(part.read_bytes() if isinstance(part, Path) else part.encode()).digest())
-    return whole.hexdigest()
+    contents = (part.read_bytes() if isinstance(part, Path) else part.encode() for part in parts)
+    return hashlib.sha256(b"".join(hashlib.sha256(content).digest() for content in contents)).hexdigest()
 
 
 @dataclass(frozen=True)
@@ -161,26 +147,25 @@ class SetUp:
 
     @property
     def venv(self) -> Path:
-        """The virtual environment's folder."""
         return self.root / ".venv"
 
     @property
     def python(self) -> str:
-        """The virtual environment's Python."""
         return str(self.venv / "bin" / "python")
 
     def expected_stamp(self, *, dev: bool) -> dict[str, str]:
         """Return the stamp of a finished set-up."""
         lock, patches = self.root / "requirements.lock", self.root / "autograder" / "ros" / "patch_wheels.py"
-        project = (self.root / "pyproject.toml", self.root / "autograder/building/interfaces/tutorials.yaml")
         # A virtual environment contains its own path, so a moved clone needs a new one.
         about = (str(self.root), self.interpreter.executable, self.interpreter.build, str(self.sourced))
-        launch = digest(json.dumps(ROS["commits"]), str(self.standins))
-        base = {"base": digest(Path(__file__), lock, patches, *about), "project": digest(*project), "launch": launch}
-        return {**base, "dev": digest(self.root / "requirements-dev.lock")} if dev else base
+        base = digest(Path(__file__), lock, patches, *about)
+        files = (self.root / "pyproject.toml", self.root / "autograder/building/interfaces/tutorials.yaml")
+        project = digest(*files, json.dumps(ROS["commits"]), str(self.standins))
+        added = {"dev": digest(self.root / "requirements-dev.lock")} if dev else {}
+        return {"base": base, "project": project, **added}
 
     def stamp(self) -> dict[str, str]:
-        """Return the stamp of the last finished set-up, or an empty string if it or its Python does not exist."""
+        """Return the stamp of the last finished set-up, empty if it or its Python does not exist."""
         try:
             stamp = json.loads((self.venv / STAMP).read_text())
         except (OSError, ValueError):
@@ -188,22 +173,21 @@ class SetUp:
         return stamp if isinstance(stamp, dict) and Path(self.python).exists() else {}
 
     def missing_parts(self, *, dev: bool) -> list[str]:
-        """Return which of the parts `base`, `project`, `launch` and `dev` are missing."""
-        return [name for name, key in self.expected_stamp(dev=dev).items() if self.stamp().get(name) != key]
+        """Return which of the parts `base`, `project` and `dev` are missing."""
+        stamp = self.stamp()
+        return [name for name, key in self.expected_stamp(dev=dev).items() if stamp.get(name) != key]
 
     def make(self, *, dev: bool, real_launch: bool = False) -> None:
         """Create the environment or its missing parts. The stamp is only written if every step succeeded.
 
         If the real launch cannot be installed, the stand-ins are used. With `real_launch`, that is a `SetUpError`.
         """
-        missing, have = self.missing_parts(dev=dev), self.stamp()
+        missing = self.missing_parts(dev=dev)
         if not missing and not real_launch:
             return
+        kept = {} if "base" in missing else self.stamp()
         (self.venv / STAMP).unlink(missing_ok=True)
         if "base" in missing:
-            have = {}
-            ros = f"the sourced ROS 2 in {self.sourced}" if self.sourced else f"ROS 2 {ROS['title']} from wheels"
-            print_progress(f"creating .venv with Python {self.interpreter.build.split()[0]} and {ros}")
             self._new_environment()
         if "base" in missing or "dev" in missing:
             self._install("requirements-dev.lock" if dev else "requirements.lock")
@@ -217,10 +201,10 @@ class SetUp:
             tutorials = "autograder.building.interfaces.tutorials"
             self._step("the tutorials' interfaces were not built", self.python, "-m", tutorials)
         fresh = self.venv / f"{STAMP}.fresh"
-        fresh.write_text(json.dumps({**have, **self.expected_stamp(dev=dev)}, indent=1))
+        fresh.write_text(json.dumps({**kept, **self.expected_stamp(dev=dev)}, indent=1))
         fresh.replace(self.venv / STAMP)
         print_progress("done")
-        if real_launch and launch_failed:
+        if launch_failed and real_launch:
             raise SetUpError("the real launch could not be installed, for the reason above; everything else is set up")
 
     def _step(self, failed: str, *command: str) -> None:
@@ -229,13 +213,15 @@ class SetUp:
 
     def _new_environment(self) -> None:
         base = self.interpreter.executable
+        ros = f"the sourced ROS 2 in {self.sourced}" if self.sourced else f"ROS 2 {ROS['title']} from wheels"
+        print_progress(f"creating .venv with Python {self.interpreter.build.split()[0]} and {ros}")
         shutil.rmtree(self.venv, ignore_errors=True)
         without_pip = self.run(base, "-c", "import ensurepip; ensurepip.version()", quiet=True) != 0
         bare = ["--without-pip"] if without_pip else []
         self._step("the virtual environment could not be created", base, "-m", "venv", *bare, str(self.venv))
         if without_pip:
             # Debian ships Python without ensurepip. The system's pip then installs pip in the environment.
-            site = self.venv / "lib" / "python{}.{}".format(*self.interpreter.version) / "site-packages"
+            site = self.venv / "lib" / f"python{self.interpreter.version}" / "site-packages"
             failed = "neither ensurepip nor pip works for this Python: install python3-venv or python3-pip"
             self._step(failed, base, "-m", "pip", "install", "-qq", "--target", str(site), "pip")
 
@@ -265,43 +251,6 @@ def exclusive_set_up(lock_file: Path) -> Iterator[None]:
         yield
 
 
-def missing_packages(interpreter: Interpreter, headers: Path, *, browser: bool) -> list[str]:
-    """Return the packages of apt's that are not there: tools, and Python's headers in the folder `headers`."""
-    tools = [tool for tool in TOOLS if browser or tool != "chromium"]
-    missing = [tool for tool in tools if not any(map(shutil.which, TOOLS[tool]))]
-    with_headers = (headers / "Python.h").is_file()
-    return missing if with_headers else [*missing, "python{}.{}-dev".format(*interpreter.version)]
-
-
-def require_compiler(missing: Sequence[str]) -> None:
-    """Raise a `SetUpError` if a package by which message packages are compiled is missing."""
-    if needed := [package for package in missing if package == "g++" or package.endswith("-dev")]:
-        lacks = " and ".join("g++" if package == "g++" else "Python.h" for package in needed)
-        raise SetUpError(
-            f"{lacks} not found, which ROS needs to compile messages: "
-            f"run `sudo apt-get install {' '.join(needed)}`, then the same command again"
-        )
-
-
-def install_tools(missing: Sequence[str], tried: Path, uid: int, run: Run) -> None:
-    """Install packages with apt, or print the command. `tried` records failures, because each attempt takes seconds."""
-    by_hand = f"sudo apt-get install {' '.join(missing)}"
-    before = tried.read_text().split() if tried.exists() else []
-    sudo = [] if uid == 0 else ["sudo", "-n"]  # `env` turns a missing sudo into an exit status
-    possible = shutil.which("apt-get") and run("env", *sudo, "true", quiet=True) == 0
-    if not possible or set(missing) <= set(before):
-        print_progress(f"{', '.join(missing)} is missing; to install it: {by_hand}")
-        return
-    print_progress(f"installing {', '.join(missing)} with apt-get")
-    apt = [*sudo, "env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "-o", "DPkg::Lock::Timeout=60"]
-    run(*apt, "update", quiet=True)
-    status = run(*apt, "install", "-y", "--no-install-recommends", *missing, quiet=True)
-    tried.parent.mkdir(exist_ok=True)
-    tried.write_text(" ".join({*before, *missing}))
-    if status != 0:
-        print_progress(f"apt-get failed; set-up continues; to install them yourself: {by_hand}")
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Set up the clone. Return 0 if it is ready, 1 if the set-up failed, 2 for wrong arguments."""
     parser = argparse.ArgumentParser(description="Create .venv from the pinned packages and patch the ROS 2 wheels.")
@@ -321,11 +270,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         check_machine(interpreter.version, platform.system(), platform.machine())
         sourced, standins = sourced_ros(os.environ, root / ".venv", interpreter), os.environ.get("ROS2_STANDINS")
         set_up = SetUp(root, interpreter, sourced, run, standins == "1")
-        headers = Path(sysconfig.get_path("include"))
-        if missing := missing_packages(interpreter, headers, browser=options.browser):
-            install_tools(missing, root / ".build" / "apt-tried", os.geteuid(), run)
-        if set_up.missing_parts(dev=options.dev) or options.real_launch:
-            require_compiler(missing_packages(interpreter, headers, browser=False))
+        needed = options.real_launch or bool(set_up.missing_parts(dev=options.dev))
+        apt = [sys.executable, "-I", str(root / "autograder" / "doctor" / "apt.py")]
+        if run(*apt, *(["--browser"] if options.browser else []), *(["--require-compiler"] if needed else [])) != 0:
+            return 1  # the reason is printed
+        if needed:
             if os.geteuid() == 0 and (closed := closed_to_other_users(Path(interpreter.executable), root)):
                 print_progress(closed)
             with exclusive_set_up(root / ".build" / "set-up.lock"):

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from autograder import course_paths
 from autograder.author.student_release import MANIFEST
+from autograder.doctor.apt import TOOLS
 from autograder.doctor.finding import Finding, Status
 from autograder.doctor.system import System
 from autograder.ros.distribution import DISTRIBUTION
@@ -176,7 +177,7 @@ def space(system: System) -> Finding:
 
 def browser(system: System) -> Finding:
     """Check for a browser for the browser tests. Nothing else needs one."""
-    for command in ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"):
+    for command in TOOLS["chromium"]:
         if system.which(command) is not None:
             result = system.run([command, "--version"], {})
             if result.status == 0:

@@ -1,20 +1,20 @@
 """Packages that pip does not have are installed with apt if no password is needed. Otherwise they are named.
 
-Without a compiler, or Python's headers, the set-up ends there.
+Without a compiler or Python's headers, the set-up ends there.
 """
 
 from __future__ import annotations
 
+import sysconfig
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from autograder import bootstrap
-from autograder.bootstrap import Interpreter, SetUpError
+from autograder.doctor import apt
 
-PY312 = Interpreter("/usr/bin/python3.12", (3, 12), "3.12.1 (main)", ".cpython-312-x86_64-linux-gnu.so")
+DEV = f"python{sysconfig.get_python_version()}-dev"
 Which = Callable[..., None]
 
 
@@ -23,14 +23,14 @@ def installed(monkeypatch: pytest.MonkeyPatch) -> Which:
     """Let only the given commands be on PATH."""
 
     def only(*commands: str) -> None:
-        monkeypatch.setattr(bootstrap.shutil, "which", lambda name: f"/bin/{name}" if name in commands else None)
+        monkeypatch.setattr(apt.shutil, "which", lambda name: f"/bin/{name}" if name in commands else None)
 
     return only
 
 
 def test_apt_installs_missing_packages_as_root(installed: Which, commands: Any, tmp_path: Path) -> None:
     installed("apt-get")
-    bootstrap.install_tools(["bubblewrap"], tmp_path / "tried", 0, commands)
+    apt.install(["bubblewrap"], tmp_path / "tried", 0, commands)
     assert [line.rpartition("DPkg::Lock::Timeout=60 ")[2] for line in commands.ran[1:]] == [
         "update",
         "install -y --no-install-recommends bubblewrap",
@@ -40,25 +40,25 @@ def test_apt_installs_missing_packages_as_root(installed: Which, commands: Any, 
 
 def test_apt_is_called_through_sudo_if_sudo_needs_no_password(installed: Which, commands: Any, tmp_path: Path) -> None:
     installed("apt-get", "sudo")
-    bootstrap.install_tools(["bubblewrap"], tmp_path / "tried", 1000, commands)
+    apt.install(["bubblewrap"], tmp_path / "tried", 1000, commands)
     assert commands.ran[0] == "env sudo -n true"
     assert commands.ran[-1].startswith("sudo -n env DEBIAN_FRONTEND=noninteractive apt-get ")
 
 
-@pytest.mark.parametrize(("commands_there", "failing"), [((), ""), (("apt-get", "sudo"), "sudo -n true")])
+@pytest.mark.parametrize(("on_path", "failing"), [((), ""), (("apt-get", "sudo"), "sudo -n true")])
 def test_without_rights_to_install_the_command_is_printed(
     installed: Which,
     commands: Any,
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
-    commands_there: tuple[str, ...],
+    on_path: tuple[str, ...],
     failing: str,
 ) -> None:
-    installed(*commands_there)
+    installed(*on_path)
     commands.failing = failing
-    bootstrap.install_tools(["bubblewrap", "chromium"], tmp_path / "tried", 1000, commands)
-    told = "set-up: bubblewrap, chromium is missing; to install it: sudo apt-get install bubblewrap chromium\n"
-    assert capsys.readouterr().out == told
+    apt.install(["bubblewrap", "chromium"], tmp_path / "tried", 1000, commands)
+    line = "set-up: bubblewrap, chromium is missing; to install it: sudo apt-get install bubblewrap chromium\n"
+    assert capsys.readouterr().out == line
     assert not any("install" in line for line in commands.ran)
 
 
@@ -67,41 +67,41 @@ def test_a_failed_installation_is_not_tried_again(
 ) -> None:
     installed("apt-get")
     commands.failing = "install -y"
-    bootstrap.install_tools(["chromium"], tmp_path / "tried", 0, commands)
+    apt.install(["chromium"], tmp_path / "tried", 0, commands)
     assert (
         "apt-get failed; set-up continues; to install them yourself: sudo apt-get install chromium"
         in capsys.readouterr().out
     )
     commands.ran.clear()
-    bootstrap.install_tools(["chromium"], tmp_path / "tried", 0, commands)
+    apt.install(["chromium"], tmp_path / "tried", 0, commands)
     assert not any("apt-get" in line for line in commands.ran)
     assert "chromium is missing" in capsys.readouterr().out
-    bootstrap.install_tools(["bubblewrap", "chromium"], tmp_path / "tried", 0, commands)
+    apt.install(["bubblewrap", "chromium"], tmp_path / "tried", 0, commands)
     assert any("apt-get" in line for line in commands.ran)
 
 
 @pytest.mark.promise("You need Linux on x86-64, Python 3.10 to 3.13 with its headers (python3-dev), pip, make and g++.")
 @pytest.mark.parametrize(
-    ("there", "with_headers", "told"),
+    ("tools", "with_headers", "message"),
     [
-        (("g++", "bwrap"), False, r"Python\.h not found, .*: run `sudo apt-get install python3\.12-dev`, then"),
+        (("g++", "bwrap"), False, rf"Python\.h not found, .*: run `sudo apt-get install {DEV}`, then"),
         (("bwrap",), True, r"g\+\+ not found, .*: run `sudo apt-get install g\+\+`, then"),
-        ((), False, r"g\+\+ and Python\.h not found, .*: run `sudo apt-get install g\+\+ python3\.12-dev`, then"),
+        ((), False, rf"g\+\+ and Python\.h not found, .*: run `sudo apt-get install g\+\+ {DEV}`, then"),
     ],
 )
 def test_without_compiler_or_headers_the_set_up_stops_with_the_command(
-    installed: Which, tmp_path: Path, there: tuple[str, ...], with_headers: bool, told: str
+    installed: Which, tmp_path: Path, tools: tuple[str, ...], with_headers: bool, message: str
 ) -> None:
-    installed(*there)
+    installed(*tools)
     if with_headers:
         (tmp_path / "Python.h").touch()
-    with pytest.raises(SetUpError, match=told):
-        bootstrap.require_compiler(bootstrap.missing_packages(PY312, tmp_path, browser=False))
+    with pytest.raises(SystemExit, match=message):
+        apt.require_compiler(apt.missing_packages(tmp_path, browser=False))
 
 
 def test_without_bubblewrap_the_set_up_continues(installed: Which, tmp_path: Path) -> None:
     installed("g++")
     (tmp_path / "Python.h").touch()
-    missing = bootstrap.missing_packages(PY312, tmp_path, browser=True)
+    missing = apt.missing_packages(tmp_path, browser=True)
     assert missing == ["bubblewrap", "chromium"]
-    bootstrap.require_compiler(missing)
+    apt.require_compiler(missing)

@@ -33,20 +33,20 @@ def make(*arguments: str, path: str | None = None, **environ: str) -> str:
 
 @pytest.mark.promise("`make` lists every target.")
 def test_make_alone_lists_every_target_with_its_help() -> None:
-    told = make()
+    output = make()
     (phony,) = re.findall(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.MULTILINE)
     for target in set(phony.split()) - {"$(LINTERS)", "fast-engine"}:  # which others call
-        line = next(line for line in told.splitlines() if line.startswith(f"  make {target} "))
+        line = next(line for line in output.splitlines() if line.startswith(f"  make {target} "))
         assert len(line.split()) > 3, line
-    assert make("help") == told
+    assert make("help") == output
 
 
 @pytest.mark.promise("`.ci/run` runs the linters, the type checker and all tests except the nightly ones.")
 def test_ci_runs_lint_types_doctor_and_all_tests_but_the_nightly_ones() -> None:
     assert re.search(r"^make test ", (ROOT / ".ci" / "run").read_text(), re.MULTILINE)
-    told = make("-n", "test")
+    output = make("-n", "test")
     for command in ("lint-types", "lint-style", "lint-imports", "autograder doctor", "pytest -n 4", '-m "not nightly"'):
-        assert command in told, command
+        assert command in output, command
 
 
 @pytest.mark.promise("make lab")
@@ -56,9 +56,9 @@ def test_make_lab_opens_jupyterlab_on_the_chapters() -> None:
 
 @pytest.mark.promise("make cluster")
 def test_make_cluster_installs_the_pinned_packages_of_a_cluster_beside_the_course() -> None:
-    told = make("-n", "cluster")
-    assert "autograder/bootstrap.py" in told
-    assert "--no-deps --require-hashes -r requirements-cluster.lock" in told
+    output = make("-n", "cluster")
+    assert "autograder/bootstrap.py" in output
+    assert "--no-deps --require-hashes -r requirements-cluster.lock" in output
 
 
 @pytest.fixture

@@ -1,0 +1,87 @@
+"""Installs what pip cannot with apt, if that needs no password: `python3 -I autograder/doctor/apt.py`.
+
+`autograder/bootstrap.py` runs this script in the system's Python, where only the standard library can be imported.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+# Packages from apt, and commands that show that the package or an equivalent is installed.
+TOOLS = {
+    "g++": ("g++",),
+    "bubblewrap": ("bwrap",),
+    "chromium": ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"),
+}
+
+
+def missing_packages(headers: Path, *, browser: bool) -> list[str]:
+    """Return the missing packages: tools, and Python's headers if they are not in the folder `headers`."""
+    tools = [tool for tool in TOOLS if browser or tool != "chromium"]
+    missing = [tool for tool in tools if not any(map(shutil.which, TOOLS[tool]))]
+    return missing if (headers / "Python.h").is_file() else [*missing, f"python{sysconfig.get_python_version()}-dev"]
+
+
+def install(missing: Sequence[str], tried: Path, uid: int, run: Callable[..., int]) -> None:
+    """Install packages, or print the command that does.
+
+    Args:
+        missing: the packages.
+        tried: a file that records them if they are tried, because each attempt takes seconds.
+        uid: the user; others than root need sudo.
+        run: runs a command silently and returns its exit status.
+    """
+    by_hand = f"sudo apt-get install {' '.join(missing)}"
+    before = tried.read_text().split() if tried.exists() else []
+    sudo = [] if uid == 0 else ["sudo", "-n"]  # `env` turns a missing sudo into an exit status
+    possible = shutil.which("apt-get") and run("env", *sudo, "true") == 0
+    if not possible or set(missing) <= set(before):
+        print(f"set-up: {', '.join(missing)} is missing; to install it: {by_hand}", flush=True)
+        return
+    print(f"set-up: installing {', '.join(missing)} with apt-get", flush=True)
+    apt = [*sudo, "env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "-o", "DPkg::Lock::Timeout=60"]
+    run(*apt, "update")
+    status = run(*apt, "install", "-y", "--no-install-recommends", *missing)
+    tried.parent.mkdir(exist_ok=True)
+    tried.write_text(" ".join({*before, *missing}))
+    if status != 0:
+        print(f"set-up: apt-get failed; set-up continues; to install them yourself: {by_hand}", flush=True)
+
+
+def require_compiler(missing: Sequence[str]) -> None:
+    """Exit with a message if a package by which message packages are compiled is missing."""
+    if needed := [package for package in missing if package == "g++" or package.endswith("-dev")]:
+        lacks = " and ".join("g++" if package == "g++" else "Python.h" for package in needed)
+        sys.exit(
+            f"set-up: {lacks} not found, which ROS needs to compile messages: "
+            f"run `sudo apt-get install {' '.join(needed)}`, then the same command again."
+        )
+
+
+def main() -> None:
+    """Install what is missing."""
+    parser = argparse.ArgumentParser(description="Install what pip cannot with apt, if that needs no password.")
+    parser.add_argument("--browser", action="store_true", help="also install Chromium if there is no browser")
+    parser.add_argument("--require-compiler", action="store_true", help="fail if messages cannot be compiled")
+    options = parser.parse_args()
+    headers, tried = Path(sysconfig.get_path("include")), Path(__file__).resolve().parents[2] / ".build" / "apt-tried"
+
+    def run(*command: str) -> int:
+        quiet = subprocess.DEVNULL
+        return subprocess.call(command, stdin=quiet, stdout=quiet, stderr=quiet)
+
+    if missing := missing_packages(headers, browser=options.browser):
+        install(missing, tried, os.geteuid(), run)
+    if options.require_compiler:
+        require_compiler(missing_packages(headers, browser=False))
+
+
+if __name__ == "__main__":
+    main()
