@@ -54,7 +54,7 @@ class Verbs(click.Group):
         return command
 
 
-def _choose(context: click.Context, option: click.Parameter, course: Path | None) -> None:
+def _set_course(context: click.Context, option: click.Parameter, course: Path | None) -> None:
     """Set the course for all later imports and child processes, which read it through `autograder.course_paths`."""
     if course is not None:
         os.environ["AUTOGRADER_COURSE"] = str(course.resolve())
@@ -66,7 +66,7 @@ def _choose(context: click.Context, option: click.Parameter, course: Path | None
     "--course",
     type=click.Path(path_type=Path, file_okay=False),
     expose_value=False,
-    callback=_choose,
+    callback=_set_course,
     help="Use the course in this folder, which contains a course.yaml. AUTOGRADER_COURSE sets it for all commands.",
 )
 def group() -> None:

@@ -23,7 +23,7 @@ from autograder.result.model import write_json
 @click.option("--step", type=int, metavar="N", help="Check step N of the notebook alone.")
 @click.option("--question", type=int, metavar="N", help="Check question N of the notebook alone.")
 @click.option("--fresh", is_flag=True, help="Run the checks even if nothing has changed since they were run.")
-@click.option("--watch", is_flag=True, help="Check again when a file is saved, until Ctrl-C. What failed comes first.")
+@click.option("--watch", is_flag=True, help="Check again when a file is saved, until Ctrl-C. Failed checks run first.")
 @json_option
 def check(
     assignment: str,
@@ -39,7 +39,7 @@ def check(
 
     PATH is by default the first of ./ws, ./ID/ws and ./chapters/ID/ws that exists.
     """
-    place = workspace or _workspace(assignment)
+    path = workspace or _workspace(assignment)
 
     def show(report: object) -> None:
         echo(repr(report))
@@ -47,15 +47,14 @@ def check(
             write_json(json_file, dataclasses.asdict(report))
 
     if watch:
-        watch_files(part_of(assignment, exercise, step, question), place, show)
+        watch_files(part_of(assignment, exercise, step, question), path, show)
         return
-    report = run_checks(assignment, place, exercise=exercise, step=step, question=question, fresh=fresh)
+    report = run_checks(assignment, path, exercise=exercise, step=step, question=question, fresh=fresh)
     show(report)
     sys.exit(0 if isinstance(report, CheckReport) and report.passed else 1)
 
 
 def _workspace(assignment: str) -> Path:
     """Return the default workspace."""
-    here = Path("ws")
-    below = (Path(assignment) / "ws", Path("chapters", assignment, "ws"))
-    return next((folder for folder in (here, *below) if folder.is_dir()), here)
+    folders = (Path("ws"), Path(assignment, "ws"), Path("chapters", assignment, "ws"))
+    return next(filter(Path.is_dir, folders), folders[0])

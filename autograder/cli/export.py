@@ -163,9 +163,9 @@ def _marks(stored: Sequence[Result], system: str, roster: Roster, lateness: Mapp
 
 
 def _feedback(stored: Sequence[Result], name: str, roster: Roster, download: Path | None, out: Path) -> Plan:
-    """Plan a zip with the feedback of all students except those on whom the grader failed."""
-    told = [result for result in stored if result.status is not Status.NOT_GRADED]
-    students = [result.student for result in told]
+    """Plan a zip with the feedback of all students except those whose grading failed."""
+    graded = [result for result in stored if result.status is not Status.NOT_GRADED]
+    students = [result.student for result in graded]
     if _FEEDBACK[name] == "moodle":
         places = moodle_places(roster, students)
     elif download is None:
@@ -177,7 +177,7 @@ def _feedback(stored: Sequence[Result], name: str, roster: Roster, download: Pat
     rows = [(student, "", places.names.get(student, "")) for student in students]
 
     def write() -> Path:
-        write_archive(told, places, out)
+        write_archive(graded, places, out)
         return out
 
     return Plan(rows, [*missed, *places.left_out], write)

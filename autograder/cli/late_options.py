@@ -38,14 +38,14 @@ _OPTIONS = (
         type=_PERCENT,
         default=0.0,
         metavar="PERCENT",
-        help="Leave a late submission PERCENT of its marks in any case.",
+        help="A late submission keeps at least PERCENT of its marks.",
     ),
     click.option(
         "--grace",
         type=click.FloatRange(0, 24 * 365),
         default=0.0,
         metavar="HOURS",
-        help="Subtract nothing from a submission that is at most HOURS late.",
+        help="Do not penalize a submission that is at most HOURS late.",
     ),
     click.option(
         "--due",
@@ -55,7 +55,7 @@ _OPTIONS = (
     click.option(
         "--extensions",
         type=click.Path(path_type=Path, dir_okay=False, exists=True),
-        help="A CSV file with the columns student, and days or until: deadlines of single students.",
+        help="A CSV file with the deadlines of individual students: the columns student, and days or until.",
     ),
 )
 
@@ -90,8 +90,8 @@ def read_policy(find: FindStudent, options: dict[str, Any]) -> LatePolicy:
 def judge_class(policy: LatePolicy, results: Path, students: Iterable[str]) -> dict[str, Lateness]:
     """Return the lateness of students' submissions, based on the times recorded by `autograder grade --roster`."""
     file = results / COLLECTION_REPORT
-    told = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-    late, late_by, times = set(told.get("late", ())), told.get("late_by", {}), told.get("times", {})
+    report = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+    late, late_by, times = set(report.get("late", ())), report.get("late_by", {}), report.get("times", {})
     by_student = {}
     for student in students:
         delay = timedelta(seconds=late_by[student]) if student in late_by else None

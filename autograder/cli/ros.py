@@ -21,7 +21,7 @@ def ros(command: tuple[str, ...]) -> None:
     Without a command, the environment variables are printed as shell code. `eval "$(autograder ros)"` is equivalent to
     sourcing the setup.bash of a ROS installation.
 
-    Unless ROS_DOMAIN_ID is set, COMMAND is in your ROS domain, which your notebooks share and no other user has.
+    Unless ROS_DOMAIN_ID is set, COMMAND uses your ROS domain, which your notebooks share and other users do not.
     """
     sys.exit(_run(command))
 
@@ -29,7 +29,7 @@ def ros(command: tuple[str, ...]) -> None:
 def _run(command: tuple[str, ...]) -> int:
     """Replace this process by the command, or print the variables. Return the exit status if that fails."""
     try:
-        # The command, and all that it starts, must not choose again. For a shell, the number is only a promise.
+        # A command and its child processes keep this domain. Variables that are only printed do not reserve it.
         domain = None if os.environ.get("ROS_DOMAIN_ID") else Domain(user=os.getuid())
         number = None if domain is None else domain.number
         if not command:

@@ -1,4 +1,4 @@
-"""`autograder serve`: grades submissions on a JupyterHub at once."""
+"""`autograder serve`: grades submissions on a JupyterHub immediately."""
 
 from __future__ import annotations
 
@@ -22,23 +22,21 @@ from autograder.run.sandbox import Isolation
     "--data",
     required=True,
     type=click.Path(path_type=Path, file_okay=False),
-    help="The folder for all that is handed in, with its results. Nobody else can read it.",
+    help="The folder for submissions and their results. Other users cannot read it.",
 )
-@click.option(
-    "-j", "--jobs", type=click.IntRange(1, 64), default=1, show_default=True, help="How many are graded at once."
-)
-@click.option("--check", is_flag=True, help="Read the settings, say what they are, and end.")
+@click.option("-j", "--jobs", type=click.IntRange(1, 64), default=1, show_default=True, help="The number of workers.")
+@click.option("--check", is_flag=True, help="Read and print the settings, and exit.")
 @seed_option
 @isolation_option
 def serve(settings: Path, data: Path, jobs: int, check: bool, seed: int, isolation: str) -> None:
     """Grade submissions as a service of a JupyterHub, configured by the file SETTINGS.
 
-    The hub starts it: docs/serve.md has the lines for its configuration. It ends when it is ended, in whatever way, and
-    loses nothing by that.
+    The hub starts it: docs/serve.md has the lines for its configuration. It can be stopped or
+    killed at any time without losing a submission.
     """
-    read = read_settings(settings)
+    hub = read_settings(settings)
     if check:
-        for name, each in read.assignments.items():
+        for name, each in hub.assignments.items():
             due = f"due at {each.due:%Y-%m-%d %H:%M %Z}" if each.due is not None else "never due"
             counts = "best" if each.best_counts else "last"
             echo(f"{name}: {due}, {each.tries_a_day} tries a day, shows {each.shown.value}, the {counts} one counts")
@@ -50,4 +48,4 @@ def serve(settings: Path, data: Path, jobs: int, check: bool, seed: int, isolati
             raise
         raise UsageError("serve needs JupyterHub, which is not installed here: run `make hub-setup`") from None
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(message)s")
-    service.serve(read, data, Way(jobs, seed, Isolation(isolation)), service.address(os.environ))
+    service.serve(hub, data, Way(jobs, seed, Isolation(isolation)), service.address(os.environ))

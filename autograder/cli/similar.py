@@ -57,15 +57,15 @@ def similar(
             raise
         raise UsageError("this needs copydetect: run `.venv/bin/pip install copydetect`") from None
 
-    def in_part(student: str, what: str) -> None:
-        echo(f"Compared in part: {on_line(student)}: {what}", err=True)
+    def report_partial(student: str, reason: str) -> None:
+        echo(f"Compared in part: {on_line(student)}: {reason}", err=True)
 
     with tempfile.TemporaryDirectory() as name:
         write_release(Path(name) / "given", (assignment,))
         given = code(read_submission(Path(name) / "given" / course_paths.course().chapters / assignment, assignment))
     with find_submissions(paths, assignment, roster, verb="compared") as (submissions, all_fit):
         codes, all_read = _codes(submissions, assignment)
-    comparison = compare(codes, given, least / 100, in_part)
+    comparison = compare(codes, given, least / 100, report_partial)
     for student in comparison.without_own:
         echo(f"Not compared: {on_line(student)}: it contains no code of its own", err=True)
     compared = len(codes) - len(comparison.without_own)

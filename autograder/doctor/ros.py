@@ -62,11 +62,11 @@ def installation(system: System, ros: RosEnvironment) -> Finding:
         return Finding("ROS 2", Status.MISSING, f"{ros.describe()}, but its rclpy has no package.xml", "make setup")
     version_text = f"{ros.describe()}, rclpy {version[1]}"
     if not version[1].startswith(f"{DISTRIBUTION.rclpy}."):
-        other = f"rclpy {version[1]} in {ros.prefixes[0]} is not {DISTRIBUTION.title}'s, which is {DISTRIBUTION.rclpy}"
-        return Finding("ROS 2", Status.MISSING, other, "make setup")
+        state = f"rclpy {version[1]} in {ros.prefixes[0]} is not {DISTRIBUTION.title}'s, which is {DISTRIBUTION.rclpy}"
+        return Finding("ROS 2", Status.MISSING, state, "make setup")
     if ros.kind == "sourced" and system.read(_manifest(system.prefix)) is not None:
-        both = f"{version_text}; the wheels are also installed, and the two mix their libraries"
-        return Finding("ROS 2", Status.WEAK, both, "make setup")
+        state = f"{version_text}; the wheels are also installed, and the two mix their libraries"
+        return Finding("ROS 2", Status.WEAK, state, "make setup")
     return Finding("ROS 2", Status.OK, version_text)
 
 

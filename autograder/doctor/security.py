@@ -37,22 +37,22 @@ def attempt(escape: Escape, home: Path, port: int, profile: str | None) -> str:
     before = processes()
     with launch([sys.executable, str(program)], spec, profile=profile) as process:
         process.wait(escape.limits.wall_seconds + 60)
-    wrong = [line for line in process.output.splitlines() if line.startswith("OUT")]
+    problems = [line for line in process.output.splitlines() if line.startswith("OUT")]
     if process.exit_reason not in escape.exit_reasons:
-        wrong.append(f"it ended as {process.exit_reason and process.exit_reason.value}: {process.output[-200:]}")
+        problems.append(f"it ended as {process.exit_reason and process.exit_reason.value}: {process.output[-200:]}")
     deadline = time.monotonic() + 20
-    while (left := processes() - before) and time.monotonic() < deadline:
+    while (survivors := processes() - before) and time.monotonic() < deadline:
         time.sleep(0.05)
-    return "; ".join([*wrong, *(f"process {pid} survived" for pid in left)])
+    return "; ".join([*problems, *(f"process {pid} survived" for pid in survivors)])
 
 
 def processes() -> set[int]:
     """Return the processes in this worker sandbox's network namespace, except zombies."""
-    here, pids = Path("/proc/self/ns/net").readlink(), set()
+    own, pids = Path("/proc/self/ns/net").readlink(), set()
     for pid in map(int, filter(str.isdigit, os.listdir("/proc"))):
         with suppress(OSError):
             state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-            if Path(f"/proc/{pid}/ns/net").readlink() == here and state not in "ZX":
+            if Path(f"/proc/{pid}/ns/net").readlink() == own and state not in "ZX":
                 pids.add(pid)
     return pids
 

@@ -4,7 +4,8 @@
 faster than real time, and `side_by_side(...)` compares drives. `check(...)` runs the visible checks. `grade(...)` is in
 the locked cells. `source(...)` is the kernel's equivalent of `source install/setup.bash`. `simulator(...)` runs the
 simulator in the background. `graph()` draws the running nodes and their topics. `score(...)` ranks a student's drives.
-`submit(...)` hands in, on a hub that grades at once.
+`submit(...)` hands the assignment in on a JupyterHub that
+grades immediately.
 
 Students' programs run in separate processes, never in the kernel.
 """
@@ -42,7 +43,7 @@ __all__ = [
     "source",
     "submit",
 ]
-# Imported when a notebook asks for them: a worker and the command line need few, and pay for each.
+# Imported on first use, because a worker and the command line need only a few of them.
 _MODULES = {
     "check": "checking",
     "drive": "driving",
@@ -59,8 +60,8 @@ def __getattr__(name: str) -> Any:
     """Import one of the functions that notebooks use."""
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    found = globals()[name] = getattr(importlib.import_module(f"{__name__}.{_MODULES[name]}"), name)
-    return found
+    function = globals()[name] = getattr(importlib.import_module(f"{__name__}.{_MODULES[name]}"), name)
+    return function
 
 
 def ros() -> None:
@@ -68,11 +69,12 @@ def ros() -> None:
 
     From then on, `%%writefile` never overwrites a student's changes from the editor (see `writefile`).
 
-    Unless `ROS_DOMAIN_ID` is set, the kernel is in the user's ROS domain: with the user's other notebooks and what
-    `autograder ros` runs, and without other users' robots. When the notebook is graded, it has a domain for itself.
+    Unless `ROS_DOMAIN_ID` is set, the kernel joins the user's ROS domain, which it shares with the user's other
+    notebooks and with programs that `autograder ros` runs, but not with other users. A notebook that is being graded
+    has a domain of its own.
 
     Raises:
-        RosError: there is no usable ROS 2, or no domain is left. The message says how to fix it.
+        RosError: no usable ROS 2 was found, or no domain is free. The message says how to fix it.
     """
     if not grading():
         from IPython.core.getipython import get_ipython
@@ -80,7 +82,7 @@ def ros() -> None:
         from autograder.notebook import writefile
 
         writefile.register(get_ipython())
-        # Where it is set, setuptools warns, and colcon shows a block "stderr" for a build without a fault.
+        # If it is set, setuptools warns, and colcon shows a block "stderr" although the build succeeds.
         os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     chosen = os.environ.get("ROS_DOMAIN_ID")
     activate(domain=int(chosen) if chosen else Domain(user=None if grading() else os.getuid()).number)

@@ -4,7 +4,8 @@ It uses the same code as the grader.
 
 python -m autograder.notebook.check_worker REQUEST DESCRIPTOR
 
-The descriptor belongs to a socket (`autograder.run.sandbox.line`) from which it gets built interface packages.
+DESCRIPTOR is the file descriptor of a socket (`autograder.run.sandbox.line`) from which the worker gets built interface
+packages.
 """
 
 from __future__ import annotations
@@ -144,43 +145,45 @@ def _check(
     from autograder.suite import Outcome, suites
 
     suite = suites.visible(assignment)
-    there = [structure(Exercise, exercise) for exercise in exercises]
-    chosen = [exercise for exercise in there if exercise.name == part]
-    asked = checks_of(chosen[0], there, suite.checks) if chosen else tuple(check.id for check in suite.checks)
+    all_exercises = [structure(Exercise, exercise) for exercise in exercises]
+    chosen = [exercise for exercise in all_exercises if exercise.name == part]
+    selected = (
+        checks_of(chosen[0], all_exercises, suite.checks) if chosen else tuple(check.id for check in suite.checks)
+    )
     results: dict[str, CheckResult] = {}
 
-    def answer(found: Diagnosis, ids: Collection[str], *, lasting: bool = True) -> dict[str, Any]:
+    def reply(reason: Diagnosis, ids: Collection[str], *, lasting: bool = True) -> dict[str, Any]:
         """Return the results of checks, and of their failed dependencies."""
-        lost = {name for name, result in results.items() if result.outcome is not Outcome.PASSED}
-        shown = [check for check in suite.checks if check.id in ids or check.id in lost]
+        not_passed = {name for name, result in results.items() if result.outcome is not Outcome.PASSED}
+        shown = [check for check in suite.checks if check.id in ids or check.id in not_passed]
         lines = [results.get(check.id) or CheckResult.of(check, Outcome.NOT_CHECKED) for check in shown]
         return {
-            "diagnosis": asdict(found),
+            "diagnosis": asdict(reason),
             "checks": [asdict(line) for line in lines],
             "sources": suite.sources,
             "reads": suite.reads,
             "lasting": lasting,
         }
 
-    early = [name for name in asked if name in first]
-    others = [name for name in asked if name not in first]
+    early = [name for name in selected if name in first]
+    others = [name for name in selected if name not in first]
     try:
-        observed = build_workspace(workspace, suite.packages, may_fail=suite.build_may_fail)
-        diagnosis = observed.diagnosis
+        build = build_workspace(workspace, suite.packages, may_fail=suite.build_may_fail)
+        diagnosis = build.diagnosis
         for ids in filter(None, (early, others)):
             is_all = len(ids) == len(suite.checks)
             options = Options(only=() if is_all else suite.with_dependencies(*ids))
-            plugin = GradingPlugin(workspace, SEED, Artifacts(out), observed.diagnoses, options)
+            plugin = GradingPlugin(workspace, SEED, Artifacts(out), build.diagnoses, options)
             run(suite.files, plugin)
             if plugin.failures:
                 raise GraderError("\n".join(plugin.failures))
             results |= plugin.results
             diagnosis = plugin.diagnosis if diagnosis is OK else diagnosis
             if ids is early and others:
-                write_json(out / EARLY_FILE, answer(diagnosis, early))
+                write_json(out / EARLY_FILE, reply(diagnosis, early))
     except StudentError as error:
-        return answer(error.diagnosis, asked, lasting=not isinstance(error, StoppedBuildError))
-    return answer(diagnosis, asked)
+        return reply(error.diagnosis, selected, lasting=not isinstance(error, StoppedBuildError))
+    return reply(diagnosis, selected)
 
 
 VERBS: dict[str, Callable[..., dict[str, Any]]] = {"drive": _drive, "check": _check}

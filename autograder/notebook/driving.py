@@ -117,8 +117,8 @@ def drive(
         seed: seed of the simulator's noise.
         name: a node name that replaces the one in the code.
         parameters: values by name, or the path of a parameter file.
-        each_step: what else is published: a function that is called for each 0.1 s of the drive, before it begins,
-            with the seconds since its start (0.1, 0.2, ...). It returns messages by topic, such as
+        each_step: a function that returns additional messages to publish. It is called before the drive, once for
+            each 0.1 s of it, with the seconds since its start (0.1, 0.2, ...). It returns messages by topic, such as
             `{"/mode": String(data="fast")}`, or None.
         workspace: the colcon workspace.
 
@@ -126,8 +126,8 @@ def drive(
         The drive, or a notice with the reason why the robot could not move.
 
     Raises:
-        UsageError: there is no such world, fault, parameter file or workspace, or what `each_step` returns cannot be
-            published.
+        UsageError: there is no such world, fault, parameter file or workspace, or a return value of `each_step` cannot
+            be published.
     """
     if grading():
         return Notice("The robot stays in its dock while the notebook is graded.")

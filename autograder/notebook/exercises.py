@@ -66,68 +66,68 @@ def exercises(assignment: str) -> tuple[Exercise, ...]:
         raise UsageError(f"{path} cannot be read as a notebook: {hint}") from None
 
 
-def find(assignment: str, there: Sequence[Exercise], kind: str, number: int) -> Exercise:
+def find(assignment: str, available: Sequence[Exercise], kind: str, number: int) -> Exercise:
     """Return an exercise of a chapter. A UsageError lists the existing ones."""
-    for exercise in there:
+    for exercise in available:
         if (exercise.kind, exercise.number) == (kind, number):
             return exercise
-    in_order = sorted(there, key=lambda each: (each.kind, each.number))
+    in_order = sorted(available, key=lambda each: (each.kind, each.number))
     listed = ", ".join(f"{each.name} ({each.title})" if each.title else each.name for each in in_order)
     raise UsageError(f"{assignment} has no {kind} {number}; it has: {listed or 'no exercise with a number'}")
 
 
-def checks_of(chosen: Exercise, there: Sequence[Exercise], checks: Sequence[Check]) -> tuple[str, ...]:
+def checks_of(chosen: Exercise, available: Sequence[Exercise], checks: Sequence[Check]) -> tuple[str, ...]:
     """Return the ids of the checks that belong to an exercise, in the order of the suite.
 
     If all requirements of a group of checks are in one exercise, the group belongs to it. If they are in several, the
     notebook's objectives decide. If these assign the group to no or several exercises, each check belongs to the last
     exercise with one of its requirements. A check without a requirement in an exercise belongs to every exercise.
     """
-    return tuple(check.id for check in checks if _home(check, there, checks) in (None, chosen))
+    return tuple(check.id for check in checks if _exercise_of(check, available, checks) in (None, chosen))
 
 
-def _home(check: Check, there: Sequence[Exercise], checks: Sequence[Check]) -> Exercise | None:
+def _exercise_of(check: Check, available: Sequence[Exercise], checks: Sequence[Check]) -> Exercise | None:
     """Return the exercise of a check, or None if no exercise contains one of its requirements."""
-    group = [each for other in checks if other.group == check.group for each in _stating(other, there)]
+    group = [each for other in checks if other.group == check.group for each in _exercises_covering(other, available)]
     if len(set(group)) > 1:
-        named = next((each for each in there if check.group in each.groups), None)
-        return named or next(reversed(_stating(check, there)), None)
-    return next(iter(_stating(check, there)), None)
+        named = next((each for each in available if check.group in each.groups), None)
+        return named or next(reversed(_exercises_covering(check, available)), None)
+    return next(iter(_exercises_covering(check, available)), None)
 
 
-def _stating(check: Check, there: Sequence[Exercise]) -> list[Exercise]:
-    return [each for each in there if not set(each.sentences).isdisjoint(check.covers)]
+def _exercises_covering(check: Check, available: Sequence[Exercise]) -> list[Exercise]:
+    return [each for each in available if not set(each.sentences).isdisjoint(check.covers)]
 
 
 def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]:
     """Yield the exercises in cells. `objectives` come from the notebook's metadata."""
-    given: dict[str, set[str]] = {}  # the cells of the exercises that a group tests
+    cells_of_group: dict[str, set[str]] = {}  # the cells of the exercises that a group tests
     for objective in objectives:
         for group in objective["groups"]:
-            given.setdefault(group, set()).add(objective["exercise"])
-    found: dict[str, Exercise] = {}
+            cells_of_group.setdefault(group, set()).add(objective["exercise"])
+    by_name: dict[str, Exercise] = {}
     sentences: dict[str, dict[str, Any]] = {}
     files: list[str] = []  # that cells write, in the order of the notebook
-    before: dict[str, int] = {}  # how many of them are written down to the end of an exercise
-    level, now = 0, ""
+    file_counts: dict[str, int] = {}  # the number of files that are written up to the end of an exercise
+    level, current = 0, ""
     for cell in cells:
         for depth, text in _headings(cell):
             if heading := _HEADING.fullmatch(text):
                 new = Exercise(heading[1].lower(), int(heading[2] or 1), heading[3] or "")
-                level, now = depth, new.name
-                groups = tuple(group for group, places in given.items() if places == {cell.get("id")})
-                found[now] = Exercise(new.kind, new.number, new.title, groups=groups)
+                level, current = depth, new.name
+                groups = tuple(group for group, ids in cells_of_group.items() if ids == {cell.get("id")})
+                by_name[current] = Exercise(new.kind, new.number, new.title, groups=groups)
             elif depth <= level:
-                level, now = 0, ""
-        if cell["cell_type"] == "code" and (written := written_file("".join(cell["source"]))):
-            files.append(written[0].as_posix())
-        if now:
-            sentences.setdefault(now, {}).update(cell["metadata"].get("course", {}).get("contract", {}))
-            before[now] = len(files)
-    for name, each in found.items():
-        if named := sentences.get(name):  # a question that a person grades has no requirements that a check could cover
-            there, after = files[: before[name]], files[before[name] :]
-            yield replace(each, sentences=tuple(named), later=tuple(file for file in after if file not in there))
+                level, current = 0, ""
+        if cell["cell_type"] == "code" and (file := written_file("".join(cell["source"]))):
+            files.append(file[0].as_posix())
+        if current:
+            sentences.setdefault(current, {}).update(cell["metadata"].get("course", {}).get("contract", {}))
+            file_counts[current] = len(files)
+    for name, each in by_name.items():
+        if own := sentences.get(name):  # empty for a question that a person grades
+            written, rest = files[: file_counts[name]], files[file_counts[name] :]
+            yield replace(each, sentences=tuple(own), later=tuple(file for file in rest if file not in written))
 
 
 def _headings(cell: Any) -> Iterator[tuple[int, str]]:

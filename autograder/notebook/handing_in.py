@@ -1,4 +1,4 @@
-"""`submit`: hands an assignment in to the hub's service, which grades it at once."""
+"""`submit` hands an assignment in to the hub's service, which grades it immediately."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ from autograder.suite import suites
 from sim.grading import grading
 
 SERVICE = "AUTOGRADER_SERVICE"  # the variable with the service's address, which the hub's configuration sets
-TOKEN = "JUPYTERHUB_API_TOKEN"  # the variable with the token of one's own server
+TOKEN = "JUPYTERHUB_API_TOKEN"  # the variable with the token of the user's server
 PAUSES = (1.0, 2.0, 4.0, 8.0)  # s between tries while the service starts again
 TIMEOUT = 60.0  # s
-DATE = (1980, 1, 1, 0, 0, 0)  # the first one that a zip can hold; no file's own matters
+DATE = (1980, 1, 1, 0, 0, 0)  # the earliest date that a zip can hold; files' own dates would make equal answers differ
 MAX_REPLY = 100_000  # bytes
 MAX_ANSWER = 16 * 1024 * 1024  # bytes of an answer, packed
-UNSURE = "Your answer may have arrived, or not. Run the cell again: it is handed in once."
+UNSURE = "Your answer may or may not have arrived. Run the cell again: it is handed in only once."
 
-_unsure: dict[tuple[str, str], str] = {}  # the keys of answers, by assignment and digest, without a receipt
+_unsure: dict[tuple[str, str], str] = {}  # keys of answers without a receipt, by assignment and digest
 
 
 @dataclass(frozen=True)
 class Receipt:
-    """The service's answer: the hand-in is kept, and will be graded."""
+    """The service's confirmation that it stored a hand-in and will grade it."""
 
     assignment: str
     number: int
@@ -50,10 +50,10 @@ class Receipt:
 
     @property
     def sentence(self) -> str:
-        """What was handed in when, and what comes next."""
+        """The confirmation in words."""
         tries = f"{self.tries_left} more {'try' if self.tries_left == 1 else 'tries'} today"
         at = self.handed_in.astimezone().strftime("%H:%M:%S")
-        return f"{self.assignment} is handed in as number {self.number}, at {at}, as it is saved. You have {tries}."
+        return f"{self.assignment} is handed in as number {self.number}, at {at}, as last saved. You have {tries}."
 
     def __repr__(self) -> str:
         return f"{self.sentence}\nIts feedback: {self.page} on the hub"
@@ -66,17 +66,20 @@ class Receipt:
 def submit(assignment: str, folder: str | Path = ".") -> Receipt | Notice:
     """Hand in the assignment's folder as it is saved: the notebook, and the packages in `ws/src`.
 
-    Returns what the service says: a receipt, or a notice that says why nothing was handed in. Raises UsageError if
-    there is no such assignment.
+    Returns:
+        The service's receipt, or a notice that says why nothing was handed in.
+
+    Raises:
+        UsageError: there is no such assignment.
     """
     if grading():
         return Notice("Nothing is handed in while a notebook is graded.")
-    if assignment not in (there := suites.checkable_assignments()):
-        raise UsageError(f"there is nothing to hand in for {assignment!r}; there is for: {', '.join(there)}")
+    if assignment not in (known := suites.checkable_assignments()):
+        raise UsageError(f"there is nothing to hand in for {assignment!r}; choose one of: {', '.join(known)}")
     service, token = os.environ.get(SERVICE), os.environ.get(TOKEN)
     if not service or not token:
         return Notice(
-            "This is not a hub that grades at once. Hand in as your instructor says: the folder as a zip, for example."
+            "This hub does not grade submissions. Hand in as your instructor says: the folder as a zip, for example."
         )
     try:
         files = intake.read_files(Path(folder), assignment)
@@ -84,8 +87,10 @@ def submit(assignment: str, folder: str | Path = ".") -> Receipt | Notice:
         return Notice("Nothing was handed in.", str(error), TROUBLE)
     answer = packed(files)
     if len(answer) > MAX_ANSWER:
-        size = f"The folder is {len(answer) / 2**20:.0f} MiB as a zip, and an answer has at most {MAX_ANSWER // 2**20}."
-        return Notice("Nothing was handed in.", f"{size} Move what is large and no part of it elsewhere.", TROUBLE)
+        size = (
+            f"The folder is {len(answer) / 2**20:.0f} MiB as a zip, but at most {MAX_ANSWER // 2**20} MiB are accepted."
+        )
+        return Notice("Nothing was handed in.", f"{size} Move large files that are not part of it elsewhere.", TROUBLE)
     digest = hashlib.sha256(answer).hexdigest()
     key = _unsure.setdefault((assignment, digest), secrets.token_hex(16))
     try:
@@ -99,7 +104,7 @@ def submit(assignment: str, folder: str | Path = ".") -> Receipt | Notice:
 
 
 class HandInError(Exception):
-    """The service did not take the answer, or, unless it `is_sure`, its own answer was lost on the way."""
+    """The service did not accept the answer. Unless `is_sure`, it may have, but its reply was lost."""
 
     def __init__(self, sentence: str, *, is_sure: bool = True) -> None:
         super().__init__(sentence)
@@ -107,7 +112,7 @@ class HandInError(Exception):
 
 
 def packed(files: Sequence[SubmittedFile]) -> bytes:
-    """Return files as a zip; equal files make equal zips."""
+    """Return files as a zip. Equal files make equal zips."""
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
         for file in sorted(files, key=lambda each: each.path):
@@ -121,8 +126,8 @@ def packed(files: Sequence[SubmittedFile]) -> bytes:
 def hand_in(service: str, token: str, assignment: str, key: str, answer: bytes) -> Receipt:
     """Send an answer to the service at this address, and return its receipt.
 
-    Where no answer comes, because the service is being started, it is sent again with the same key: that makes it the
-    same hand-in, however often it arrives. Raises HandInError if the service does not take it.
+    If the service does not reply, for example because it is starting, the answer is sent again with the same key, so
+    that it is one hand-in however often it arrives. Raises HandInError if the service does not accept it.
     """
     url = urljoin(f"{service.rstrip('/')}/", f"hand-ins/{quote(assignment, safe='')}/{key}")
     headers = {"Authorization": f"token {token}", "Content-Type": "application/zip"}
@@ -133,7 +138,7 @@ def hand_in(service: str, token: str, assignment: str, key: str, answer: bytes) 
             with opener.open(request, timeout=TIMEOUT) as reply:
                 return _receipt(assignment, reply.read(MAX_REPLY))
         except urllib.error.HTTPError as error:
-            if error.code not in (502, 503, 504) or pause is None:  # of the service, or of the proxy without it
+            if error.code not in (502, 503, 504) or pause is None:  # of the proxy, while the service starts
                 raise HandInError(_sentence(error), is_sure=error.code not in (502, 504)) from None
         except (OSError, http.client.HTTPException) as error:
             if pause is None:
@@ -144,15 +149,15 @@ def hand_in(service: str, token: str, assignment: str, key: str, answer: bytes) 
 
 def _receipt(assignment: str, data: bytes) -> Receipt:
     try:
-        said = json.loads(data)
-        at = datetime.fromisoformat(said["handed_in"])
-        return Receipt(assignment, int(said["number"]), at, int(said["tries_left"]), str(said["page"]))
+        reply = json.loads(data)
+        at = datetime.fromisoformat(reply["handed_in"])
+        return Receipt(assignment, int(reply["number"]), at, int(reply["tries_left"]), str(reply["page"]))
     except (ValueError, KeyError, TypeError):
-        raise HandInError("What answers there is not the service: tell your instructor.", is_sure=False) from None
+        raise HandInError("The reply is not from the grading service: tell your instructor.", is_sure=False) from None
 
 
 def _sentence(error: urllib.error.HTTPError) -> str:
     try:
         return str(json.loads(error.read(MAX_REPLY))["error"])
     except (ValueError, KeyError, TypeError, OSError):
-        return f"The service says: {error.code} {error.reason}. Tell your instructor."
+        return f"The service replied {error.code} {error.reason}. Tell your instructor."

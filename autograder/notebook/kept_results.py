@@ -31,7 +31,7 @@ from autograder.run.sandbox.worker_sandbox import passed_variables
 from autograder.suite import fingerprint
 
 CACHE = "checks"
-MOST = 100  # stored files, one for each chapter of a workspace
+MAX_FILES = 100  # stored files, one for each chapter of a workspace
 # These differ between a kernel and a terminal, and a workspace's programs get their own values.
 _IGNORED = frozenset({"ROS_DOMAIN_ID", "ROS_LOG_DIR", "PYTHONDONTWRITEBYTECODE", *LOGS_TO_STDOUT})
 
@@ -97,36 +97,36 @@ def take_inputs(assignment: str, source: Path, reads: Iterable[str] = ()) -> Inp
 
 
 def load(workspace: Path, assignment: str, part: str) -> Kept | None:
-    """Return the stored result of a chapter or a part of it, or None if there is none or it is unreadable."""
+    """Return the stored result of a chapter or a part of it, or None if it is missing or unreadable."""
     with suppress(OSError, ValueError, TypeError, LookupError, AttributeError):
-        found: Kept = structure(Kept, json.loads(_place(workspace, assignment).read_bytes())[part])
-        return found
+        kept: Kept = structure(Kept, json.loads(_file(workspace, assignment).read_bytes())[part])
+        return kept
     return None
 
 
 def keep(workspace: Path, assignment: str, part: str, kept: Kept) -> None:
-    """Store a result instead of the previous one. If the disk is full, store none."""
-    place, others = _place(workspace, assignment), {}
+    """Store a result in place of the previous one. If the disk is full, store nothing."""
+    file, others = _file(workspace, assignment), {}
     with suppress(OSError, ValueError):
-        others = json.loads(place.read_bytes())
+        others = json.loads(file.read_bytes())
     with suppress(OSError):
-        write_json(place, {**(others if isinstance(others, dict) else {}), part: asdict(kept)})
-        oldest_first = sorted(place.parent.glob("*.json"), key=lambda path: path.stat().st_mtime)
-        for path in oldest_first[:-MOST]:
+        write_json(file, {**(others if isinstance(others, dict) else {}), part: asdict(kept)})
+        oldest_first = sorted(file.parent.glob("*.json"), key=lambda path: path.stat().st_mtime)
+        for path in oldest_first[:-MAX_FILES]:
             path.unlink(missing_ok=True)
 
 
 def stamp_of(paths: Iterable[Path]) -> str:
     """Return a digest of the modification times of files, including those in folders. Skip unreadable ones."""
-    found = hashlib.sha256()
+    digest = hashlib.sha256()
     for top in paths:
         for path in (top,) if top.is_file() else sorted(top.rglob("*")):
             with suppress(OSError):
-                found.update(str(path).encode("utf-8", "surrogateescape") + _stamp(path))
-    return found.hexdigest()
+                digest.update(str(path).encode("utf-8", "surrogateescape") + _stamp(path))
+    return digest.hexdigest()
 
 
-def _place(workspace: Path, assignment: str) -> Path:
+def _file(workspace: Path, assignment: str) -> Path:
     name = hashlib.sha256(f"{workspace.resolve()}\0{assignment}".encode("utf-8", "surrogateescape")).hexdigest()[:32]
     return Cache.default(CACHE).root / f"{name}.json"
 
@@ -150,18 +150,18 @@ def _cells(notebook: Path) -> bytes:
     """Return the relevant content of a notebook, or all bytes of one that is only partly written."""
     data = notebook.read_bytes()
     try:
-        found = json.loads(data)
+        content = json.loads(data)
         cells = [
-            [cell["cell_type"], "".join(cell["source"]), cell["metadata"].get("course")] for cell in found["cells"]
+            [cell["cell_type"], "".join(cell["source"]), cell["metadata"].get("course")] for cell in content["cells"]
         ]
-        return json.dumps([cells, found["metadata"].get("course")], sort_keys=True).encode()
+        return json.dumps([cells, content["metadata"].get("course")], sort_keys=True).encode()
     except (ValueError, LookupError, TypeError, AttributeError):
         return data
 
 
 def _stamp(path: Path) -> bytes:
-    found = path.stat()
-    return f"{found.st_ino} {found.st_size} {found.st_mtime_ns} {found.st_ctime_ns}\n".encode()
+    status = path.stat()
+    return f"{status.st_ino} {status.st_size} {status.st_mtime_ns} {status.st_ctime_ns}\n".encode()
 
 
 def _environment() -> Mapping[str, Any]:

@@ -11,9 +11,7 @@ from autograder.notebook.notices import Notice
 from autograder.ros.discovery import announcing_often
 from sim.grading import grading
 
-HIDDEN_TOPICS = ("/rosout", "/parameter_events", "/clock")
-"""Topics of nearly every node, which would clutter the drawing."""
-
+HIDDEN_TOPICS = ("/rosout", "/parameter_events", "/clock")  # of nearly every node; they would clutter the drawing
 STABLE_SECONDS = 1.0  # real time without a change until discovery counts as finished
 ROW, NODE, TOPIC, GAP = 46, 190, 210, 110  # pixels: row height, box widths, space between columns
 
@@ -46,16 +44,20 @@ class Graph:
         right = sorted({node for _, node in self.subscribed})
         topics = sorted(self.topics)
         height = ROW * max(len(left), len(right), len(topics), 1)
-        where = {
+        positions = {
             (column, name): (x, (number + 0.5) * height / len(names))
             for column, (x, names) in enumerate(((0, left), (NODE + GAP, topics), (NODE + TOPIC + 2 * GAP, right)))
             for number, name in enumerate(names)
         }
         boxes = "".join(
-            _box(x, y, name, self.topics[name] if column == 1 else None) for (column, name), (x, y) in where.items()
+            _box(x, y, name, self.topics[name] if column == 1 else None) for (column, name), (x, y) in positions.items()
         )
-        arrows = "".join(_arrow(where[0, node], NODE, where[1, topic]) for node, topic in sorted(self.published))
-        arrows += "".join(_arrow(where[1, topic], TOPIC, where[2, node]) for topic, node in sorted(self.subscribed))
+        arrows = "".join(
+            _arrow(positions[0, node], NODE, positions[1, topic]) for node, topic in sorted(self.published)
+        )
+        arrows += "".join(
+            _arrow(positions[1, topic], TOPIC, positions[2, node]) for topic, node in sorted(self.subscribed)
+        )
         width = 2 * NODE + TOPIC + 2 * GAP
         return (
             f'<svg class="ros-graph" xmlns="http://www.w3.org/2000/svg" width="{width}"'

@@ -81,8 +81,8 @@ def _type_of(topic: str, message: Any, workspace: Path) -> str:
     package, _, _ = type(message).__module__.partition(".")
     if not hasattr(type(message), "get_fields_and_field_types"):
         raise UsageError(f"each_step returned {message!r} for {topic}: return a message, such as String(data='fast')")
-    where = getattr(sys.modules.get(package), "__file__", None)
-    if where is not None and Path(where).resolve().is_relative_to(workspace.resolve()):
+    file = getattr(sys.modules.get(package), "__file__", None)
+    if file is not None and Path(file).resolve().is_relative_to(workspace.resolve()):
         raise UsageError(
             f"each_step returned a message of {package}, which your workspace builds: use an installed type"
         )

@@ -72,11 +72,11 @@ class ScoreTable:
         return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
 
     def _rows(self) -> list[tuple[str, ...]]:
-        places = [
+        numbers = [
             f"{number}." + (" ← this run" if score is self.newest else "")
             for number, score in enumerate(self.scores, 1)
         ]
-        return [(place, *score.cells) for place, score in zip(places, self.scores, strict=True)]
+        return [(number, *score.cells) for number, score in zip(numbers, self.scores, strict=True)]
 
 
 def score(drive: DriveReport | SimulatorSession | Notice, run: str = "") -> ScoreTable | Notice:

@@ -17,8 +17,8 @@ from autograder.notebook.kept_results import stamp_of
 from autograder.notebook.notices import Notice
 from autograder.suite import Outcome, fingerprint
 
-LOOK = 0.25  # s between polls of the files
-QUIET = 0.5  # s without a change, after which files count as saved
+POLL_SECONDS = 0.25
+QUIET_SECONDS = 0.5  # without a change, after which files count as saved
 WAITING = "Waiting for a file to be saved. Ctrl-C ends this."
 
 Show = Callable[[object], None]
@@ -59,8 +59,8 @@ def watch(part: Part, workspace: Path, show: Show, *, pause: Callable[[float], N
 def _wait(assignment: str, workspace: Path, seen: str, pause: Callable[[float], None]) -> None:
     """Wait until the files have changed since `seen` and then stayed the same for a moment."""
     newest, since = seen, time.monotonic()
-    while newest == seen or time.monotonic() - since < QUIET:
-        pause(LOOK)
+    while newest == seen or time.monotonic() - since < QUIET_SECONDS:
+        pause(POLL_SECONDS)
         if (now := _stamp(assignment, workspace)) != newest:
             newest, since = now, time.monotonic()
 

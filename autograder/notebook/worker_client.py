@@ -26,20 +26,6 @@ EARLY_FILE = "early.json"  # the first part of the reply
 RECORDING = "recording.npz"
 
 
-class _Early:
-    """Passes the first part of a reply to a listener as soon as its file exists, once."""
-
-    def __init__(self, file: Path, listener: Callable[[dict[str, Any]], None] | None) -> None:
-        self._file, self._listener = file, listener
-
-    def has_looked(self) -> bool:
-        """Look for the file. Always returns True."""
-        if self._listener is not None and self._file.is_file():
-            listener, self._listener = self._listener, None
-            listener(json.loads(self._file.read_text(encoding="utf-8")))
-        return True
-
-
 @contextmanager
 def run_in_worker(
     verb: str, workspace: Path, *, early: Callable[[dict[str, Any]], None] | None = None, **arguments: Any
@@ -77,8 +63,7 @@ def run_on(
     with tempfile.TemporaryDirectory(prefix="request-") as folder, ours:
 
         def command(scratch: Path) -> list[str]:
-            place = place_of(source, isolation, scratch)
-            request = {"verb": verb, "source": place, "out": folder, "scratch": scratch}
+            request = {"verb": verb, "source": place_of(source, isolation, scratch), "out": folder, "scratch": scratch}
             request["arguments"] = arguments
             file = Path(folder) / REQUEST  # a large map does not fit on a command line
             file.write_text(json.dumps(request, default=str))
@@ -86,9 +71,8 @@ def run_on(
 
         visible_paths = places(assignment, parts=("visible",)) if (assignment := arguments.get("assignment")) else []
         if source.is_file():
-            visible_paths.append(
-                course_paths.chapter(arguments["assignment"])
-            )  # from which its reader knows what was given
+            # The reader of a submission compares it with the released chapter.
+            visible_paths.append(course_paths.chapter(arguments["assignment"]))
         view = View(shown=tuple(visible_paths), submitted=(source,), writable=(Path(folder),))
         with (
             theirs,
@@ -97,11 +81,17 @@ def run_on(
                 _,
             ),
         ):
-            theirs.close()  # once the worker has ended, nobody holds its end
-            tell = _Early(Path(folder) / EARLY_FILE, early)
-            # It asks for interface packages. Between its questions, it is looked after.
-            keeper.attend(ours, isolation, lambda: tell.has_looked() and process.exit_reason is not None)
-            tell.has_looked()  # the worker may have written the file and ended since the last look
+            theirs.close()  # the worker has the only other copy, so the connection ends with it
+            first_part, listeners = Path(folder) / EARLY_FILE, [early] if early else []
+
+            def has_ended() -> bool:
+                """Pass the first part of the reply on once it exists. Return whether the worker has ended."""
+                if listeners and first_part.is_file():
+                    listeners.pop()(json.loads(first_part.read_text(encoding="utf-8")))
+                return process.exit_reason is not None
+
+            keeper.attend(ours, isolation, has_ended)  # answers the worker's requests for interface packages
+            has_ended()  # the worker may have written the first part just before it ended
             report = ended(process)
         reply = Path(folder) / REPLY_FILE
         if report.returncode != 0 or not reply.is_file():

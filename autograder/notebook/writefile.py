@@ -1,6 +1,6 @@
 """The course's `%%writefile`, which writes a file like IPython's but never destroys a student's work.
 
-It creates missing folders of the file and says so, because a misspelt name would create one, too. A cell that still
+It creates missing folders of the file and says so, because a misspelt name also creates one. A cell that still
 contains an exercise's stub does not replace a file that the student wrote in another way. A file that was changed since
 a cell last wrote it is copied to `replaced/` in its workspace before a cell replaces it.
 """

@@ -1,6 +1,6 @@
-"""Other good answers to an assignment: the variants that students with full marks may see, and what differs in them.
+"""Other correct answers to an assignment: the variants that students with full marks may see.
 
-`variants/shown.yaml` in a chapter's checks names them, each with a text that says what differs.
+`variants/shown.yaml` in a chapter's checks names them and describes how each differs from the usual answer.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ class OtherAnswer:
     """A correct answer in another style.
 
     Attributes:
-        differs: what differs from the answer of most students, in some sentences.
-        files: the path and the text of each file that it writes in its own way.
+        differs: how it differs from the answer of most students, in a few sentences.
+        files: the path and the text of each file that differs.
     """
 
     differs: str
@@ -41,7 +41,7 @@ def other_answers(assignment: str) -> tuple[OtherAnswer, ...]:
     try:
         texts = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError:
-        raise UsageError(f"{assignment} has no other answers to show: there is no {path}") from None
+        raise UsageError(f"{assignment} has no other answers to show: {path} does not exist") from None
     except (ValueError, yaml.YAMLError) as error:
         raise UsageError(f"{path} cannot be read as YAML: {error}") from None
     if not isinstance(texts, dict) or not all(isinstance(text, str) for pair in texts.items() for text in pair):
@@ -52,7 +52,9 @@ def other_answers(assignment: str) -> tuple[OtherAnswer, ...]:
 def _answer(folder: Path, name: str, differs: str) -> OtherAnswer:
     known = sorted(variant.name for variant in folder.iterdir() if variant.is_dir())
     if name not in known:
-        raise UsageError(f"{folder / SHOWN} names {name!r}, and there is no such variant: {', '.join(known)}")
+        raise UsageError(
+            f"{folder / SHOWN} names {name!r}, which is not a variant; the variants are: {', '.join(known)}"
+        )
     paths = sorted(path for path in (folder / name).rglob("*") if path.is_file())
     return OtherAnswer(differs, tuple((path.relative_to(folder / name).as_posix(), _text(path)) for path in paths))
 

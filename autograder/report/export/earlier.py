@@ -31,9 +31,9 @@ class EarlierMarks:
     def __init__(self, out: Path, students: Iterable[str]) -> None:
         self._file = out / EARLIER_MARKS
         # Compare with the marks before the interrupted grading, not with its own.
-        noted = {} if not self._file.is_file() else {_key(result): result for result in load(self._file)}
-        self._marks = _stored(out, students) | noted
-        if self._marks.keys() > noted.keys():
+        earlier = {_key(result): result for result in load(self._file)} if self._file.is_file() else {}
+        self._marks = _stored(out, students) | earlier
+        if self._marks.keys() > earlier.keys():
             self._write()
 
     def changed(self, results: Sequence[Result]) -> tuple[Change, ...]:

@@ -42,17 +42,17 @@ def choices(results: Sequence[Result]) -> tuple[Choice, ...]:
     marks: dict[str, set[int]] = {"Not graded": set(), "Less than half": set(), "Full marks": set()}
     missed: dict[tuple[str, str], set[int]] = {}
     titles: dict[tuple[str, str], str] = {}
-    for place, result in enumerate(results):
+    for index, result in enumerate(results):
         if result.status is not Status.GRADED:
-            marks["Not graded"].add(place)
+            marks["Not graded"].add(index)
         elif result.percent < 50.0:
-            marks["Less than half"].add(place)
+            marks["Less than half"].add(index)
         elif result.score >= result.max_score:
-            marks["Full marks"].add(place)
+            marks["Full marks"].add(index)
         for check in result.checks:
             if check.outcome is not Outcome.PASSED:
                 key = result.assignment, check.id
-                missed.setdefault(key, set()).add(place)
+                missed.setdefault(key, set()).add(index)
                 titles.setdefault(key, check.title)
     checks = [(titles[key], places) for key, places in sorted(missed.items(), key=lambda item: -len(item[1]))]
     possible = [("Marks", *item) for item in marks.items()] + [("Missed a check", *item) for item in checks]

@@ -50,11 +50,11 @@ def test_each_graded_chapter_shows_two_answers_with_what_differs(assignment: str
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (None, "02_nodes has no other answers to show: there is no .*shown.yaml"),
+        (None, "02_nodes has no other answers to show: .*shown.yaml does not exist"),
         ("[states", "cannot be read as YAML"),
         ("states\n", "write the name of a variant, a colon and what differs in it"),
         ("states: 3\n", "write the name of a variant, a colon and what differs in it"),
-        ("stats: It has states.\n", "names 'stats', and there is no such variant: states"),
+        ("stats: It has states.\n", "names 'stats', which is not a variant; the variants are: states"),
     ],
 )
 def test_a_slip_in_the_list_is_named(

@@ -32,7 +32,7 @@ def test_without_a_hub_a_notice_says_so(answer: Path, monkeypatch: pytest.Monkey
     monkeypatch.delenv(SERVICE)
     said = submit(CHAPTER, answer)
     assert isinstance(said, Notice)
-    assert "This is not a hub that grades at once" in said.sentence
+    assert "This hub does not grade submissions" in said.sentence
 
 
 def test_an_assignment_that_does_not_exist_is_named() -> None:
@@ -52,7 +52,7 @@ def test_an_answer_that_is_too_large_is_not_sent(answer: Path, monkeypatch: pyte
     monkeypatch.setattr(handing_in, "MAX_ANSWER", 10)
     said = submit(CHAPTER, answer)
     assert isinstance(said, Notice)
-    assert "Move what is large" in said.detail
+    assert "Move large files" in said.detail
 
 
 def test_where_no_reply_comes_the_same_answer_keeps_its_key(answer: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -101,5 +101,5 @@ def test_a_receipt_says_what_comes_next() -> None:
 
 @pytest.mark.parametrize("reply", [b"<html>", b"[]", b'{"number": "x"}', b'{"number": 1, "handed_in": 5}'])
 def test_a_reply_of_something_else_is_no_receipt(reply: bytes) -> None:
-    with pytest.raises(HandInError, match="What answers there is not the service"):
+    with pytest.raises(HandInError, match="The reply is not from the grading service"):
         handing_in._receipt(CHAPTER, reply)

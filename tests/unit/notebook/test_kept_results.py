@@ -223,7 +223,7 @@ def test_a_kept_file_that_is_damaged_counts_as_none(text: str, machine: Machine,
 
 
 def test_only_the_newest_files_are_kept(machine: Machine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kept_results, "MOST", 2)
+    monkeypatch.setattr(kept_results, "MAX_FILES", 2)
     folder = tmp_path / "cache/autograder/checks"
     folder.mkdir(parents=True)
     for number in range(3):

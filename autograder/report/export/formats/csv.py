@@ -18,9 +18,8 @@ _SEPARATOR = re.compile(r"([;|\t])")
 def write(results: Sequence[Result], out: Path, more: Mapping[str, Mapping[str, str | float]] = {}) -> Path:
     """Write a row for each result, with a column for each check and the points that it earned.
 
-    `more` has further cells of students, by their headings.
-
-    The file is UTF-8 with commas, each cell quoted as in RFC 4180. A submission that was not graded has no score.
+    `more` contains additional cells of students by heading. The file is UTF-8 with commas, and every cell is quoted as
+    in RFC 4180. A submission that was not graded has no score.
     """
     rows = [{**_row(result), **more.get(result.student, {})} for result in results]
     with out.open("w", encoding="utf-8", newline="") as file:

@@ -1,4 +1,4 @@
-"""Other answers: for each submission with full marks, a page with other good answers and what differs in them."""
+"""Other answers: for each submission with full marks, a page with other correct answers and how they differ."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PAGE = "other_answers.html"
 
 
 def write(results: Sequence[Result], out: Path) -> Path:
-    """Write `out/<student>/other_answers.html` for each submission with full marks, for no other one; return `out`.
+    """Write `out/<student>/other_answers.html` for each submission with full marks. Return `out`.
 
     Raises:
         UsageError: an assignment has no other answers to show.
