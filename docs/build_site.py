@@ -1,8 +1,8 @@
-"""Builds the site from the pages in `docs`. `make docs` executes the notebooks before, and looks at the site after it.
+"""Builds the site from the pages in `docs`. `make docs` first executes the notebooks, and then tests the site.
 
-Some pages are generated here: the chapters as students get them, with the outputs of their last run in
-.build/notebooks, the run on the start page, the table of the verification, and the pages of the modules named
-*_page.py. SITE_ADDRESS is the address of the site, for the pictures that other sites show with a link to it.
+Some pages are generated: the chapters as students get them, with the outputs of their last run in .build/notebooks, the
+run on the start page, the table of the verification, and the pages of the modules named *_page.py. The environment
+variable SITE_ADDRESS is the address of the site, which previews of its links need.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ from sim.export import to_html
 DOCS = course_paths.ROOT / "docs"
 SITE = course_paths.BUILD / "site"
 SOURCE, HTML = SITE / "source", SITE / "html"
-KEPT_BACK = ("cluster", "*.py", "__pycache__")
-# Of the robot on the start page: it turns when something is nearer than ROOM within AHEAD of its bow.
+NOT_COPIED = ("cluster", "*.py", "__pycache__")
+# The robot on the start page turns when an obstacle is nearer than ROOM (m) and within AHEAD (rad) of its heading.
 AHEAD, ROOM = math.radians(50.0), 0.6
 FOLDER_OF_A_LINK = re.compile(r"\]\((?:docs|\.\./chapters)/")
-FROM_ELSEWHERE = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "chapters/ros2-commands.md", "chapters/glossary.md")
+OTHER_PAGES = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "chapters/ros2-commands.md", "chapters/glossary.md")
 ROBOT = course_paths.ROOT / "assets" / "figures" / "robot.png"
 EXAMPLE = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 ENTRY = re.compile(r"^(?P<words>[^\n:]+)\n: (?P<text>.+(?:\n  .+)*)", re.MULTILINE)
-# What is no prose: code, headings, links and pictures, tables, choices of a question, tags.
-NO_PROSE = re.compile(
+# Code, headings, links and pictures, tables, choices of a question, tags.
+NOT_PROSE = re.compile(
     r"^(?P<fence>```|~~~).*?^(?P=fence)|`[^`]*`|^#.*?$|!?\[[^\]]*\]\([^)]*\)|^\|.*?$|^- \w\) .*?$|<[^>]*>",
     re.MULTILINE | re.DOTALL,
 )
@@ -58,31 +58,32 @@ GUIDES = (
     "troubleshooting.md",
     "index.md",
 )
-# Words whose first use means something else: verbs of every day, the actions of a launch file, packages of pip.
-EVERYWHERE = {"Build", "Source"}
-MEANT_OTHERWISE = {"04_launch": {"Action"}, "05_parameters": {"Action"}, "students": {"Package"}}
+# Terms that are not linked, because they have another meaning: on all pages (ordinary verbs), or on one page (the
+# actions of a launch file, packages of pip).
+NEVER_LINKED = {"Build", "Source"}
+NOT_LINKED_ON = {"04_launch": {"Action"}, "05_parameters": {"Action"}, "students": {"Package"}}
 
 
 def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
-    """Write the sources of the site and run Sphinx, for which a warning is an error. The site lies in `HTML`.
+    """Write the sources of the site and run Sphinx, for which a warning is an error. The site is in `HTML`.
 
     Args:
         screenshots: folder with the pictures that the guides show.
     """
     shutil.rmtree(SITE, ignore_errors=True)
-    shutil.copytree(DOCS, SOURCE, ignore=shutil.ignore_patterns(*KEPT_BACK))
+    shutil.copytree(DOCS, SOURCE, ignore=shutil.ignore_patterns(*NOT_COPIED))
     shutil.copy(DOCS / "conf.py", SOURCE)
     for script in DOCS.glob("*_page.py"):
         text = runpy.run_path(str(script))["current"]()
         (SOURCE / script.name.replace("_page.py", ".md")).write_text(text, encoding="utf-8")
-    for name in FROM_ELSEWHERE:
+    for name in OTHER_PAGES:
         shutil.copy(course_paths.ROOT / name, SOURCE)
-    for page in SOURCE.glob("*.md"):  # the site has the pages of all folders in one
+    for page in SOURCE.glob("*.md"):  # the site has all pages in one folder
         page.write_text(FOLDER_OF_A_LINK.sub("](", page.read_text(encoding="utf-8")), encoding="utf-8")
     words = write_glossary(SOURCE / "glossary.md")
     for name in GUIDES:
         guide = SOURCE / name
-        (linked,) = link_first_uses([guide.read_text(encoding="utf-8")], meant(words, guide.stem))
+        (linked,) = link_first_uses([guide.read_text(encoding="utf-8")], linked_terms(words, guide.stem))
         guide.write_text(linked, encoding="utf-8")
     shutil.copytree(screenshots, SOURCE / "made")
     (SOURCE / "chapters").mkdir()
@@ -99,7 +100,7 @@ def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
 
 
 def write_glossary(page: Path) -> frozenset[str]:
-    """Make of a page's list of definitions a glossary of Sphinx's, to which pages link; return its words."""
+    """Convert a page's list of definitions to a Sphinx glossary. Return its terms."""
     text, words = page.read_text(encoding="utf-8"), set()
     for entry in list(ENTRY.finditer(text)):
         names = entry["words"].split(", ")
@@ -109,20 +110,20 @@ def write_glossary(page: Path) -> frozenset[str]:
     return frozenset(words)
 
 
-def meant(words: frozenset[str], page: str) -> set[str]:
-    """Return the words of the glossary that a page uses in their meaning there."""
-    return set(words - EVERYWHERE - MEANT_OTHERWISE.get(page, set()))
+def linked_terms(words: frozenset[str], page: str) -> set[str]:
+    """Return the terms of the glossary that a page uses in the same meaning."""
+    return set(words - NEVER_LINKED - NOT_LINKED_ON.get(page, set()))
 
 
 def link_first_uses(texts: Sequence[str], words: set[str]) -> list[str]:
-    """Return a page's texts with the first use of each word, in prose, as a link to the glossary."""
+    """Return a page's texts. The first use of each word in prose is a link to the glossary."""
     linked = []
     for text in texts:
         for word in sorted(words, key=len, reverse=True):
-            taken = [found.span() for found in NO_PROSE.finditer(text)]
+            excluded = [match.span() for match in NOT_PROSE.finditer(text)]
             pattern = r"\s+".join(map(re.escape, word.split()))
             for use in re.finditer(rf"\b{pattern}s?\b", text, re.IGNORECASE):
-                if not any(use.start() < stop and start < use.end() for start, stop in taken):
+                if not any(use.start() < stop and start < use.end() for start, stop in excluded):
                     shown = " ".join(use[0].split())
                     text = f"{text[: use.start()]}{{term}}`{shown} <{word}>`{text[use.end() :]}"
                     words = words - {word}
@@ -134,8 +135,8 @@ def link_first_uses(texts: Sequence[str], words: set[str]) -> list[str]:
 def write_chapter(chapter: Chapter, folder: Path, words: frozenset[str] = frozenset()) -> None:
     """Write a chapter's notebook as students get it, with the outputs of its last run unless it has changed since.
 
-    Its title begins with its number, and a link below it leads to the notebook itself, in the folder `notebooks` beside
-    `folder`. The first use of each of the words leads to the glossary.
+    Its title begins with its number. Below it is a link to the notebook itself, in the folder `notebooks` beside
+    `folder`. The first use of each of the words is a link to the glossary.
     """
     notebook = in_form(chapter.read(), Form.RELEASED)
     downloads = folder.parent / "notebooks"
@@ -147,7 +148,7 @@ def write_chapter(chapter: Chapter, folder: Path, words: frozenset[str] = frozen
         if [cell.source for cell in executed.cells] == [cell.source for cell in notebook.cells]:
             notebook = executed
     prose = [cell for cell in notebook.cells if cell.cell_type == "markdown"]
-    linked = link_first_uses([cell.source for cell in prose], meant(words, chapter.assignment))
+    linked = link_first_uses([cell.source for cell in prose], linked_terms(words, chapter.assignment))
     for cell, text in zip(prose, linked, strict=True):
         cell.source = text
     if prose:
@@ -173,18 +174,18 @@ def verification_table() -> str:
         variants = sum(case.kind is CaseKind.VARIANT for case in cases(name, quick=True))
         counts = (len(suite.checks), len(mutants(name)), variants)
         rows.append((name, f"{suite.max_score:g}", *map(str, counts)))
-    return "\n".join(table(("chapter", "points", "hidden checks", "named mutants", "right variants"), rows))
+    return "\n".join(table(("chapter", "points", "hidden checks", "named mutants", "variants"), rows))
 
 
 def write_run(path: Path) -> None:
-    """Write the page that plays the run of the start page: a robot wanders in the lab by its lidar."""
+    """Write the page with the run that the start page shows: a robot wanders through the lab by its lidar."""
     path.parent.mkdir(parents=True)
     simulation = Simulation(load_world(course_paths.WORLDS / "lab.yaml"), (RobotSpec(),))
     to_html(run(simulation, wander, seconds=40.0), path)
 
 
 def write_preview(path: Path) -> None:
-    """Draw what other sites show with a link to this one: 1200 x 630 pixels with the title and the README's robot."""
+    """Draw the preview of links to the site: 1200 x 630 pixels with the title and the README's robot."""
     robot = imread(ROBOT)
     figure = Figure(figsize=(12.0, 6.3), facecolor="white")
     figure.figimage(robot, 1200 - robot.shape[1] - 24, (630 - robot.shape[0]) // 2)
@@ -196,7 +197,7 @@ def write_preview(path: Path) -> None:
 
 
 def run_examples(page: Path) -> None:
-    """Run the Python code of a page in the page's folder, as one program: it draws the pictures that the page shows.
+    """Run the Python code of a page as one program in the page's folder. It draws the page's pictures.
 
     Raises:
         subprocess.CalledProcessError: the code failed.
@@ -206,7 +207,7 @@ def run_examples(page: Path) -> None:
 
 
 def wander(state: State, scans: dict[str, Scan | None]) -> Command:
-    """Drive where there is room ahead, and turn to the side where there is more."""
+    """Drive if there is room ahead, and otherwise turn to the side with more room."""
     (scan,) = scans.values()
     assert scan is not None, "the robot has a lidar"
     bearings = (

@@ -18,18 +18,18 @@ exclude_patterns = ["made", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "n
 html_theme = "furo"
 html_title = "ROS 2 packages with Python"
 html_favicon = "_static/icon.svg"
-html_baseurl = os.environ.get("SITE_ADDRESS", "")  # where the site will lie, with a slash at its end
+html_baseurl = os.environ.get("SITE_ADDRESS", "")  # the address of the site, which ends with a slash
 html_static_path = ["_static"]
 html_extra_path = ["_extra"]
 html_css_files = ["site.css"]
-# Furo's own colours of code have less contrast than people with weak eyes need (WCAG 2, level AA).
+# The contrast of Furo's own code colours is below WCAG 2, level AA.
 pygments_style = "a11y-high-contrast-light"
 pygments_dark_style = "a11y-high-contrast-dark"
 
 myst_heading_anchors = 3  # as on GitHub
 myst_enable_extensions = ["deflist"]
 
-# A button copies code, but no output; of a console, the commands without their prompts.
+# The copy button copies code without its output, and commands without their prompts.
 copybutton_selector = "div:not(.output) > div.highlight > pre"
 copybutton_prompt_text = "$ "
 
@@ -37,18 +37,18 @@ ogp_site_url = html_baseurl
 ogp_image = "preview.png"  # docs/build_site.py draws it
 ogp_image_alt = "A simulated robot has found its way through a lab by its lidar."
 
-nb_execution_mode = "off"  # `make docs` executes the notebooks before
+nb_execution_mode = "off"  # `make docs` has executed the notebooks
 nb_merge_streams = True
-# A cell after %%writefile may hold XML or text of another kind, and is shown without colours.
+# A %%writefile cell may contain XML or other text, which is then shown without colours.
 suppress_warnings = ["misc.highlighting_failure"]
 
 autodoc_member_order = "bysource"
 default_role = "code"  # of `names` in docstrings
-napoleon_use_ivar = True  # one line an attribute
+napoleon_use_ivar = True  # one line for each attribute
 
 
 def fix_accessibility(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
-    """Give captions of the navigation a level, and let the keyboard reach code that is wider than its box."""
+    """Give captions of the navigation a level, and make code that is wider than its box reachable by keyboard."""
     if "furo_navigation_tree" in context:
         context["furo_navigation_tree"] = context["furo_navigation_tree"].replace(
             'role="heading"', 'role="heading" aria-level="2"'
@@ -58,12 +58,12 @@ def fix_accessibility(app: Sphinx, page: str, template: str, context: dict[str, 
 
 
 def keep_first_colon(app: Sphinx, kind: str, name: str, subject: object, options: object, lines: list[str]) -> None:
-    """Begin a property's docstring with an empty comment: napoleon takes what precedes its first colon for a type."""
+    """Begin a property's docstring with an empty comment. Otherwise napoleon reads text before a colon as its type."""
     if kind in ("property", "attribute"):
         lines[:0] = ["..", ""]
 
 
 def setup(app: Sphinx) -> None:
-    """Connect what this file adds: before napoleon, and after the theme has made its part of a page."""
+    """Connect the functions of this file: the first before napoleon, the second after the theme."""
     app.connect("autodoc-process-docstring", keep_first_colon, priority=400)
     app.connect("html-page-context", fix_accessibility, priority=900)

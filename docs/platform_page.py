@@ -70,11 +70,11 @@ They are not on the package index. Set-up clones their repositories from GitHub,
 {sources}
 
 A clone at another commit is rejected. The id of a commit is a digest of all its files, like the hash of an archive.
-GitHub does not guarantee that the archive of a tag stays the same, byte for byte. `osrf-pycommon`, which `launch`
+GitHub does not guarantee that the archive of a tag always has the same bytes. `osrf-pycommon`, which `launch`
 imports, comes from the package index and is pinned by its hash.
 
 If a repository does not respond within ten seconds, or a step fails, set-up installs none of the packages, says so in
-one line, and the course's stand-ins are used. `ROS2_STANDINS=1 make setup` chooses the stand-ins at once. Keep the
+one line, and the course's stand-ins are used. `ROS2_STANDINS=1 make setup` chooses the stand-ins directly. Keep the
 variable set, because the next set-up without it tries again. `make real-launch` also tries again, and fails if it
 cannot install the packages. A variable sets another source, such as `ROS2_LAUNCH_SOURCE=/clones/launch`, and
 `/clones/launch@TAG` uses another tag. A student release works in the same way. `autograder doctor` and the field
@@ -87,15 +87,15 @@ launch files in Python, XML and YAML, launch tests, and the commands of `ros2`. 
 `tests/e2e/launch_cases/differences.yaml` and `tests/e2e/ros2_records/differences.yaml`. Features that are not covered
 raise an error that says so. After `make real-launch`, or with a sourced ROS 2, the real packages are used instead.
 """
-OTHERWISE = """
+DIFFERENT = """
 `tests/e2e/launch_standin` tests the stand-ins in more detail. If the real packages are installed, it tests those. They
 fail the following tests, in which the stand-in leaves no process behind, does not hang, or gives a clearer error:
 """
-OTHERWISE_COLUMNS = ("test", "behaviour of the real package")
+DIFFERENT_COLUMNS = ("test", "behaviour of the real package")
 UNCOVERED = ("not covered", "reason", "error message")
 COMPOSABLE = "they are C++ components, and `composition_interfaces` has no wheel"
-INNER = "neither the course nor a Python tutorial of ROS uses it"
-INNER_MODULE = "it is internal to the real package"
+INTERNAL = "neither the course nor a Python tutorial of ROS uses it"
+INTERNAL_MODULE = "it is internal to the real package"
 OF_CPP = "it is for C++"
 SINGLE = "it is for tests of one process without a launch description"
 LAUNCH = {
@@ -105,7 +105,7 @@ LAUNCH = {
     "launch_testing.actions.GTest": OF_CPP,
     "launch_testing.tools.launch_process": SINGLE,
 }
-INNER_NAMES = {
+INTERNAL_NAMES = {
     "launch": "SomeEntitiesType_types_tuple",
     "launch.event_handlers": "event_named gen_handler",
     "launch.frontend.entity": "TargetType",
@@ -158,7 +158,7 @@ def platform_page(lock: str, tutorials: str) -> str:
     by_python = {python: locked(lock, python) for python in PYTHONS}
     versions = table(COLUMNS, (_row(package, by_python) for package in ROS.packages))
     pages = table(TUTORIAL_COLUMNS, map(_tutorial, yaml.safe_load(tutorials)))
-    stand_ins = [STAND_INS, *table(UNCOVERED, _uncovered()), OTHERWISE, *table(OTHERWISE_COLUMNS, _otherwise())]
+    stand_ins = [STAND_INS, *table(UNCOVERED, _uncovered()), DIFFERENT, *table(DIFFERENT_COLUMNS, _differences())]
     real_launch = REAL_LAUNCH.format(sources="\n".join(map(_source, SOURCES)))
     return "\n".join([HEAD, *versions, TAIL, TUTORIAL_HEAD, *pages, real_launch, *stand_ins])
 
@@ -180,7 +180,7 @@ def locked(lock: str, python: str) -> dict[str, str]:
     Raises:
         InvalidRequirement: a line is not a requirement.
     """
-    return {found.name: next(iter(found.specifier)).version for found in _requirements(lock, python)}
+    return {pinned.name: next(iter(pinned.specifier)).version for pinned in _requirements(lock, python)}
 
 
 def _requirements(lock: str, python: str) -> Iterator[Requirement]:
@@ -211,36 +211,36 @@ def _uncovered() -> Iterator[tuple[str, str, str]]:
         error("launch_testing_ros"),
     )
     # The stand-ins are only importable if the real packages are not, so their source is parsed.
-    found = re.search(r"^NOT_COVERED = (\{.*?^\})", SUBMODULES.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
-    assert found
-    for reason, parts in ((INNER_MODULE, ast.literal_eval(found[1])), (INNER, INNER_NAMES)):
+    match = re.search(r"^NOT_COVERED = (\{.*?^\})", SUBMODULES.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    assert match
+    for reason, parts in ((INTERNAL_MODULE, ast.literal_eval(match[1])), (INTERNAL, INTERNAL_NAMES)):
         for parent, names in parts.items():
             full = [f"{parent}.{name}" for name in names.split()]
             yield ", ".join(f"`{name}`" for name in full), reason, error(full[0])
     for option in ("--node-name", "--library-name"):
-        called = f"`ros2 pkg create --build-type ament_cmake {option}`"
-        yield called, OF_CPP, f"{called}, a C++ package, is not covered by this stand-in …"
-    for word, command in COMMANDS.items():
-        missing = [f"ros2 {word} {verb}" for verb in command.not_covered] if command.module else [f"ros2 {word}"]
-        for called in missing:
-            error = str(NotCoveredError(f"`{called}`")).partition(";")[0]
-            yield f"`{called}`", "the course does not use it", f"{error} …"
+        command = f"`ros2 pkg create --build-type ament_cmake {option}`"
+        yield command, OF_CPP, f"{command}, a C++ package, is not covered by this stand-in …"
+    for word, group in COMMANDS.items():
+        missing = [f"ros2 {word} {verb}" for verb in group.not_covered] if group.module else [f"ros2 {word}"]
+        for command in missing:
+            message = str(NotCoveredError(f"`{command}`")).partition(";")[0]
+            yield f"`{command}`", "the course does not use it", f"{message} …"
 
 
-def _otherwise() -> Iterator[tuple[str, str]]:
+def _differences() -> Iterator[tuple[str, str]]:
     for test, reason in yaml.safe_load(DIFFERENCES.read_text(encoding="utf-8")).items():
         yield f"`{test.partition('[')[0]}`", reason
 
 
 def _row(package: PlatformPackage, by_python: dict[str, dict[str, str]]) -> tuple[str, ...]:
-    here: dict[str, list[str]] = {}
+    by_version: dict[str, list[str]] = {}
     for python, versions in by_python.items():
-        here.setdefault(versions[package.name], []).append(python)
-    told = "; ".join(
+        by_version.setdefault(versions[package.name], []).append(python)
+    installed = "; ".join(
         version if len(pythons) == len(PYTHONS) else f"{version} (Python {_span(pythons)})"
-        for version, pythons in here.items()
+        for version, pythons in by_version.items()
     )
-    return package.name, package.debian, package.version, told, package.meets, package.differs
+    return package.name, package.debian, package.version, installed, package.meets, package.differs
 
 
 def _span(pythons: list[str]) -> str:

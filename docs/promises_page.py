@@ -104,12 +104,14 @@ def _promises_of(path: Path, tree: ast.Module) -> Iterator[Promise]:
 
 def current() -> str:
     """Return the page."""
-    held = list(promises())
+    all_promises = list(promises())
     parts = [HEAD]
     for page, text in texts().items():
         rows = []
         for sentence in sentences(text):
-            tests = [f"`{one.test}`" + " (nightly)" * one.is_nightly for one in held if one.words in sentence]
+            tests = [
+                f"`{each.test}`" + " (nightly)" * each.is_nightly for each in all_promises if each.words in sentence
+            ]
             if tests:
                 shown = MARKUP.sub(r"\1", sentence.strip("| ")).replace("|", "·")
                 rows.append((shown, "; ".join(sorted(set(tests)))))

@@ -32,4 +32,4 @@ def doctor(try_escapes: bool, json_file: Path | None) -> None:
 
 
 def _plain(finding: Finding) -> dict[str, str]:
-    return {"name": finding.name, "status": finding.status.value, "found": finding.found, "mend": finding.fix}
+    return {"name": finding.name, "status": finding.status.value, "found": finding.state, "mend": finding.fix}

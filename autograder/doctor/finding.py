@@ -24,7 +24,7 @@ class Finding:
 
     name: str
     status: Status
-    found: str  # a sentence without its full stop
+    state: str  # a sentence without its full stop
     fix: str = ""  # the one command that fixes it; empty if there is nothing to fix
 
 
@@ -40,7 +40,7 @@ def render(findings: Sequence[Finding], *, width: int = 100, verdicts: tuple[str
     for finding in findings:
         head = f"{finding.status.value:8} {finding.name:{longest}}  "
         indent = " " * len(head)
-        lines += textwrap.wrap(finding.found, width, initial_indent=head, subsequent_indent=indent)
+        lines += textwrap.wrap(finding.state, width, initial_indent=head, subsequent_indent=indent)
         if finding.fix:
             # Not wrapped, so that it can be copied.
             lines.append(f"{indent}fix: {finding.fix}")

@@ -230,7 +230,7 @@ def test_checking_finds_the_workspace_from_the_chapter_and_from_the_course(
     assert asked == [("02_nodes", Path(folder))]
 
 
-@pytest.mark.promise("`fresh=True` in the notebook, or `--fresh` in a terminal, runs the checks all the same.")
+@pytest.mark.promise("`fresh=True` in the notebook, or `--fresh` in a terminal, runs the checks anyway.")
 def test_checking_asks_for_what_its_options_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[dict[str, object]] = []
 

@@ -87,13 +87,13 @@ def raising(error: Exception) -> Callable[[], RosEnvironment]:
 
 def finding(name: str, **lack: Any) -> Finding:
     """Examine the good machine with something replaced, and return the finding of that name."""
-    return next(found for found in examine(good(**lack)) if found.name == name)
+    return next(each for each in examine(good(**lack)) if each.name == name)
 
 
 def test_a_complete_machine_is_healthy_and_has_nothing_to_fix() -> None:
     findings = examine(good())
-    assert {found.status for found in findings} == {Status.OK}, findings
-    assert [found.fix for found in findings if found.fix] == []
+    assert {each.status for each in findings} == {Status.OK}, findings
+    assert [each.fix for each in findings if each.fix] == []
     assert healthy(findings)
 
 
@@ -106,14 +106,14 @@ def test_a_complete_machine_is_healthy_and_has_nothing_to_fix() -> None:
     ],
 )
 def test_the_doctor_says_which_launch_is_installed_and_both_are_fine(installed: str, description: str) -> None:
-    found = finding("launch, ros2", describe_launch=lambda: installed)
-    assert (found.status, found.found) == (Status.OK, description)
+    result = finding("launch, ros2", describe_launch=lambda: installed)
+    assert (result.status, result.state) == (Status.OK, description)
 
 
 def test_the_nearest_version_for_this_python_needs_no_fix() -> None:
-    found = finding("versions", package={**VERSIONS, "numpy": "2.1.3"}.get)
-    assert found.status is Status.OK
-    assert found.found == "as on Ubuntu 24.04, except numpy 2.1.3 for 1.26.4: the nearest for this Python"
+    result = finding("versions", package={**VERSIONS, "numpy": "2.1.3"}.get)
+    assert result.status is Status.OK
+    assert result.state == "as on Ubuntu 24.04, except numpy 2.1.3 for 1.26.4: the nearest for this Python"
 
 
 def sysctl(name: str, value: str) -> Callable[[Path], str | None]:
@@ -377,15 +377,15 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     "`autograder doctor` reports different versions on a machine",
     "| `g++: command not found` |",
 )
-@pytest.mark.parametrize(("name", "lack", "status", "found", "fix"), LACKS.values(), ids=LACKS.keys())
+@pytest.mark.parametrize(("name", "lack", "status", "state", "fix"), LACKS.values(), ids=LACKS.keys())
 def test_a_missing_thing_is_named_with_the_command_that_fixes_it(
-    name: str, lack: dict[str, Any], status: Status, found: str, fix: str
+    name: str, lack: dict[str, Any], status: Status, state: str, fix: str
 ) -> None:
-    seen = finding(name, **lack)
-    assert seen.status is status
-    assert found in seen.found
-    assert fix in seen.fix
-    assert not seen.found.endswith(".")
+    result = finding(name, **lack)
+    assert result.status is status
+    assert state in result.state
+    assert fix in result.fix
+    assert not result.state.endswith(".")
 
 
 def test_a_weak_finding_leaves_a_machine_healthy_and_a_missing_thing_does_not() -> None:
@@ -402,8 +402,8 @@ def test_a_newest_release_and_a_release_without_a_newest_folder_are_fine() -> No
 def test_a_sourced_jazzy_is_fine_and_has_no_wheels_to_fix() -> None:
     alone = good(find_ros=lambda: SOURCED, prefix=Path("/course/bare"))
     findings = examine(alone)
-    assert {found.status for found in findings} == {Status.OK}
-    assert "CMake files" not in [found.name for found in findings]
+    assert {each.status for each in findings} == {Status.OK}
+    assert "CMake files" not in [each.name for each in findings]
 
 
 def test_rclpy_is_started_with_the_log_folder_that_the_user_chose() -> None:
@@ -436,7 +436,7 @@ def test_the_report_aligns_findings_and_never_breaks_a_command() -> None:
 
 @pytest.mark.promise(".venv/bin/autograder doctor")
 def test_this_machine_can_run_the_course() -> None:
-    findings = {found.name: found for found in examine(System())}
+    findings = {each.name: each for each in examine(System())}
     for name in ("Python", "environment", "ROS 2", "rclpy", "compiler", "build tools", "notebooks", "disk"):
         assert findings[name].status is Status.OK, findings[name]
 
@@ -483,8 +483,8 @@ def test_a_bubblewrap_without_namespaces_is_detected_on_this_machine(
     denied.write_text(f"#!/bin/sh\necho '{DENIED}' >&2\nexit 1\n")
     denied.chmod(denied.stat().st_mode | stat.S_IXUSR)
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
-    seen = next(found for found in examine(System()) if found.name == "isolation")
-    assert (seen.status, DENIED in seen.found, bool(seen.fix)) == (Status.WEAK, True, True)
+    result = next(each for each in examine(System()) if each.name == "isolation")
+    assert (result.status, DENIED in result.state, bool(result.fix)) == (Status.WEAK, True, True)
 
 
 def test_a_broken_python_environment_is_detected_on_this_machine(tmp_path: Path) -> None:
@@ -512,6 +512,6 @@ def test_a_broken_python_environment_is_detected_on_this_machine(tmp_path: Path)
     ],
 )
 def test_a_limit_without_a_control_group_is_reported(bounds: set[str], message: str, fix: str) -> None:
-    found = finding("isolation", bounds=lambda: frozenset(bounds))
-    assert (found.status, found.fix) == (Status.WEAK, fix)
-    assert message in found.found
+    result = finding("isolation", bounds=lambda: frozenset(bounds))
+    assert (result.status, result.fix) == (Status.WEAK, fix)
+    assert message in result.state

@@ -1,4 +1,4 @@
-"""Only students with full marks get other good answers."""
+"""Only students with full marks get other correct answers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MakeResult = Callable[..., Result]
 
 
 @pytest.mark.promise(
-    "autograder export results --format other_answers --out pages` writes a page with two other good answers"
+    "autograder export results --format other_answers --out pages` writes a page with two other correct answers"
 )
 def test_a_page_is_written_for_full_marks_only(
     make_result: MakeResult, broken_result: Result, ungraded_result: Result, tmp_path: Path

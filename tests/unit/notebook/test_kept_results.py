@@ -182,7 +182,7 @@ def test_each_exercise_and_the_chapter_have_a_result_of_their_own(machine: Machi
     assert machine.runs == ["step 2", "step 3", ""]
 
 
-@pytest.mark.promise("With `fresh=True` it runs the checks all the same.")
+@pytest.mark.promise("With `fresh=True` it runs the checks anyway.")
 def test_they_run_again_if_one_asks_for_it(machine: Machine) -> None:
     assert machine.has_run()
     assert not machine.check(fresh=True).since

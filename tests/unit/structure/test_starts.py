@@ -75,5 +75,5 @@ def test_the_list_of_fonts_is_made_without_modules_of_the_present_folder(
 
 def test_the_doctor_starts_a_node_without_modules_of_the_present_folder(trapped: Path) -> None:
     finding = doctor_ros.start(System(), find())
-    assert finding.found == "a node starts, publishes and stops"
+    assert finding.state == "a node starts, publishes and stops"
     assert not trapped.exists()
