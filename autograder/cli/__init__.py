@@ -16,14 +16,13 @@ from typing import Any
 import click
 
 from autograder import __version__
-from autograder.cli.terminal import echo
+from autograder.cli.terminal import INTERRUPTED, echo
 from autograder.exceptions import AutograderError, UsageError
 
 VERBS = (
     *("check", "compare", "course", "demo", "doctor", "export", "grade", "gradescope", "new", "notebooks", "release"),
     *("replay", "ros", "serve", "similar", "update", "verify"),
 )
-INTERRUPTED = 130  # the exit status of a shell after Ctrl-C
 
 
 class Verbs(click.Group):
@@ -47,7 +46,6 @@ class Verbs(click.Group):
         return [verb for verb in VERBS if Path(__file__).with_name(f"{verb}.py").is_file()]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Import a verb."""
         if cmd_name not in self.list_commands(ctx):
             return None
         command: click.Command = getattr(importlib.import_module(f"autograder.cli.{cmd_name}"), cmd_name)

@@ -55,6 +55,5 @@ def check(
 
 
 def _workspace(assignment: str) -> Path:
-    """Return the default workspace."""
     folders = (Path("ws"), Path(assignment, "ws"), Path("chapters", assignment, "ws"))
     return next(filter(Path.is_dir, folders), folders[0])

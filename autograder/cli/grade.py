@@ -11,14 +11,9 @@ from pathlib import Path
 import click
 
 from autograder.cli.compare import print_changes
-from autograder.cli.options import (
-    isolation_option,
-    jobs_option,
-    json_option,
-    seed_option,
-)
+from autograder.cli.options import isolation_option, jobs_option, json_option, seed_option
 from autograder.cli.submissions import find_submissions, roster_option
-from autograder.cli.terminal import echo, on_line
+from autograder.cli.terminal import INTERRUPTED, echo, on_line
 from autograder.cli.text_tables import failure_summary, score_text, table
 from autograder.exceptions import StudentError, UsageError
 from autograder.grade.apart import read_preview
@@ -31,8 +26,6 @@ from autograder.report.export.earlier import EarlierMarks
 from autograder.result.model import Result, Status, write_json
 from autograder.run.sandbox import Isolation
 from autograder.suite import suites
-
-INTERRUPTED = 130  # the exit status of a shell after Ctrl-C
 
 
 @click.command()

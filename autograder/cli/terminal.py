@@ -6,6 +6,8 @@ import click
 
 from autograder.plain_text import visible
 
+INTERRUPTED = 130  # the exit status of a shell after Ctrl-C
+
 
 def echo(text: object = "", *, err: bool = False, nl: bool = True) -> None:
     """Print a text with control characters made visible, to standard error if `err` is set."""

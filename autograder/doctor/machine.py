@@ -65,7 +65,7 @@ def environment(system: System) -> Finding:
 
 
 def other_users(system: System) -> tuple[Finding, ...]:
-    """Look at whether the users of this machine, such as a class, can run what root has set up."""
+    """Check that other users of this machine, such as a class, can run what root has set up."""
     closed = system.closed_to_other_users()
     return (Finding("other users", Status.WEAK, closed, "make setup PYTHON=/usr/bin/python3"),) if closed else ()
 

@@ -13,7 +13,7 @@ from typing import Any
 from autograder import course_paths
 from autograder.exceptions import UsageError
 from autograder.notebook.cells_and_files import differences
-from autograder.notebook.exercises import KINDS, Exercise, exercises, find
+from autograder.notebook.exercises import KINDS, Exercise, exercises, find_exercise
 from autograder.notebook.kept_results import Kept, keep, load, take_inputs
 from autograder.notebook.notices import INFO, STYLE, TROUBLE, Notice
 from autograder.notebook.worker_client import run_in_worker
@@ -64,7 +64,6 @@ class CheckReport:
 
     @property
     def passed(self) -> bool:
-        """Whether every check passed."""
         return all(line.outcome is Outcome.PASSED for line in self.lines)
 
     @property
@@ -163,7 +162,7 @@ def part_of(assignment: str, exercise: int | None, step: int | None, question: i
         words = " and ".join(f"{kind} {number}" for kind, number in chosen)
         raise UsageError(f"{words} are two parts of {assignment}: ask for one at a time, or for the whole chapter")
     available = exercises(assignment)
-    return Part(assignment, find(assignment, available, *chosen[0]).name, available)
+    return Part(assignment, find_exercise(assignment, available, *chosen[0]).name, available)
 
 
 def run_part(
@@ -193,29 +192,29 @@ def run_part(
     if kept is not None and before is not None and kept.digest == before.digest and not fresh:
         return _report(part, workspace, kept.answer, kept.since)
 
-    def tell(answer: dict[str, Any]) -> None:
+    def report_early(reply: dict[str, Any]) -> None:
         if early is not None:
-            early(_report(replace(part, name=FAILED_BEFORE), workspace, answer))
+            early(_report(replace(part, name=FAILED_BEFORE), workspace, reply))
 
     arguments = {"exercises": [asdict(each) for each in part.exercises], "part": part.name, "first": [*first]}
-    with run_in_worker("check", workspace, early=tell, assignment=part.assignment, **arguments) as (answer, _):
+    with run_in_worker("check", workspace, early=report_early, assignment=part.assignment, **arguments) as (reply, _):
         made = datetime.now().isoformat(timespec="seconds")
-    same = before is not None and before == take_inputs(part.assignment, workspace / "src", reads)
-    digest = before.digest if before is not None and same and answer["lasting"] else ""
-    new = tuple(answer["reads"])
-    keep(workspace, part.assignment, part.name, Kept(digest if new == reads else "", made, new, answer))
-    return _report(part, workspace, answer)
+    is_unchanged = before is not None and before == take_inputs(part.assignment, workspace / "src", reads)
+    digest = before.digest if before is not None and is_unchanged and reply["lasting"] else ""
+    new = tuple(reply["reads"])
+    keep(workspace, part.assignment, part.name, Kept(digest if new == reads else "", made, new, reply))
+    return _report(part, workspace, reply)
 
 
-def _report(part: Part, workspace: Path, answer: dict[str, Any], since: str = "") -> CheckReport:
+def _report(part: Part, workspace: Path, reply: dict[str, Any], since: str = "") -> CheckReport:
     """Return the report of a worker's reply. The cells are compared with the current files."""
-    diagnosis, trouble = answer["diagnosis"], None
+    diagnosis, trouble = reply["diagnosis"], None
     if diagnosis["kind"] != "ok":
         trouble = Notice(diagnosis["sentence"], diagnosis["detail"], TROUBLE)
-    lines = tuple(structure(CheckResult, result) for result in answer["checks"])
+    lines = tuple(structure(CheckResult, result) for result in reply["checks"])
     path = course_paths.hidden_titles(part.assignment)
     later = json.loads(path.read_text(encoding="utf-8")) if path.is_file() and not part.name else ()
-    notices = differences(part.assignment, workspace, answer["sources"], part.later)
+    notices = differences(part.assignment, workspace, reply["sources"], part.later)
     return CheckReport(part.assignment, lines, trouble, tuple(later), notices, part.name, since)
 
 

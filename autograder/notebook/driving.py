@@ -144,12 +144,12 @@ def drive(
         options=["-r", f"__node:={name}"] if name else [],
         parameter_file="" if parameters is None else _parameter_file(parameters),
         published=None if each_step is None else planned(each_step, float(seconds), Path(workspace)),
-    ) as (answer, folder):
-        diagnosis = answer["diagnosis"]
+    ) as (reply, folder):
+        diagnosis = reply["diagnosis"]
         if diagnosis["kind"] != Kind.OK.value:
             return Notice(diagnosis["sentence"], diagnosis["detail"], TROUBLE)
-        commands = tuple((float(t), float(v), float(w)) for t, v, w in answer["commands"])
-        return DriveReport(load_recording(folder / RECORDING), answer["output"], commands)
+        commands = tuple((float(t), float(v), float(w)) for t, v, w in reply["commands"])
+        return DriveReport(load_recording(folder / RECORDING), reply["output"], commands)
 
 
 def side_by_side(drives: Mapping[str, DriveReport | Notice]) -> Picture | Notice:

@@ -66,7 +66,7 @@ def exercises(assignment: str) -> tuple[Exercise, ...]:
         raise UsageError(f"{path} cannot be read as a notebook: {hint}") from None
 
 
-def find(assignment: str, available: Sequence[Exercise], kind: str, number: int) -> Exercise:
+def find_exercise(assignment: str, available: Sequence[Exercise], kind: str, number: int) -> Exercise:
     """Return an exercise of a chapter. A UsageError lists the existing ones."""
     for exercise in available:
         if (exercise.kind, exercise.number) == (kind, number):

@@ -50,7 +50,6 @@ class Receipt:
 
     @property
     def sentence(self) -> str:
-        """The confirmation in words."""
         tries = f"{self.tries_left} more {'try' if self.tries_left == 1 else 'tries'} today"
         at = self.handed_in.astimezone().strftime("%H:%M:%S")
         return f"{self.assignment} is handed in as number {self.number}, at {at}, as last saved. You have {tries}."

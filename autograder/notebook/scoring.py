@@ -48,7 +48,6 @@ class Score:
 
     @property
     def cells(self) -> tuple[str, str, str, str]:
-        """The score as the cells of a table row."""
         goal = f"{self.left:.1f} m away" if self.arrived is None else f"after {self.arrived:.1f} s"
         margin = "touched" if self.margin <= 0.0 else f"{self.margin:.2f} m"
         return self.run, goal, f"{self.metres:.1f} m", margin

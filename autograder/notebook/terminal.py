@@ -129,11 +129,9 @@ class _Terminal:
 
     @property
     def runs(self) -> bool:
-        """Whether the command is still running."""
         return self._process.poll() is None
 
     def output(self) -> str:
-        """Return the command's output so far."""
         return os.pread(self._file.fileno(), os.fstat(self._file.fileno()).st_size, 0).decode(errors="replace")
 
     def show(self) -> None:

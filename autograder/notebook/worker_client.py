@@ -58,7 +58,7 @@ def run_on(
     early: Callable[[dict[str, Any]], None] | None = None,
     **arguments: Any,
 ) -> Iterator[tuple[dict[str, Any], Path]]:
-    """Do as `run_in_worker` at an isolation level. `source` is a source tree or, for a check, a whole submission."""
+    """Do the same as `run_in_worker`, at an isolation level. For a check, `source` may be a whole submission."""
     ours, theirs = Pipe()
     with tempfile.TemporaryDirectory(prefix="request-") as folder, ours:
 

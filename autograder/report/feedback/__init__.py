@@ -6,6 +6,5 @@ folder)` writes `folder/index.html`, which links to `<student>/feedback.html`.
 
 from autograder.report.feedback.class_page import write_summary
 from autograder.report.feedback.pages import PAGE, write
-from autograder.result.class_folder import SUMMARY
 
-__all__ = ["PAGE", "SUMMARY", "write", "write_summary"]
+__all__ = ["PAGE", "write", "write_summary"]

@@ -78,12 +78,10 @@ class GroupView:
 
     @property
     def points(self) -> float:
-        """The points that the checks earned."""
         return sum(result.points for result in self.results)
 
     @property
     def max_points(self) -> float:
-        """The points that the checks are worth."""
         return sum(result.max_points for result in self.results)
 
     @property

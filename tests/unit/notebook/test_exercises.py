@@ -12,14 +12,14 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 from autograder import course_paths
 from autograder.exceptions import UsageError
 from autograder.notebook.checking import Part, part_of
-from autograder.notebook.exercises import Exercise, checks_of, exercises, find
+from autograder.notebook.exercises import Exercise, checks_of, exercises, find_exercise
 from autograder.suite import suites
 
 
 def _ids(assignment: str, name: str) -> tuple[str, ...]:
     there = exercises(assignment)
     kind, number = name.split()
-    return checks_of(find(assignment, there, kind, int(number)), there, suites.visible(assignment).checks)
+    return checks_of(find_exercise(assignment, there, kind, int(number)), there, suites.visible(assignment).checks)
 
 
 @pytest.mark.parametrize("assignment", suites.checkable_assignments())
