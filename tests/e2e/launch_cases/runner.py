@@ -1,7 +1,7 @@
-"""Runs launch descriptions with whichever `launch` is installed, and records the events.
+"""Run launch descriptions with the installed `launch`, and record their output and events.
 
-`python -m tests.e2e.launch_cases.runner` prints the records of all cases as YAML. The file `records.yaml` was made so
-with the real packages: `make real-launch`, then this program. Each case is run by a fork of this process.
+`python -m tests.e2e.launch_cases.runner` prints the records of all cases as YAML. With the real packages, after `make
+real-launch`, it wrote `records.yaml`. Each case runs in a fork of this process.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ import yaml
 HERE = Path(__file__).parent
 RECORDS = HERE / "records.yaml"
 DISTRIBUTIONS = ("launch", "launch_ros", "launch_xml", "launch_yaml")
-SECONDS = 60.0  # for one case, on a busy machine
+TIMEOUT = 60.0  # seconds for a case, on a busy machine
 
 PYTHON = """
 import os, signal
@@ -49,19 +49,20 @@ def generate_launch_description():
 {entities}
     ])
 """
-# What differs from run to run, or from one implementation to another without any meaning.
-CHANGING = (
+# Parts that differ between runs or implementations without any meaning.
+VARIABLE_PARTS = (
     (re.compile(r"(pid \[?)\d+"), r"\1PID"),
     (re.compile(r"<launch[\w.]*\.(\w+) object at 0x[0-9a-f]+>"), r"<\1>"),
     (re.compile(r"/tmp/\S*launch_params_\w+(/\w+)?"), "PARAMETER_FILE"),
     (re.compile(r" !!python/tuple"), ""),
-    (re.compile(r"\t\* [A-Z_]+\n"), ""),  # what lark could have read: a set
+    (re.compile(r"\t\* [A-Z_]+\n"), ""),  # the tokens that lark expected, in any order
     (re.compile(r"lib/python3\.\d+"), "lib/python3"),
     (re.compile(r"Traceback \(most recent call last\):\n(  .*\n)+(.*\n)\n?"), r"\2"),
 )
-OF_A_PROCESS = re.compile(r"\[[^\]]+-\d+\] ")  # launch may read it before or after it says that the process has ended
-# A process's output comes in pieces; launch asks its handlers about a completion before it tells them; it uses timers.
-UNSTEADY = tuple(
+# launch may print this output before or after its message that the process has ended.
+PROCESS_OUTPUT = re.compile(r"\[[^\]]+-\d+\] ")
+# Events whose number varies: output arrives in pieces, a completion needs a handler, and launch itself uses timers.
+VARYING_EVENTS = tuple(
     f"launch.events.{name}"
     for name in ("process.ProcessStdout", "process.ProcessStderr", "ExecutionComplete", "TimerEvent")
 )
@@ -75,17 +76,17 @@ class Case:
     """A launch description to run.
 
     Attributes:
-        name: what it shows.
+        name: the behaviour that it shows.
         text: the launch file.
-        ending: of its name: `py`, `xml` or `yaml`.
+        suffix: the end of the file's name: `py`, `xml` or `yaml`.
         arguments: launch arguments.
-        ctrl_c: SIGINT goes to all its processes, as from a terminal, as soon as there is a file `pressed`.
+        ctrl_c: whether all its processes get SIGINT, as from a terminal, as soon as the file `pressed` exists.
         files: files beside the launch file, by name.
     """
 
     name: str
     text: str
-    ending: str
+    suffix: str
     arguments: Mapping[str, str] = field(default_factory=dict)
     ctrl_c: bool = False
     files: Mapping[str, str] = field(default_factory=dict)
@@ -93,16 +94,16 @@ class Case:
 
 def cases() -> dict[str, Case]:
     """Return the cases of the folder `cases` by their names."""
-    found: dict[str, Case] = {}
+    cases_by_name: dict[str, Case] = {}
     for path in sorted((HERE / "cases").glob("*.yaml")):
         for title, case in yaml.safe_load(path.read_text()).items():
             name = f"{path.stem}: {title}"
-            (ending,) = {"python", "xml", "yaml"} & set(case)
-            text = case.pop(ending)
-            if ending == "python":
-                text, ending = PYTHON.replace("{entities}", text), "py"
-            found[name] = Case(name, text, ending, **case)
-    return found
+            (suffix,) = {"python", "xml", "yaml"} & set(case)
+            text = case.pop(suffix)
+            if suffix == "python":
+                text, suffix = PYTHON.replace("{entities}", text), "py"
+            cases_by_name[name] = Case(name, text, suffix, **case)
+    return cases_by_name
 
 
 def record(case: Case, scratch: Path) -> dict[str, Any]:
@@ -112,7 +113,7 @@ def record(case: Case, scratch: Path) -> dict[str, Any]:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
         path.chmod(0o755)
-    file = scratch / f"case.launch.{case.ending}"
+    file = scratch / f"case.launch.{case.suffix}"
     file.write_text(case.text)
     reading, writing = os.pipe()
     child = os.fork()
@@ -132,10 +133,10 @@ def record(case: Case, scratch: Path) -> dict[str, Any]:
     os.close(reading)
     status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
     text, _, events = output.partition(MARK)
-    lines = [line for line in _steady(text, scratch).splitlines() if not line.startswith(START)]
-    written = [line for line in lines if OF_A_PROCESS.match(line)]
-    log = [line for line in lines if line not in written]
-    return {"status": status, "log": log, "written": written, "events": json.loads(events or "[]")}
+    lines = [line for line in _normalized(text, scratch).splitlines() if not line.startswith(START)]
+    process_lines = [line for line in lines if PROCESS_OUTPUT.match(line)]
+    log = [line for line in lines if line not in process_lines]
+    return {"status": status, "log": log, "written": process_lines, "events": json.loads(events or "[]")}
 
 
 def _launch(case: Case, file: Path) -> int:
@@ -146,11 +147,11 @@ def _launch(case: Case, file: Path) -> int:
     events: list[str] = []
 
     def note(event: Any) -> bool:
-        if event.name not in UNSTEADY:
+        if event.name not in VARYING_EVENTS:
             events.append(event.name.removeprefix("launch.events."))
         return False
 
-    # With a terminal the launch leaves SIGINT to it, without one the launch sends SIGINT itself.
+    # A terminal sends SIGINT to all processes. Without one, launch sends it.
     service = launch.LaunchService(argv=[], noninteractive=not case.ctrl_c)
     service.context.register_event_handler(launch.EventHandler(matcher=note, entities=None))
     source = AnyLaunchDescriptionSource(str(file))
@@ -162,11 +163,11 @@ def _launch(case: Case, file: Path) -> int:
     return int(status)
 
 
-def at_rest(pid: int) -> bool:
-    """Return whether a launch waits for events, as it does by the time a person presses Ctrl-C; the stand-in need not.
+def is_idle(pid: int) -> bool:
+    """Return whether a launch waits for events, as it does when a person presses Ctrl-C; always true for the stand-in.
 
-    In the real launch, Ctrl-C raises KeyboardInterrupt in whatever runs at that moment. It would wait forever for a
-    process whose start or end it misses.
+    In the real launch, Ctrl-C raises KeyboardInterrupt in the code that runs at that moment. If the launch thereby
+    misses the start or the end of a process, it waits for that process forever.
     """
     import launch
 
@@ -174,10 +175,10 @@ def at_rest(pid: int) -> bool:
 
 
 def _read(reading: int, child: int, ctrl_c: Path | None) -> str:
-    """Return the output of a case; press Ctrl-C as soon as the file exists."""
-    output, deadline = b"", time.monotonic() + SECONDS
+    """Return the output of a case; send SIGINT as soon as the file `ctrl_c` exists."""
+    output, deadline = b"", time.monotonic() + TIMEOUT
     while time.monotonic() < deadline:
-        if ctrl_c is not None and ctrl_c.exists() and at_rest(child):
+        if ctrl_c is not None and ctrl_c.exists() and is_idle(child):
             ctrl_c = None
             os.killpg(child, signal.SIGINT)
         if not select.select([reading], [], [], 0.05)[0]:
@@ -190,11 +191,11 @@ def _read(reading: int, child: int, ctrl_c: Path | None) -> str:
     return output.decode() + "\nIT DID NOT END"
 
 
-def _steady(text: str, scratch: Path) -> str:
+def _normalized(text: str, scratch: Path) -> str:
     for folder, name in ((scratch, "HERE"), (HERE / "prefix", "PREFIX"), (sys.prefix, "ENVIRONMENT")):
         text = text.replace(str(folder), name)
-    for pattern, steady in CHANGING:
-        text = pattern.sub(steady, text)
+    for pattern, replacement in VARIABLE_PARTS:
+        text = pattern.sub(replacement, text)
     return text
 
 
@@ -203,7 +204,7 @@ def records() -> Iterator[tuple[str, dict[str, Any]]]:
     with tempfile.TemporaryDirectory() as folder:
         os.environ["ROS_LOG_DIR"] = f"{folder}/log"
         os.environ["AMENT_PREFIX_PATH"] = f"{HERE / 'prefix'}{os.pathsep}{os.environ.get('AMENT_PREFIX_PATH', '')}"
-        import launch_ros.actions  # noqa: F401  # once for all forks
+        import launch_ros.actions  # noqa: F401  # imported once for all forks
         import launch_xml
         import launch_yaml  # noqa: F401
 
@@ -216,9 +217,9 @@ def records() -> Iterator[tuple[str, dict[str, Any]]]:
 
 def main() -> int:
     """Print the records."""
-    named = {one.name.replace("-", "_"): one.version for one in distributions()}
-    found = [f"{name} {named.get(name, 'stand-in')}" for name in DISTRIBUTIONS]
-    print(f"# Recorded with {', '.join(found)}, Python {sys.version_info[0]}.{sys.version_info[1]}.")
+    versions = {distribution.name.replace("-", "_"): distribution.version for distribution in distributions()}
+    recorded_with = [f"{name} {versions.get(name, 'stand-in')}" for name in DISTRIBUTIONS]
+    print(f"# Recorded with {', '.join(recorded_with)}, Python {sys.version_info[0]}.{sys.version_info[1]}.")
     print(yaml.safe_dump(dict(records()), sort_keys=False, width=160, allow_unicode=True), end="")
     return 0
 

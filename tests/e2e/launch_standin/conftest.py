@@ -1,9 +1,9 @@
 """A package with nodes and launch files, and `ros2 launch` as a process whose output can be waited for.
 
 Each launch has a separate network, so that nodes of parallel tests do not discover each other. All
-processes of a launch inherit a mark in their environment, by which those that are left over are found.
+processes of a launch inherit a mark in their environment, which identifies processes that are left over.
 
-With the real launch installed, the tests run that one, except those in differences.yaml.
+With the real launch installed, the tests run it, except the tests in differences.yaml.
 """
 
 from __future__ import annotations
@@ -28,11 +28,10 @@ import pytest
 import yaml
 
 from autograder.ros import environment
-from tests.e2e.launch_cases.runner import at_rest
+from tests.e2e.launch_cases.runner import is_idle
 
 HERE = Path(__file__).parent
-# Generous, because it only matters when something is wrong.
-PATIENCE = 120.0
+PATIENCE = 120.0  # seconds: generous, because it matters only if something is wrong
 MARK = "COURSE_LAUNCH_MARK"
 OWN_NETWORK = ("unshare", "-rn", "sh", "-c", 'ip link set lo up && exec "$@"', "sh")
 DIFFERENCES: dict[str, str] = yaml.safe_load((HERE / "differences.yaml").read_text())
@@ -46,7 +45,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             continue
         item.add_marker(pytest.mark.filterwarnings("ignore::ResourceWarning"))
         if reason := next((DIFFERENCES[name] for name in DIFFERENCES if item.name.startswith(name)), ""):
-            item.add_marker(pytest.mark.skip(reason=f"the real launch does otherwise. {reason}"))
+            item.add_marker(pytest.mark.skip(reason=f"the real launch differs: {reason}"))
 
 
 class Launch:
@@ -83,9 +82,9 @@ class Launch:
         """Wait until the output matches `pattern`; fail if it ends without it."""
         with self._changed:
             self._changed.wait_for(lambda: self._ended or re.search(pattern, self.text), timeout=PATIENCE)
-            found = re.search(pattern, self.text)
-        assert found, f"{pattern!r} is not in the output:\n{self.text}"
-        return found
+            match = re.search(pattern, self.text)
+        assert match, f"{pattern!r} is not in the output:\n{self.text}"
+        return match
 
     def send(self, number: signal.Signals) -> None:
         """Send a signal to the launch process alone."""
@@ -98,22 +97,22 @@ class Launch:
         return code
 
     def interrupt(self) -> int:
-        """Press Ctrl-C and wait for the end; return the exit code."""
+        """Send SIGINT as soon as the launch is idle, and wait for its end; return the exit code."""
         deadline = time.monotonic() + PATIENCE
-        while not at_rest(self._process.pid):
-            assert time.monotonic() < deadline, f"the launch does not come to rest:\n{self.text}"
+        while not is_idle(self._process.pid):
+            assert time.monotonic() < deadline, f"the launch does not become idle:\n{self.text}"
             time.sleep(0.01)
         self.send(signal.SIGINT)
         return self.finish()
 
     def members(self) -> dict[int, str]:
         """Return the command lines of all living processes of this launch, by process id."""
-        found = {}
+        commands = {}
         for folder in Path("/proc").glob("[0-9]*"):
             with contextlib.suppress(OSError):
                 if f"{MARK}={self._mark}".encode() in (folder / "environ").read_bytes():
-                    found[int(folder.name)] = (folder / "cmdline").read_text().replace("\0", " ")
-        return found
+                    commands[int(folder.name)] = (folder / "cmdline").read_text().replace("\0", " ")
+        return commands
 
     def clean_up(self) -> None:
         """Kill the remaining processes."""
@@ -125,9 +124,9 @@ class Launch:
 
 @pytest.fixture
 def own_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """For launches within the test's process: a log folder and an event loop of the test's own.
+    """Give launches in the test's process a separate log folder and event loop.
 
-    The real launch takes the loop that is set for the thread.
+    The real launch uses the current loop of the thread.
     """
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
     loop = asyncio.new_event_loop()
@@ -138,7 +137,7 @@ def own_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     asyncio.set_event_loop(None)
     loop.close()
     if not STAND_IN:
-        gc.collect()  # the sockets that it left open are found here, where that is allowed, not in another test
+        gc.collect()  # finds the sockets that it left open here, where they are allowed, and not in another test
 
 
 def _install_fleet(prefix: Path) -> None:
@@ -165,7 +164,7 @@ def fleet(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def install_fleet() -> Callable[[Path], None]:
-    """Installs the package `fleet` into a prefix."""
+    """Return a function that installs the package `fleet` into a prefix."""
     return _install_fleet
 
 
@@ -174,9 +173,9 @@ Start = Callable[..., Launch]
 
 @pytest.fixture
 def start(fleet: Path, tmp_path: Path) -> Iterator[Start]:
-    """Start `ros2 launch fleet <file> <argument>...`, after sourcing a workspace's `install` if one is given.
+    """Return a function that starts `ros2 launch fleet FILE ARGUMENT...`, with a sourced workspace if one is given.
 
-    At the end of the test none of its processes may be left.
+    None of the processes may be left at the end of the test.
     """
     running: list[Launch] = []
 
@@ -189,7 +188,7 @@ def start(fleet: Path, tmp_path: Path) -> Iterator[Start]:
         return launch
 
     yield start_launch
-    left = [launch.members() for launch in running]
+    leftovers = [launch.members() for launch in running]
     for launch in running:
         launch.clean_up()
-    assert not any(left), f"processes are left over: {left}"
+    assert not any(leftovers), f"processes are left over: {leftovers}"

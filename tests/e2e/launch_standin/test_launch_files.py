@@ -1,4 +1,4 @@
-"""Launch files as students write them: the started processes, the output, the end, and no process that is left."""
+"""Launch files as students write them: which processes they start, what these print, and how they end."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def test_a_node_comes_up_with_its_parameters_and_ends_at_ctrl_c(start: Start) ->
     assert re.search(r"\[INFO\] \[beacon-1\]: process started with pid \[\d+\]", launch.text)
     assert "[WARNING] [launch]: user interrupted with ctrl-c (SIGINT)\n" in launch.text
     assert re.search(CLEANLY.format("beacon"), launch.text)
-    # Without a terminal, which would send Ctrl-C to all, the launch does it.
+    # Without a terminal, which would send SIGINT to all processes, launch sends it.
     assert "[INFO] [beacon-1]: sending signal 'SIGINT' to process[beacon-1]" in launch.text
 
 
@@ -42,7 +42,7 @@ def test_arguments_and_defaults_reach_the_launch_file(start: Start) -> None:
         ),
     ],
 )
-def test_a_missing_or_a_bad_argument_is_an_error(start: Start, arguments: tuple[str, ...], message: str) -> None:
+def test_a_missing_or_invalid_argument_is_an_error(start: Start, arguments: tuple[str, ...], message: str) -> None:
     launch = start("arguments", *arguments)
     assert launch.finish() == 1
     assert re.search(
@@ -92,16 +92,16 @@ def test_two_robots_in_namespaces_get_their_parameters_and_remappings(start: Sta
 def test_event_handlers_run_their_actions_in_the_order_of_events(start: Start) -> None:
     launch = start("events")
     assert launch.finish() == 0
-    said = re.findall(r"\[launch.user\]: (.*)", launch.text)
-    assert said[:3] == ["first started", "second is up", "second exited with 0"]
-    # "complete" does not wait for the handlers of the exit, nor they for it.
-    assert sorted(said[3:]) == ["complete", "it was sh-3", "the end: that is all"]
-    assert said.index("it was sh-3") < said.index("the end: that is all")
+    messages = re.findall(r"\[launch.user\]: (.*)", launch.text)
+    assert messages[:3] == ["first started", "second is up", "second exited with 0"]
+    # The completion and the handlers of the exit do not wait for each other.
+    assert sorted(messages[3:]) == ["complete", "it was sh-3", "the end: that is all"]
+    assert messages.index("it was sh-3") < messages.index("the end: that is all")
     assert "[INFO] [launch]: process[sh-3] was required: shutting down launched system" in launch.text
     assert re.search(r"sending signal 'SIGINT' to process\[light-1\]", launch.text)
 
 
-def test_a_process_that_dies_is_started_again_until_its_tries_are_used_up(start: Start, tmp_path: Path) -> None:
+def test_a_process_that_dies_is_restarted_until_its_retries_are_used_up(start: Start, tmp_path: Path) -> None:
     launch = start("respawn", f"count:={tmp_path / 'count'}")
     assert launch.finish() == 0
     assert re.findall(r"\[crash-1\] (run \d)", launch.text) == ["run 1", "run 2", "run 3"]
@@ -158,7 +158,7 @@ def test_a_missing_command_is_named_and_the_other_processes_continue(start: Star
     assert (
         "[ERROR] [no-such-program-1]: exception occurred while executing process:\nFileNotFoundError: " in launch.text
     )
-    assert "[launch.user]: goes on" in launch.text
+    assert "[launch.user]: continues" in launch.text
 
 
 def test_a_process_that_ignores_sigint_gets_sigterm(start: Start) -> None:
@@ -193,7 +193,7 @@ def test_a_second_ctrl_c_is_ignored(start: Start) -> None:
 
 @pytest.mark.parametrize(
     "number",
-    [signal.SIGTERM, *(pytest.param(one, marks=pytest.mark.nightly) for one in (signal.SIGHUP, signal.SIGQUIT))],
+    [signal.SIGTERM, *(pytest.param(number, marks=pytest.mark.nightly) for number in (signal.SIGHUP, signal.SIGQUIT))],
 )
 def test_other_signals_also_end_the_launch_in_order(start: Start, number: signal.Signals) -> None:
     launch = start("opaque")
@@ -218,17 +218,17 @@ def test_parameters_come_from_files_with_substitutions_arguments_and_for_all_nod
     assert launch.interrupt() == 0
 
 
-def test_output_goes_to_the_place_that_the_launch_file_names(start: Start, tmp_path: Path) -> None:
+def test_output_goes_to_the_destination_that_the_launch_file_names(start: Start, tmp_path: Path) -> None:
     launch = start("output", "word:=hi")
     assert launch.finish() == 0
     lines = launch.text.splitlines()
-    for name, shown in (
+    for name, texts in (
         ("to-screen-1", ["pipe to-screen", "error to-screen"]),
         ("to-log-2", ["error to-log"]),
         ("mixed-3", ["pipe mixed"]),
         ("in-terminal-4", ["tty in-terminal", "error in-terminal"]),
     ):
-        assert sorted(line for line in lines if line.startswith(f"[{name}]")) == sorted(f"[{name}] {s}" for s in shown)
+        assert sorted(line for line in lines if line.startswith(f"[{name}]")) == sorted(f"[{name}] {s}" for s in texts)
     assert {"<pipe formatted>", "<error formatted>", "[echo-6] hi! and hi"} <= set(lines)
     assert "[printenv-7] ONLY=" in launch.text
     assert {"[env-8] yes", "[pwd-9] /", "[printf-10] no line end"} <= set(lines)
@@ -250,10 +250,10 @@ def test_a_prefix_goes_before_the_executables_that_its_filter_names(start: Start
 def test_options_and_variables_override_where_output_goes(
     start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    everything = {"[to-log-2] pipe to-log", "[to-log-2] error to-log", "[mixed-3] pipe mixed", "[mixed-3] error mixed"}
+    all_lines = {"[to-log-2] pipe to-log", "[to-log-2] error to-log", "[mixed-3] pipe mixed", "[mixed-3] error mixed"}
     by_option = start("output", "word:=hi", "--show-all-subprocesses-output")
     assert by_option.finish() == 0
-    assert everything <= set(by_option.text.splitlines())
+    assert all_lines <= set(by_option.text.splitlines())
     (log,) = (tmp_path / "log").glob("2*/launch.log")
     assert "[mixed-3] error mixed" in log.read_text()
     assert not (log.parent / "mixed-3-stderr.log").exists()

@@ -1,4 +1,4 @@
-"""The launch harness sees from outside which nodes launch files start, and which processes they leave running."""
+"""The launch harness reports the nodes that launch files start, and the processes that they leave running."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ while True:
     print("x" * 1000)
 """
 
-SPINS = """
+SPIN = """
 try:
     rclpy.spin(node)
 except (KeyboardInterrupt, ExternalShutdownException):
@@ -52,14 +52,14 @@ import rclpy
 from rclpy.executors import ExternalShutdownException
 
 rclpy.init()
-been_here = pathlib.Path.home() / 'been_here'
-if sys.argv[1] == 'always' or not been_here.exists():
-    been_here.touch()
+marker = pathlib.Path.home() / 'marker'
+if sys.argv[1] == 'always' or not marker.exists():
+    marker.touch()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
 node = rclpy.create_node('stubborn')
-{SPINS}"""
-LOSES_THE_RACE = f"""#!{sys.executable}
+{SPIN}"""
+RACE_IN_SHUTDOWN = f"""#!{sys.executable}
 import pathlib
 import sys
 import time
@@ -68,8 +68,8 @@ import rclpy
 from rclpy.executors import ExternalShutdownException
 
 
-class FoundValid:
-    # The handle of a context that has been shut down by rclpy's thread for signals since it was found valid.
+class StaleHandle:
+    # A handle that claims to be valid although rclpy's thread for signals has just shut its context down.
     def __init__(self, handle):
         self._handle = handle
         self.shutdown = handle.shutdown
@@ -85,7 +85,7 @@ class FoundValid:
 
 
 rclpy.init()
-been_here = pathlib.Path.home() / 'been_here'
+marker = pathlib.Path.home() / 'marker'
 node = rclpy.create_node('racing')
 try:
     rclpy.spin(node)
@@ -94,9 +94,9 @@ except (KeyboardInterrupt, ExternalShutdownException):
 context = rclpy.get_default_context()
 while context.ok():
     time.sleep(0.01)
-if sys.argv[1] == 'always' or not been_here.exists():
-    been_here.touch()
-    context._Context__context = FoundValid(context.handle)
+if sys.argv[1] == 'always' or not marker.exists():
+    marker.touch()
+    context._Context__context = StaleHandle(context.handle)
 rclpy.try_shutdown()
 """
 SLOW = f"""#!{sys.executable}
@@ -108,7 +108,7 @@ from rclpy.executors import ExternalShutdownException
 rclpy.init()
 node = rclpy.create_node('slow')
 time.sleep(2.0)
-{SPINS}"""
+{SPIN}"""
 LATE = f"""#!{sys.executable}
 import time
 
@@ -119,7 +119,7 @@ rclpy.init()
 rclpy.spin(rclpy.create_node('late'))
 """
 FORKS = "#!/bin/sh\n[ $1 = with_beacon ] && exit\n(while sleep 0.1; do :; done) &\nwait\n"
-STARTS_IT = """
+LAUNCH_FILE = """
 from launch import LaunchDescription
 from launch.conditions import LaunchConfigurationEquals
 from launch.substitutions import LaunchConfiguration
@@ -159,7 +159,7 @@ def test_nodes_parameters_messages_and_programs_are_seen_and_ctrl_c_ends_them(wo
         assert harness.programs() == []
 
 
-def test_a_wrong_node_or_parameter_is_reported_with_the_one_found(workspace: Workspace) -> None:
+def test_a_wrong_node_or_parameter_is_reported_with_the_actual_one(workspace: Workspace) -> None:
     with LaunchHarness(workspace, "fleet", "single.launch.py", {"name": "lamp"}) as harness:
         with pytest.raises(CheckFailed) as caught:
             launch_probe.expect_nodes(harness, ["/robot1/lamp"])
@@ -170,8 +170,8 @@ def test_a_wrong_node_or_parameter_is_reported_with_the_one_found(workspace: Wor
             launch_probe.expect_parameters(harness, "/lamp", {"label": 42})
 
 
-def test_a_program_that_has_forked_is_still_one_program(starts: Callable[[str], Workspace]) -> None:
-    with LaunchHarness(starts(FORKS), "fleet", "given.launch.py", {"how": "once"}) as harness:
+def test_a_program_that_has_forked_is_still_one_program(install_program: Callable[[str], Workspace]) -> None:
+    with LaunchHarness(install_program(FORKS), "fleet", "given.launch.py", {"how": "once"}) as harness:
         assert harness.wait_for(lambda: any(children(program.pid) for program in harness.programs()), PATIENCE)
         assert [program.name for program in harness.programs()] == ["given"]
         assert harness.kill("given", signal.SIGTERM) == 1
@@ -179,14 +179,17 @@ def test_a_program_that_has_forked_is_still_one_program(starts: Callable[[str], 
         assert harness.left() == ()
 
 
-def test_only_a_program_that_does_not_end_by_itself_hangs(
-    starts: Callable[[str], Workspace], monkeypatch: pytest.MonkeyPatch
+def test_a_program_hangs_only_if_it_does_not_end_by_itself(
+    install_program: Callable[[str], Workspace], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    there = starts(FORKS)
-    with LaunchHarness(there, "fleet", "given.launch.py", {"how": "once"}) as harness, monkeypatch.context() as patch:
+    installed = install_program(FORKS)
+    with (
+        LaunchHarness(installed, "fleet", "given.launch.py", {"how": "once"}) as harness,
+        monkeypatch.context() as patch,
+    ):
         patch.setattr(short_lived, "START_SECONDS", 5.0)
         assert short_lived.hangs(harness, "given")
-    with LaunchHarness(there, "fleet", "given.launch.py", {"how": "with_beacon"}) as harness:
+    with LaunchHarness(installed, "fleet", "given.launch.py", {"how": "with_beacon"}) as harness:
         assert not short_lived.hangs(harness, "given")
         assert not short_lived.hangs(harness, "absent")
 
@@ -201,8 +204,8 @@ def test_a_killed_program_disappears_and_an_idle_launch_ends(workspace: Workspac
 
 
 def test_a_process_that_a_launch_leaves_running_is_named(workspace: Workspace) -> None:
-    there = launch_probe.with_files(workspace, "leaves", "fleet", {"launch/leaves_one.launch.py": LEAVES_ONE})
-    with LaunchHarness(there, "fleet", "leaves_one.launch.py") as harness:
+    installed = launch_probe.with_files(workspace, "leaves", "fleet", {"launch/leaves_one.launch.py": LEAVES_ONE})
+    with LaunchHarness(installed, "fleet", "leaves_one.launch.py") as harness:
         assert harness.wait_for(lambda: "verbosity" in harness.output, PATIENCE)
         with pytest.raises(CheckFailed, match="It ended, but left a process running: sleep 600"):
             launch_probe.expect_clean_stop(harness)
@@ -210,50 +213,54 @@ def test_a_process_that_a_launch_leaves_running_is_named(workspace: Workspace) -
 
 
 @pytest.fixture
-def starts(workspace: Workspace) -> Callable[[str], Workspace]:
-    """Return a function that puts a program into `fleet`, which `given.launch.py` starts."""
+def install_program(workspace: Workspace) -> Callable[[str], Workspace]:
+    """Return a function that adds a program to `fleet`, with a launch file, `given.launch.py`, that starts it."""
 
-    def put(text: str) -> Workspace:
-        there = launch_probe.with_files(workspace, "given", "fleet", {"launch/given.launch.py": STARTS_IT})
-        program = there.install / "fleet/lib/fleet/given"
+    def install(text: str) -> Workspace:
+        installed = launch_probe.with_files(workspace, "given", "fleet", {"launch/given.launch.py": LAUNCH_FILE})
+        program = installed.install / "fleet/lib/fleet/given"
         program.write_text(text)
         program.chmod(0o755)
-        return there
+        return installed
 
-    return put
+    return install
 
 
-def test_a_program_whose_node_comes_late_is_not_overlooked(starts: Callable[[str], Workspace]) -> None:
-    both = LaunchHarness(starts(LATE), "fleet", "given.launch.py", {"how": "with_beacon"})
-    with both as harness, pytest.raises(CheckFailed, match="/late not asked for"):
+def test_a_program_whose_node_appears_late_is_not_overlooked(install_program: Callable[[str], Workspace]) -> None:
+    late = LaunchHarness(install_program(LATE), "fleet", "given.launch.py", {"how": "with_beacon"})
+    with late as harness, pytest.raises(CheckFailed, match="/late not asked for"):
         launch_probe.expect_nodes(harness, ["/beacon"])
 
 
-def test_ctrl_c_waits_for_a_node_that_is_visible_but_not_yet_constructed(starts: Callable[[str], Workspace]) -> None:
-    with LaunchHarness(starts(SLOW), "fleet", "given.launch.py", {"how": "once"}) as harness:
+def test_ctrl_c_waits_for_a_node_that_is_visible_but_not_yet_constructed(
+    install_program: Callable[[str], Workspace],
+) -> None:
+    with LaunchHarness(install_program(SLOW), "fleet", "given.launch.py", {"how": "once"}) as harness:
         launch_probe.expect_nodes(harness, ["/slow"])
         launch_probe.expect_clean_stop(harness)
 
 
-def test_a_node_that_had_to_be_killed_gets_a_second_launch_which_decides(starts: Callable[[str], Workspace]) -> None:
-    there = starts(STUBBORN)
-    with LaunchHarness(there, "fleet", "given.launch.py", {"how": "once"}) as harness:
+def test_a_killed_node_gets_a_second_launch_whose_result_counts(install_program: Callable[[str], Workspace]) -> None:
+    installed = install_program(STUBBORN)
+    with LaunchHarness(installed, "fleet", "given.launch.py", {"how": "once"}) as harness:
         launch_probe.expect_nodes(harness, ["/stubborn"])
         launch_probe.expect_clean_stop(harness)
         assert "exit code -9" in harness.output
-    with LaunchHarness(there, "fleet", "given.launch.py", {"how": "always"}) as harness:
+    with LaunchHarness(installed, "fleet", "given.launch.py", {"how": "always"}) as harness:
         launch_probe.expect_nodes(harness, ["/stubborn"])
         with pytest.raises(CheckFailed, match=r"not every process ended cleanly: given with -9"):
             launch_probe.expect_clean_stop(harness)
 
 
-def test_a_race_that_rclpy_loses_gets_a_second_launch_which_decides(starts: Callable[[str], Workspace]) -> None:
-    there = starts(LOSES_THE_RACE)
-    with LaunchHarness(there, "fleet", "given.launch.py", {"how": "once"}) as harness:
+def test_a_race_in_the_shutdown_gets_a_second_launch_whose_result_counts(
+    install_program: Callable[[str], Workspace],
+) -> None:
+    installed = install_program(RACE_IN_SHUTDOWN)
+    with LaunchHarness(installed, "fleet", "given.launch.py", {"how": "once"}) as harness:
         launch_probe.expect_nodes(harness, ["/racing"])
         launch_probe.expect_clean_stop(harness)
         assert "rcl_shutdown already called" in harness.output
-    with LaunchHarness(there, "fleet", "given.launch.py", {"how": "always"}) as harness:
+    with LaunchHarness(installed, "fleet", "given.launch.py", {"how": "always"}) as harness:
         launch_probe.expect_nodes(harness, ["/racing"])
         with pytest.raises(CheckFailed, match=r"not every process ended cleanly: given with 1"):
             launch_probe.expect_clean_stop(harness)
@@ -273,13 +280,13 @@ def test_a_launch_file_that_is_missing_or_broken_ends_the_launch_with_a_reason(w
 
 
 def test_the_arguments_of_a_launch_file_are_shown(workspace: Workspace) -> None:
-    found = launch_probe.shown_arguments(workspace, "fleet", "arguments.launch.py")
-    assert list(found) == ["robot", "mode", "topic"]
-    assert found["mode"].choices == ("drive", "park")
+    arguments = launch_probe.shown_arguments(workspace, "fleet", "arguments.launch.py")
+    assert list(arguments) == ["robot", "mode", "topic"]
+    assert arguments["mode"].choices == ("drive", "park")
 
 
 def test_a_launch_that_prints_without_end_raises_a_student_error(workspace: Workspace) -> None:
-    there = launch_probe.with_files(workspace, "floods", "fleet", {"launch/floods.launch.py": FLOODS})
-    with LaunchHarness(there, "fleet", "floods.launch.py") as harness, pytest.raises(StudentError) as caught:
+    installed = launch_probe.with_files(workspace, "floods", "fleet", {"launch/floods.launch.py": FLOODS})
+    with LaunchHarness(installed, "fleet", "floods.launch.py") as harness, pytest.raises(StudentError) as caught:
         harness.wait_for(lambda: False, PATIENCE)
     assert caught.value.diagnosis.kind is Kind.FLOODED_OUTPUT

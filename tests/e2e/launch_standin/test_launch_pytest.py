@@ -1,4 +1,4 @@
-"""Integration tests in the style of `launch_pytest`, run by pytest as a student would run them."""
+"""Integration tests that use `launch_pytest`, run by pytest as by a student."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ PASSED = {
 def run_pytest(folder: Path, fleet: Path, file: Path) -> str:
     variables = environment.find().variables(overlays=(fleet,), log_dir=folder / "log")
     command = [sys.executable, "-m", "pytest", "-rA", "-W", "error", "-p", "no:cacheprovider", "--tb=short"]
-    done = subprocess.run(
+    process = subprocess.run(
         [*OWN_NETWORK, *command, f"--rootdir={folder}", "-c", os.devnull, str(file)],
         env={**os.environ, **variables},
         cwd=folder,
@@ -43,12 +43,12 @@ def run_pytest(folder: Path, fleet: Path, file: Path) -> str:
         timeout=280,
         check=False,
     )
-    return done.stdout
+    return process.stdout
 
 
 @pytest.fixture(scope="module")
 def report(fleet: Path, tmp_path_factory: pytest.TempPathFactory) -> str:
-    """What pytest prints of the samples."""
+    """The output of pytest for the samples."""
     folder = tmp_path_factory.mktemp("samples")
     file = folder / "test_samples.py"
     file.write_text(SAMPLES.read_text())
@@ -87,5 +87,5 @@ def test_a_launch_that_fails_is_an_error_of_its_fixture(report: str) -> None:
 def test_a_mark_without_a_fixture_is_refused(fleet: Path, tmp_path: Path) -> None:
     file = tmp_path / "test_mark.py"
     file.write_text("import pytest\n@pytest.mark.launch()\ndef test_it(): pass\n")
-    said = run_pytest(tmp_path, fleet, file)
-    assert '"fixture" keyword argument is required in a pytest.mark.launch() decorator' in said
+    output = run_pytest(tmp_path, fleet, file)
+    assert '"fixture" keyword argument is required in a pytest.mark.launch() decorator' in output

@@ -1,4 +1,4 @@
-"""Single processes: their output, and arguments that no process can be made of."""
+"""Single processes: their output, and invalid arguments."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ def service_with(*entities: Any) -> launch.LaunchService:
     return service
 
 
-def test_output_is_kept_if_the_process_is_set_to_keep_it() -> None:
-    kept = ExecuteProcess(cmd=["sh", "-c", "echo out; printf err >&2"], cached_output=True)
+def test_output_is_kept_if_cached_output_is_set() -> None:
+    cached = ExecuteProcess(cmd=["sh", "-c", "echo out; printf err >&2"], cached_output=True)
     other = ExecuteProcess(cmd=["true"], name="other")
-    service_with(kept, other).run()
-    assert (kept.get_stdout(), kept.get_stderr(), kept.return_code) == ("out\n", "err", 0)
+    service_with(cached, other).run()
+    assert (cached.get_stdout(), cached.get_stderr(), cached.return_code) == ("out\n", "err", 0)
     with pytest.raises(RuntimeError, match=r"cached output must be true to be able to get stdout, proc 'other-\d+'"):
         other.get_stdout()
 
 
-def test_much_output_arrives_whole_and_in_order() -> None:
+def test_long_output_arrives_complete_and_in_order() -> None:
     action = ExecuteProcess(cmd=["seq", "20000"], cached_output=True)
     service_with(action).run()
     assert action.get_stdout().split() == [str(number) for number in range(1, 20001)]

@@ -25,12 +25,12 @@ def install(reference: Terminal) -> Path:
 
 
 def observe_and_interrupt(start: Start, install: Path, package: str, file: str) -> str:
-    """Launch, look at the nodes and their parameters, press Ctrl-C, and return the launch's output."""
+    """Launch a file, verify its nodes and their parameters, interrupt it, and return its output."""
     launch = start("observed", f"package:={package}", f"file:={file}.launch.py", install=install)
-    found = json.loads(launch.wait_for("found: (.*)")[1])
-    assert set(found) == {f"/{node}" for node in NODES}
-    assert found["/status_publisher"]["robot_name"] == "MyRobot01"
-    assert found["/status_publisher"]["status_period"] == 1.0
+    parameters = json.loads(launch.wait_for("found: (.*)")[1])
+    assert set(parameters) == {f"/{node}" for node in NODES}
+    assert parameters["/status_publisher"]["robot_name"] == "MyRobot01"
+    assert parameters["/status_publisher"]["status_period"] == 1.0
     assert launch.interrupt() == 0
     return str(launch.text)
 
@@ -41,11 +41,11 @@ def observe_and_interrupt(start: Start, install: Path, package: str, file: str) 
 def test_the_reference_launch_file_runs_all_nodes_with_their_parameters_until_ctrl_c(
     start: Start, install: Path, package: str, file: str
 ) -> None:
-    ended = observe_and_interrupt(start, install, package, file)
-    if "escalating to 'SIGKILL'" in ended:  # Fast DDS deadlocks at times; expect_clean_stop has the same rule
-        ended = observe_and_interrupt(start, install, package, file)
+    output = observe_and_interrupt(start, install, package, file)
+    if "escalating to 'SIGKILL'" in output:  # Fast DDS sometimes deadlocks; expect_clean_stop has the same rule
+        output = observe_and_interrupt(start, install, package, file)
     for node in NODES:
-        assert re.search(rf"\[INFO\] \[{node}-\d+\]: process has finished cleanly", ended)
+        assert re.search(rf"\[INFO\] \[{node}-\d+\]: process has finished cleanly", output)
 
 
 @pytest.mark.slow
@@ -53,11 +53,11 @@ def test_the_reference_launch_file_runs_all_nodes_with_their_parameters_until_ct
 def test_the_chapters_launch_file_ends_with_an_error_if_an_executable_is_missing(
     start: Start, install: Path, tmp_path: Path
 ) -> None:
-    lacking = tmp_path / "install"
-    shutil.copytree(install, lacking, symlinks=True)
-    libexec = lacking / "my_robot_package/lib/my_robot_package"
+    incomplete = tmp_path / "install"
+    shutil.copytree(install, incomplete, symlinks=True)
+    libexec = incomplete / "my_robot_package/lib/my_robot_package"
     (libexec / "sensor_processor").unlink()
-    launch = start("chapter", install=lacking)
+    launch = start("chapter", install=incomplete)
     assert launch.finish() == 1
     assert (
         "[ERROR] [launch]: Caught exception in launch (see debug for traceback): "

@@ -1,4 +1,4 @@
-"""The launch service as other programs use it: threads, event loops, errors, cancellation."""
+"""The launch service, used by other programs with threads, event loops, errors and cancellation."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def when_started(action: ExecuteProcess, do: Callable[[], Any]) -> RegisterEvent
     return RegisterEventHandler(OnProcessStart(target_action=action, on_start=lambda event, context: do()))
 
 
-def is_gone(action: ExecuteProcess) -> bool:
+def has_ended(action: ExecuteProcess) -> bool:
     assert action.process_details is not None
     return not Path("/proc", str(action.process_details["pid"])).exists()
 
@@ -53,7 +53,7 @@ def test_another_thread_can_shut_the_launch_down() -> None:
     service = service_with(action, when_started(action, lambda: threading.Thread(target=service.shutdown).start()))
     assert service.run() == 0
     assert action.return_code == -signal.SIGINT
-    assert is_gone(action)
+    assert has_ended(action)
 
 
 def test_another_thread_can_add_to_a_running_launch(capsys: pytest.CaptureFixture[str]) -> None:
@@ -81,14 +81,14 @@ def test_shutdown_within_the_loop_returns_a_coroutine() -> None:
 
     service = service_with(action, OpaqueCoroutine(coroutine=stop))
     assert service.run() == 0
-    assert is_gone(action)
+    assert has_ended(action)
 
 
 def test_a_launch_can_run_within_a_loop_that_runs_already() -> None:
     async def main() -> tuple[int, bool]:
         action = sleeper()
         service = service_with(action, when_started(action, lambda: service.shutdown(force_sync=True)))
-        return await service.run_async(), is_gone(action)
+        return await service.run_async(), has_ended(action)
 
     assert asyncio.run(main()) == (0, True)
 
@@ -125,43 +125,43 @@ def test_a_cancelled_launch_ends_its_processes_before_the_cancellation_continues
         task = asyncio.ensure_future(service.run_async())
         with pytest.raises(asyncio.CancelledError):
             await task
-        assert is_gone(action)
+        assert has_ended(action)
 
     asyncio.run(main())
     assert action.return_code == -signal.SIGINT
 
 
 @pytest.mark.parametrize("error", [SystemExit, KeyboardInterrupt])
-def test_an_exit_out_of_a_launch_file_leaves_no_process(error: type[BaseException]) -> None:
+def test_an_exit_raised_in_a_launch_file_leaves_no_process(error: type[BaseException]) -> None:
     action = sleeper()
 
-    def leave() -> None:
+    def exit_launch() -> None:
         raise error
 
     with pytest.raises(error):
-        service_with(action, when_started(action, leave)).run()
-    assert is_gone(action)
+        service_with(action, when_started(action, exit_launch)).run()
+    assert has_ended(action)
 
 
 def test_an_error_in_a_handler_ends_the_launch_with_it(capsys: pytest.CaptureFixture[str]) -> None:
     action = sleeper()
 
     def fail() -> None:
-        raise ValueError("what a pity")
+        raise ValueError("no such robot")
 
     assert service_with(action, when_started(action, fail)).run() == 1
-    assert "Caught exception in launch (see debug for traceback): what a pity" in capsys.readouterr().out
-    assert is_gone(action)
+    assert "Caught exception in launch (see debug for traceback): no such robot" in capsys.readouterr().out
+    assert has_ended(action)
 
 
 def test_an_error_in_a_coroutine_ends_the_launch_with_it(capsys: pytest.CaptureFixture[str]) -> None:
     async def fail(context: launch.LaunchContext) -> None:
-        raise ValueError("what a pity")
+        raise ValueError("no such robot")
 
     action = sleeper()
     assert service_with(action, OpaqueCoroutine(coroutine=fail)).run() == 1
-    assert "Caught exception in launch (see debug for traceback): what a pity" in capsys.readouterr().out
-    assert is_gone(action)
+    assert "Caught exception in launch (see debug for traceback): no such robot" in capsys.readouterr().out
+    assert has_ended(action)
 
 
 def test_the_end_of_the_launch_cancels_coroutines_and_timers() -> None:
@@ -187,7 +187,7 @@ def test_signal_handlers_are_as_before_after_a_launch() -> None:
     assert [signal.getsignal(number) for number in numbers] == before
 
 
-def test_a_service_that_is_not_to_end_when_idle_waits_for_its_shutdown() -> None:
+def test_a_service_without_shutdown_when_idle_waits_for_its_shutdown() -> None:
     service = service_with(LogInfo(msg="nothing more to do"))
     timer = threading.Timer(0.2, service.shutdown)
     timer.start()
@@ -221,10 +221,8 @@ def test_a_signal_goes_to_the_processes_that_match() -> None:
 def test_an_action_is_executed_once(capsys: pytest.CaptureFixture[str]) -> None:
     action = ExecuteProcess(cmd=["true"])
     assert service_with(action, action).run() == 1
-    assert re_executed in capsys.readouterr().out
-
-
-re_executed = "executed more than once: ExecuteProcess(cmd=['true'], cwd=None, env=None, shell=False)"
+    error = "executed more than once: ExecuteProcess(cmd=['true'], cwd=None, env=None, shell=False)"
+    assert error in capsys.readouterr().out
 
 
 def test_no_process_is_started_once_the_launch_ends() -> None:
@@ -239,7 +237,7 @@ def test_a_timer_that_begins_during_shutdown_does_not_delay_it() -> None:
     assert service_with(RegisterEventHandler(OnShutdown(on_shutdown=[late])), Shutdown()).run() == 0
 
 
-def test_a_handler_can_be_removed_and_can_be_meant_for_once(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_handler_can_be_removed_or_run_only_once(capsys: pytest.CaptureFixture[str]) -> None:
     removed = OnProcessStart(on_start=[LogInfo(msg="removed")])
     once = OnProcessStart(on_start=lambda event, context: LogInfo(msg="once"), handle_once=True)
     actions = [RegisterEventHandler(removed), RegisterEventHandler(once), UnregisterEventHandler(removed)]
@@ -252,11 +250,11 @@ def test_each_child_leads_its_own_process_group() -> None:
     groups: list[int] = []
     action = sleeper()
 
-    def look() -> Shutdown:
+    def record_group() -> Shutdown:
         assert action.process_details is not None
         groups.append(os.getpgid(action.process_details["pid"]))
         return Shutdown()
 
-    service_with(action, when_started(action, look)).run()
+    service_with(action, when_started(action, record_group)).run()
     assert action.process_details is not None
     assert groups == [action.process_details["pid"]]

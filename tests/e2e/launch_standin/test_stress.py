@@ -1,6 +1,6 @@
-"""Many starts and stops, stopped at different moments: never is anything left over or stuck.
+"""Many launches, stopped at different moments, leave no process behind and do not hang.
 
-Each moment comes four times in `make test`, and thirty times in `make nightly`.
+`make test` stops at each moment four times, and `make nightly` thirty times.
 """
 
 from __future__ import annotations
@@ -24,18 +24,17 @@ def _interrupt(*_: Any) -> None:
     os.kill(os.getpid(), signal.SIGINT)
 
 
-def _left_over(mark: str) -> list[str]:
-    found = []
+def _leftovers(mark: str) -> list[str]:
+    commands = []
     for folder in Path("/proc").glob("[0-9]*"):
         if int(folder.name) == os.getpid():
             continue
         try:
             if f"{MARK}={mark}".encode() in (folder / "environ").read_bytes():
-                found.append((folder / "cmdline").read_text().replace("\0", " "))
+                commands.append((folder / "cmdline").read_text().replace("\0", " "))
         except OSError:
-            # It has just ended.
-            continue
-    return found
+            continue  # the process has just ended
+    return commands
 
 
 @pytest.fixture
@@ -49,12 +48,12 @@ def mark(own_log: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 def test_many_launches_of_light_processes_leave_nothing(
     starts: int, fleet: Path, mark: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    left, codes = [], set()
+    leftovers, codes = [], set()
     for number in range(starts):
         service = launch.LaunchService()
         light = ExecuteProcess(cmd=[str(fleet / "lib/fleet/light")], output="screen")
         other = ExecuteProcess(cmd=["sleep", "3600"])
-        # A shell with a child in the background, which ignores SIGINT; stopped before it waits, dash misses it too.
+        # A shell whose background child ignores SIGINT. Stopped before it waits, dash misses the signal, too.
         shell = ExecuteProcess(cmd=["sleep 3600 & echo up; wait"], shell=True)
         moments = (
             (other, OnProcessStart(target_action=light, on_start=_interrupt)),
@@ -64,10 +63,10 @@ def test_many_launches_of_light_processes_leave_nothing(
         second, handler = moments[number % len(moments)]
         service.include_launch_description(launch.LaunchDescription([RegisterEventHandler(handler), light, second]))
         codes.add(service.run())
-        left += _left_over(mark)
-    said = capsys.readouterr().out
-    assert (left, codes) == ([], {0})
-    assert said.count("process started with pid") == 2 * starts
+        leftovers += _leftovers(mark)
+    output = capsys.readouterr().out
+    assert (leftovers, codes) == ([], {0})
+    assert output.count("process started with pid") == 2 * starts
 
 
 def test_launches_of_nodes_that_are_stopped_early_or_late_leave_nothing(start: Callable[..., Any]) -> None:
@@ -77,5 +76,5 @@ def test_launches_of_nodes_that_are_stopped_early_or_late_leave_nothing(start: C
         running.wait_for("process started with pid" if early else r"(?s)(ready: /robot.*){3}")
         assert running.interrupt() == 0
         assert running.members() == {}
-        # A Python that is interrupted while it starts may miss that, and is then ended by SIGTERM.
+        # Python may miss an interrupt while it starts, and is then ended by SIGTERM.
         assert early or "escalating" not in running.text

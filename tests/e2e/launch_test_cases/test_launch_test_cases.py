@@ -1,7 +1,6 @@
 """The stand-in for launch_testing runs launch tests as the real package does, by pytest.
 
-`records.yaml` was written with the real packages by `runner.py`. If those are installed, this test compares them as
-well.
+`runner.py` wrote `records.yaml` with the real packages. If these are installed, the tests compare them, too.
 """
 
 from __future__ import annotations
@@ -21,11 +20,11 @@ EXPECTED: list[dict[str, Any]] = yaml.safe_load(RECORDS.read_text())
 
 
 @pytest.fixture(scope="module")
-def found() -> list[dict[str, Any]]:
+def records() -> list[dict[str, Any]]:
     program = [sys.executable, "-m", "tests.e2e.launch_test_cases.runner"]
-    done = subprocess.run(program, cwd=ROOT, env={**os.environ}, stdout=subprocess.PIPE, text=True, check=True)
-    records: list[dict[str, Any]] = yaml.safe_load(done.stdout)
-    return records
+    process = subprocess.run(program, cwd=ROOT, env={**os.environ}, stdout=subprocess.PIPE, text=True, check=True)
+    recorded: list[dict[str, Any]] = yaml.safe_load(process.stdout)
+    return recorded
 
 
 def test_each_call_has_a_record() -> None:
@@ -34,5 +33,5 @@ def test_each_call_has_a_record() -> None:
 
 @pytest.mark.promise("Tests compare them with recordings of the real packages")
 @pytest.mark.parametrize("number", range(len(CALLS)), ids=CALLS)
-def test_a_launch_test_behaves_as_with_the_real_package(number: int, found: list[dict[str, Any]]) -> None:
-    assert found[number] == EXPECTED[number]
+def test_a_launch_test_behaves_as_with_the_real_package(number: int, records: list[dict[str, Any]]) -> None:
+    assert records[number] == EXPECTED[number]

@@ -1,9 +1,9 @@
-"""Runs commands of whichever `ros2` is installed, and records the output and exit status of each.
+"""Run commands of the installed `ros2`, and record the output and exit status of each.
 
 `python -m tests.e2e.ros2_records.runner` runs the commands of `records.yaml`, or of the given groups, and prints the
-new records. It was made so with the real ros2cli: `make real-launch`, then this program. The nodes of
-`sample_nodes.py` answer. Each command runs in a fork of this process, which has already imported the modules that
-commands need.
+new records. With the real ros2cli, after `make real-launch`, it wrote `records.yaml`. The nodes of `sample_nodes.py`
+answer the commands. Each command runs in a fork of this process, which has already imported the modules that commands
+need.
 """
 
 from __future__ import annotations
@@ -30,34 +30,34 @@ import yaml
 HERE = Path(__file__).parent
 RECORDS = HERE / "records.yaml"
 PREFIX = HERE.parent / "launch_cases" / "prefix"
-SECONDS = 120.0  # for one command, on a busy machine
-TOGETHER = 8
+TIMEOUT = 120.0  # seconds for a command, on a busy machine
+MAX_PARALLEL = 8
 # Groups whose commands change something run one after another; the others run in parallel.
 IN_ORDER = ("change",)
-# Verbs that look at the graph take the time to do so. Listing commands have no condition to wait for, and neither do
-# commands with an unknown name.
-LOOKING = ("node", "topic", "service", "action", "param")
+# Verbs that inspect the graph have an option for the time of discovery. Commands that list have no condition to wait
+# for, and neither do commands with an unknown name.
+GRAPH_VERBS = ("node", "topic", "service", "action", "param")
 WITHOUT_SPIN_TIME = ("topic pub", "service call", "action send_goal")
-# The real ones of these ask ros2cli's daemon.
-WITHOUT_CHOICE = ("topic hz", "topic bw")  # of asking it or not
-BY_DAEMON = ("service type", "service find", "action list", "action info", "action type", "param")  # it knows already
-LISTING, NAMED = 5, 60
-# The fields of a record that describe the command, and the alternatives of the real one.
-ASKED = ("command", "stdin", "files", "until", "lines", "sorted", "or")
-# What differs from run to run.
-CHANGING = (
+# Real commands without the option `--no-daemon`, and those that ask ros2cli's daemon, which already knows the graph.
+WITHOUT_DAEMON_OPTION = ("topic hz", "topic bw")
+BY_DAEMON = ("service type", "service find", "action list", "action info", "action type", "param")
+LIST_SECONDS, NAMED_SECONDS = 5, 60
+# The fields of a record that describe the command, and another possible result of the real one.
+COMMAND_FIELDS = ("command", "stdin", "files", "until", "lines", "sorted", "or")
+# Parts that differ between runs.
+VARIABLE_PARTS = (
     (re.compile(r"Traceback \(most recent call last\):\n(  .*\n)+(.*\n)"), r"\2"),
     (re.compile(r"usage: .*\n( +.*\n)*"), "usage\n"),
     (re.compile(r"(\bG?ID: |pid \[?)[0-9a-f.]+"), r"\1ID"),
     (re.compile(r"(hello |<string length: <)\d+"), r"\1N"),
-    (re.compile(r"(/(?:parameter_events|rosout) \[.*\]) \d+"), r"\1 N"),  # the commands have these, too
+    (re.compile(r"(/(?:parameter_events|rosout) \[.*\]) \d+"), r"\1 N"),  # running commands have these endpoints, too
     (re.compile(r"(sec[:=] ?)\d{2,}"), r"\1N"),
     (re.compile(r"((?:timestamp|sequence_number)'?: )\S+?(,?\n|, |})"), r"\1N\2"),
     (re.compile(r"\d+\.\d{3,}(s?\b)"), r"N\1"),
     (re.compile(r"(std dev: \S+ window: |from )\d+"), r"\1N"),
     (re.compile(r"<launch[\w.]*\.(\w+) object at 0x[0-9a-f]+>"), r"<\1>"),
     (re.compile(r"\d[\d.]* ([KM]?B)\b"), r"N \1"),
-    (re.compile(r".*/_ros2cli_.*\n"), ""),  # the commands themselves, side by side
+    (re.compile(r".*/_ros2cli_.*\n"), ""),  # nodes of commands that run in parallel
     (re.compile(r"(waiting for service to become available|Waiting for at least 1 matching sub.*)\.\.\.\n"), ""),
     # The result does not wait for feedback that is still on its way.
     (re.compile(r"(Feedback:\n(?:[ -].*\n)+\n)(?:Feedback:\n(?:[ -].*\n)+\n)*"), r"\1"),
@@ -72,18 +72,19 @@ class Running:
     """A command that was started.
 
     Attributes:
-        call: what was asked for: `command`, and if it is so `stdin`, `files`, `until` (what is to be printed before
-            Ctrl-C), `lines` (how many lines count) and `sorted` (their order does not count).
-        folder: where it runs.
-        pid: the fork that runs it.
-        deadline: when it has to have ended.
+        call: `command` and, where given, `stdin`, `files`, `until` (the output at which SIGINT is sent), `lines` (the
+            number of lines that are compared) and `sorted` (whether their order is ignored).
+        folder: the folder of its files and streams.
+        pid: the process id of its fork.
+        deadline: the time by which it must end.
+        is_interrupted: whether SIGINT was sent.
     """
 
     call: Mapping[str, Any]
     folder: Path
     pid: int
     deadline: float
-    pressed: bool = False
+    is_interrupted: bool = False
 
     @classmethod
     def start(cls, call: Mapping[str, Any], folder: Path) -> Running:
@@ -100,39 +101,39 @@ class Running:
             for number, (name, mode) in enumerate((("in", os.O_RDONLY), ("out", os.O_WRONLY), ("err", os.O_WRONLY))):
                 os.dup2(os.open(folder / name, mode | os.O_CREAT), number)
             os._exit(_ros2(call))
-        return cls(call, folder, pid, time.monotonic() + SECONDS)
+        return cls(call, folder, pid, time.monotonic() + TIMEOUT)
 
-    def ended(self) -> dict[str, Any] | None:
-        """Return the record of a command that has ended; press Ctrl-C as soon as it has printed `until`."""
+    def poll(self) -> dict[str, Any] | None:
+        """Return the record of a command, or None if it has not ended; send SIGINT once it has printed `until`."""
         pid, status = os.waitpid(self.pid, os.WNOHANG)
         if not pid:
-            if not self.pressed and (until := self.call.get("until")) and until in self._text("out"):
-                self.pressed = True
+            if not self.is_interrupted and (until := self.call.get("until")) and until in self._text("out"):
+                self.is_interrupted = True
                 os.killpg(self.pid, signal.SIGINT)
             if time.monotonic() < self.deadline:
                 return None
             os.killpg(self.pid, signal.SIGKILL)
             raise TimeoutError(f"ros2 {self.call['command']} did not end: {self._text('out')} {self._text('err')}")
-        found = {name: self.call[name] for name in ASKED if name in self.call}
-        found |= {"status": os.waitstatus_to_exitcode(status), "output": self._text("out")}
+        record = {name: self.call[name] for name in COMMAND_FIELDS if name in self.call}
+        record |= {"status": os.waitstatus_to_exitcode(status), "output": self._text("out")}
         if "lines" in self.call:
-            found["output"] = "".join(found["output"].splitlines(keepends=True)[: self.call["lines"]])
+            record["output"] = "".join(record["output"].splitlines(keepends=True)[: self.call["lines"]])
         if "sorted" in self.call:
-            found["output"] = "".join(sorted(found["output"].splitlines(keepends=True)))
+            record["output"] = "".join(sorted(record["output"].splitlines(keepends=True)))
         if error := self._text("err"):
-            found["error"] = error
+            record["error"] = error
         here = self.folder / "here"
         files = {str(path.relative_to(here)) for path in here.rglob("*") if path.is_file()}
         if made := files - set(self.call.get("files", ())):
-            found["made"] = sorted(made)
-        return found
+            record["made"] = sorted(made)
+        return record
 
     def _text(self, stream: str) -> str:
         text = (self.folder / stream).read_text() if (self.folder / stream).exists() else ""
         for folder, name in ((self.folder / "here", "HERE"), (PREFIX, "PREFIX"), (sys.prefix, "ENVIRONMENT")):
             text = text.replace(str(folder), name)
-        for pattern, steady in CHANGING:
-            text = pattern.sub(steady, text)
+        for pattern, replacement in VARIABLE_PARTS:
+            text = pattern.sub(replacement, text)
         return text
 
 
@@ -144,14 +145,14 @@ def is_stand_in() -> bool:
 def _ros2(call: Mapping[str, Any]) -> int:
     """Run the command as the program `ros2` does; return its exit status."""
     main = importlib.import_module("autograder.ros.ros2.main").main
-    sys.stdout = open(1, "w", closefd=False)  # noqa: SIM115  # they end with this process
+    sys.stdout = open(1, "w", closefd=False)  # noqa: SIM115  # they are closed with this process
     sys.stderr = open(2, "w", buffering=1, closefd=False)  # noqa: SIM115
     sys.argv = ["ros2", *shlex.split(call["command"]), *_spin_time(call)]
     try:
         try:
             outcome = main()
-        except SystemExit as ended:
-            outcome = ended.code
+        except SystemExit as error:
+            outcome = error.code
         if isinstance(outcome, str):
             print(outcome, file=sys.stderr)
         status = 1 if isinstance(outcome, str) else int(outcome or 0)
@@ -164,37 +165,37 @@ def _ros2(call: Mapping[str, Any]) -> int:
 
 
 def _spin_time(call: Mapping[str, Any]) -> list[str]:
-    words = shlex.split(call["command"])
-    if words[0] not in LOOKING or " ".join(words[:2]) in WITHOUT_SPIN_TIME:
+    arguments = shlex.split(call["command"])
+    if arguments[0] not in GRAPH_VERBS or " ".join(arguments[:2]) in WITHOUT_SPIN_TIME:
         return []
     if not is_stand_in():
-        if {words[0], " ".join(words[:2])} & set(BY_DAEMON):
+        if {arguments[0], " ".join(arguments[:2])} & set(BY_DAEMON):
             return []
-        no_daemon = [] if " ".join(words[:2]) in WITHOUT_CHOICE else ["--no-daemon"]
-        return [*no_daemon, "--spin-time", str(LISTING)]
-    listing = words[1] in ("list", "find") or call.get("status", 0) != 0
-    return ["--spin-time", str(LISTING if listing else NAMED)]
+        no_daemon = [] if " ".join(arguments[:2]) in WITHOUT_DAEMON_OPTION else ["--no-daemon"]
+        return [*no_daemon, "--spin-time", str(LIST_SECONDS)]
+    listing = arguments[1] in ("list", "find") or call.get("status", 0) != 0
+    return ["--spin-time", str(LIST_SECONDS if listing else NAMED_SECONDS)]
 
 
 def records(groups: Mapping[str, list[Mapping[str, Any]]], scratch: Path) -> Iterator[tuple[str, list[dict[str, Any]]]]:
-    """Run the commands of each group; yield its name and its records."""
+    """Run the commands of each group; yield the group's name and records."""
     for group, calls in groups.items():
         waiting, running = list(enumerate(calls)), dict[int, Running]()
-        found: dict[int, dict[str, Any]] = {}
+        finished: dict[int, dict[str, Any]] = {}
         while waiting or running:
-            while waiting and len(running) < (1 if group in IN_ORDER else TOGETHER):
+            while waiting and len(running) < (1 if group in IN_ORDER else MAX_PARALLEL):
                 number, call = waiting.pop(0)
                 running[number] = Running.start(call, scratch / group / str(number))
-            for number, one in list(running.items()):
-                if (record := one.ended()) is not None:
-                    found[number] = record
+            for number, command in list(running.items()):
+                if (record := command.poll()) is not None:
+                    finished[number] = record
                     del running[number]
             time.sleep(0.01)
-        yield group, [found[number] for number in range(len(calls))]
+        yield group, [finished[number] for number in range(len(calls))]
 
 
 def prepare() -> None:
-    """Import the modules that commands need once, for all forks."""
+    """Import the modules that commands need, once for all forks."""
     importlib.import_module("rclpy.action")
     if is_stand_in():
         for name in ("action", "interface", "launch", "node", "param", "pkg", "run", "service", "topic"):
@@ -205,7 +206,7 @@ def prepare() -> None:
 
 
 def run(out: TextIO, *names: str) -> None:
-    """Start the nodes, run the commands of all groups, or of those named, and write their records."""
+    """Start the nodes, run the commands of all groups or of the named ones, and write their records."""
     groups = {name: calls for name, calls in yaml.safe_load(RECORDS.read_text()).items() if name in names or not names}
     os.environ["AMENT_PREFIX_PATH"] = f"{PREFIX}{os.pathsep}{os.environ['AMENT_PREFIX_PATH']}"
     with tempfile.TemporaryDirectory() as scratch:
@@ -218,26 +219,26 @@ def run(out: TextIO, *names: str) -> None:
                 assert nodes.stdout.readline() == "ready\n"
                 prepare()
                 with _daemon():
-                    found = dict(records(groups, Path(scratch)))
+                    recorded = dict(records(groups, Path(scratch)))
             finally:
                 nodes.terminate()
-    version = {one.name: one.version for one in distributions()}.get("ros2cli", "stand-in")
+    version = {each.name: each.version for each in distributions()}.get("ros2cli", "stand-in")
     print(f"# Recorded with ros2cli {version}, Python {sys.version_info[0]}.{sys.version_info[1]}.", file=out)
-    yaml.dump(found, out, Dumper=_Readable, sort_keys=False, width=160, allow_unicode=True)
+    yaml.dump(recorded, out, Dumper=_Readable, sort_keys=False, width=160, allow_unicode=True)
 
 
 @contextmanager
 def _daemon() -> Iterator[None]:
-    """Run ros2cli's daemon, and let it discover the nodes, if this is the real one."""
+    """With the real ros2cli, run its daemon, and wait until it has discovered the nodes."""
     if is_stand_in():
         yield
         return
     ros2 = [sys.executable, "-m", "autograder.ros.ros2"]
     subprocess.run([*ros2, "daemon", "start"], check=True, stdout=subprocess.DEVNULL)
-    deadline = time.monotonic() + SECONDS
+    deadline = time.monotonic() + TIMEOUT
     while b"/lab/count" not in subprocess.run([*ros2, "action", "list"], check=True, stdout=subprocess.PIPE).stdout:
         if time.monotonic() > deadline:
-            raise TimeoutError("ros2cli's daemon does not see the nodes")
+            raise TimeoutError("ros2cli's daemon did not discover the nodes")
     try:
         yield
     finally:

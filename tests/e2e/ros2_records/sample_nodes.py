@@ -1,6 +1,6 @@
-"""The nodes that the `ros2` command is tried on: a talker, a helper with services, parameters and an action.
+"""The nodes for the tests of `ros2`: a talker, and a helper with a service, parameters and an action.
 
-Run as a script: prints `ready` once everything is up, and ends on SIGINT or SIGTERM.
+The script prints `ready` once its nodes are up, and ends on SIGINT or SIGTERM.
 """
 
 from __future__ import annotations
@@ -76,10 +76,10 @@ class Helper(Node):
         return response
 
     def execute(self, goal: Any) -> Any:
-        """Compute as many numbers as the order says; a goal above 100 never ends."""
+        """Compute the Fibonacci numbers up to the order; a goal above 100 never ends."""
         numbers = [0, 1]
         while len(numbers) <= goal.request.order:
-            # Slow enough for feedback to be heard before the result overtakes it.
+            # Slow enough for feedback to arrive before the result.
             self.ending.wait(0.1)
             numbers.append(numbers[-1] + numbers[-2])
             goal.publish_feedback(Fibonacci.Feedback(sequence=numbers))
@@ -104,7 +104,7 @@ def main() -> None:
     for node in (talker, helper):
         executor.add_node(node)
     print("ready", flush=True)
-    # On this thread: one that still spins while the interpreter ends makes the program abort.
+    # Spin on the main thread: another thread that still spins when the interpreter exits would abort the program.
     while not helper.ending.is_set():
         executor.spin_once(timeout_sec=0.1)
     executor.shutdown()

@@ -1,6 +1,6 @@
 """The stand-in for `ros2` has the same output and exit status as the real command, for the same commands and nodes.
 
-`records.yaml` was written with the real ros2cli by `runner.py`. If that is installed, this test compares it as well.
+`runner.py` wrote `records.yaml` with the real ros2cli. If that is installed, the tests compare it, too.
 """
 
 from __future__ import annotations
@@ -20,24 +20,24 @@ from tests.e2e.ros2_records.runner import HERE, RECORDS, is_stand_in
 EXPECTED: dict[str, list[dict[str, Any]]] = yaml.safe_load(RECORDS.read_text())
 # Commands for which the stand-in differs, with reasons.
 DIFFERENCES: dict[str, dict[str, Any]] = {
-    one.pop("command"): one for one in yaml.safe_load((HERE / "differences.yaml").read_text())
+    difference.pop("command"): difference for difference in yaml.safe_load((HERE / "differences.yaml").read_text())
 }
 CALLS = [(group, number) for group, calls in EXPECTED.items() for number in range(len(calls))]
 NOTHING = {"output": "", "error": "", "made": []}
 
 
 @pytest.fixture(scope="module")
-def found() -> dict[str, list[dict[str, Any]]]:
+def records() -> dict[str, list[dict[str, Any]]]:
     program = [sys.executable, "-m", "tests.e2e.ros2_records.runner"]
     with Domain() as domain:
         variables = {**os.environ, "ROS_DOMAIN_ID": str(domain.number)}
-        done = subprocess.run(program, cwd=ROOT, env=variables, stdout=subprocess.PIPE, text=True, check=True)
-    records: dict[str, list[dict[str, Any]]] = yaml.safe_load(done.stdout)
-    return records
+        process = subprocess.run(program, cwd=ROOT, env=variables, stdout=subprocess.PIPE, text=True, check=True)
+    recorded: dict[str, list[dict[str, Any]]] = yaml.safe_load(process.stdout)
+    return recorded
 
 
 @pytest.mark.promise("Differences are listed, with reasons,")
-def test_a_difference_is_one_and_has_its_reason() -> None:
+def test_each_listed_difference_exists_and_has_a_reason() -> None:
     calls = {call["command"]: {**NOTHING, **call} for calls in EXPECTED.values() for call in calls}
     for command, difference in DIFFERENCES.items():
         assert difference["reason"]
@@ -48,9 +48,9 @@ def test_a_difference_is_one_and_has_its_reason() -> None:
 @pytest.mark.parametrize(
     ("group", "number"), CALLS, ids=[f"{group}: {EXPECTED[group][number]['command']}" for group, number in CALLS]
 )
-def test_a_command_behaves_like_the_real_one(group: str, number: int, found: dict[str, list[dict[str, Any]]]) -> None:
+def test_a_command_behaves_like_the_real_one(group: str, number: int, records: dict[str, list[dict[str, Any]]]) -> None:
     expected = {**NOTHING, **EXPECTED[group][number]}
-    record = {**NOTHING, **found[group][number]}
+    record = {**NOTHING, **records[group][number]}
     if is_stand_in():
         expected |= DIFFERENCES.get(expected["command"], {})
         expected.pop("reason", None)

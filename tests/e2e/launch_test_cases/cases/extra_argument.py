@@ -1,4 +1,4 @@
-"""A function that takes what nobody gives."""
+"""A function with a parameter that gets no value."""
 
 import launch
 import launch_testing

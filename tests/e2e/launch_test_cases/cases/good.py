@@ -1,4 +1,4 @@
-"""Tests beside the launch and after its end, with all that a test may ask for."""
+"""Tests during the launch and after its end, with all arguments that a test can have."""
 
 import sys
 import unittest

@@ -1,4 +1,4 @@
-"""Tests that never may begin."""
+"""A launch that is not ready in time."""
 
 import unittest
 

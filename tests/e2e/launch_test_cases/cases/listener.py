@@ -1,4 +1,4 @@
-"""The tests begin when a process says so."""
+"""A launch that is ready once a process prints a text."""
 
 import sys
 import unittest
@@ -24,10 +24,10 @@ attempts = []
 @pytest.mark.launch_test
 def generate_test_description():
     server = ExecuteProcess(cmd=[sys.executable, "-c", SERVE], name="server")
-    heard = launch_testing.event_handlers.StdoutReadyListener(
+    on_output = launch_testing.event_handlers.StdoutReadyListener(
         target_action=server, ready_txt="serving", actions=[launch_testing.actions.ReadyToTest()]
     )
-    return launch.LaunchDescription([RegisterEventHandler(heard), server])
+    return launch.LaunchDescription([RegisterEventHandler(on_output), server])
 
 
 class TestBeside(unittest.TestCase):

@@ -1,4 +1,4 @@
-"""Without its mark, a file is like any other file of tests for pytest; `launch_test` runs it all the same."""
+"""A launch test without the mark, which is an ordinary file of tests for pytest but not for `launch_test`."""
 
 import unittest
 

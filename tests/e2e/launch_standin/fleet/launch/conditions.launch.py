@@ -1,4 +1,4 @@
-"""Processes that are started on condition."""
+"""Processes with conditions."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, LogInfo

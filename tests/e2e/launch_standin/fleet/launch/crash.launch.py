@@ -1,4 +1,4 @@
-"""One node dies while another one goes on."""
+"""A node that dies while another one continues."""
 
 from launch import LaunchDescription
 from launch_ros.actions import Node

@@ -1,4 +1,4 @@
-"""One thing after the other: start, output, exit, the end of the launch."""
+"""Handlers for the events start, output, exit and shutdown."""
 
 from launch import LaunchDescription
 from launch.actions import EmitEvent, ExecuteProcess, LogInfo, RegisterEventHandler, Shutdown

@@ -1,4 +1,4 @@
-"""Includes another launch file of the package, with arguments, in a group of its own."""
+"""Another launch file of the package, included with arguments in a separate group."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, GroupAction, IncludeLaunchDescription, LogInfo

@@ -1,4 +1,4 @@
-"""An executable that the package does not have, after a node that runs already."""
+"""A node that runs, and an executable that the package lacks."""
 
 from launch import LaunchDescription
 from launch_ros.actions import Node

@@ -1,4 +1,4 @@
-"""The launch file of a package, unmodified, and an observer that prints its nodes' parameters."""
+"""A package's own launch file, and an observer that prints the parameters of its nodes."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription

@@ -1,4 +1,4 @@
-"""Processes that have children: a shell that waits for one, and one that leaves its child behind."""
+"""Processes with children: a shell that waits for its child, and one that leaves it behind."""
 
 from launch import LaunchDescription
 from launch.actions import ExecuteProcess

@@ -1,4 +1,4 @@
-"""As many processes as an argument says, made by a function that runs at launch time."""
+"""A function that creates as many processes as an argument says, at launch time."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction

@@ -1,4 +1,4 @@
-"""Where output goes: screen, log file, a terminal; and what surrounds a process."""
+"""Processes with different destinations of output, environments and prefixes."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Parameters from everywhere: for all nodes, from a file with substitutions, from an argument."""
+"""Parameters for all nodes, from a file with substitutions, and from an argument."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, SetEnvironmentVariable

@@ -1,4 +1,4 @@
-"""A node without which the rest has no use: when it dies, everything ends."""
+"""A required node: when it dies, the launch ends."""
 
 from launch import LaunchDescription
 from launch.actions import Shutdown

@@ -1,4 +1,4 @@
-"""A process that dies and is started again, until it succeeds."""
+"""A process that dies and is restarted until it succeeds."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument

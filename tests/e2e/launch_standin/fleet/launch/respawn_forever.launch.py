@@ -1,4 +1,4 @@
-"""A process that dies at once and would be started again for ever, after a long pause each time."""
+"""A process that dies at once and would be restarted forever, after a long pause each time."""
 
 from launch import LaunchDescription
 from launch_ros.actions import Node

@@ -1,4 +1,4 @@
-"""One node with parameters of its own."""
+"""A node with parameters."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument

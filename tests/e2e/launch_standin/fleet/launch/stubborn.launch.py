@@ -1,4 +1,4 @@
-"""Processes that do not listen to SIGINT, one of them not to SIGTERM either."""
+"""A process that ignores SIGINT and, if `very` is set, SIGTERM."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument

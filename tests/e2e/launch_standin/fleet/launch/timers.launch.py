@@ -1,4 +1,4 @@
-"""Things that happen later, and one that does not, because its timer is cancelled."""
+"""Timers that fire, and one that is cancelled."""
 
 from launch import LaunchDescription
 from launch.actions import LogInfo, OpaqueFunction, TimerAction

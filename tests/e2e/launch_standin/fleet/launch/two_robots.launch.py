@@ -1,4 +1,4 @@
-"""Two robots in namespaces of their own, with a parameter file for both and a remapping for one."""
+"""Three robots in separate namespaces, with a common parameter file and two remappings."""
 
 from pathlib import Path
 
