@@ -17,12 +17,12 @@ TARGET = HERE.parents[1] / ".build" / "bench.json"
 
 
 def names() -> list[str]:
-    """The benchmarks there are."""
+    """Return the names of all benchmarks."""
     return sorted(path.stem.removeprefix("bench_") for path in HERE.glob("bench_*.py"))
 
 
 def machine() -> dict[str, str | int]:
-    """What the figures were measured on."""
+    """Describe the machine on which the figures are measured."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
@@ -37,19 +37,19 @@ def machine() -> dict[str, str | int]:
 
 
 def main() -> None:
-    """Measure, print and write."""
+    """Run the chosen benchmarks; print and write their figures."""
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks", description="Run the benchmarks.")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"which to run, all by default: {', '.join(names())}")
     chosen = parser.parse_args().names or names()
     if unknown := sorted(set(chosen) - set(names())):
-        parser.error(f"no benchmark {', '.join(unknown)}; there are {', '.join(names())}")
+        parser.error(f"unknown benchmark: {', '.join(unknown)}; choose from {', '.join(names())}")
     figures: dict[str, float] = {}
     for name in chosen:
-        found = importlib.import_module(f"tests.benchmarks.bench_{name}").figures()
-        for figure, value in found.items():
+        results = importlib.import_module(f"tests.benchmarks.bench_{name}").figures()
+        for figure, value in results.items():
             print(f"{figure:32} {value:12.4g}", flush=True)
-        figures |= found
-    if set(chosen) != set(names()) and TARGET.exists():  # a part of them: keep the others' figures
+        figures |= results
+    if set(chosen) != set(names()) and TARGET.exists():  # keep the figures of the benchmarks that did not run
         figures = {**json.loads(TARGET.read_text(encoding="utf-8"))["figures"], **figures}
     TARGET.parent.mkdir(exist_ok=True)
     TARGET.write_text(json.dumps({"figures": figures, "machine": machine()}, indent=2) + "\n", encoding="utf-8")

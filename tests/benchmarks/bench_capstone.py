@@ -1,4 +1,4 @@
-"""Measures the core-seconds of one grading of the capstone's reference, with warm caches, on an idle machine."""
+"""Measure the core-seconds of one grading of the capstone's reference, with warm caches, on an idle machine."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def figures() -> dict[str, float]:
 
 
 def _grade(folder: Path, name: str) -> None:
-    graded = grade_submission(Job(folder / "reference", ASSIGNMENT, name, 2026, folder / name))
-    if graded.score != graded.max_score:
-        raise RuntimeError(f"the reference has {graded.score:g} of {graded.max_score:g} points")
+    result = grade_submission(Job(folder / "reference", ASSIGNMENT, name, 2026, folder / name))
+    if result.score != result.max_score:
+        raise RuntimeError(f"the reference has {result.score:g} of {result.max_score:g} points")
 
 
 def _spent() -> float:

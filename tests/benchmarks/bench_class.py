@@ -1,4 +1,4 @@
-"""Measures how fast this machine grades a class: answers to 02 and 08, no two of them equal, caches warm."""
+"""Measure how fast this machine grades a class of different answers to 02 and 08, with warm caches."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from autograder.grade.batch import grade_all
 from autograder.suite import suites
 
 CLASSES = {"02_nodes": 6, "08_capstone": 4}  # an even number each, for two workers
-ONE_AND_TWO = "02_nodes"
+COMPARED = "02_nodes"
 
 
 def figures() -> dict[str, float]:
-    """Return the submissions a minute with two workers, and how many times faster than one these are."""
-    found = {}
+    """Return the submissions per minute with two workers, and the speed-up over one worker."""
+    results = {}
     with tempfile.TemporaryDirectory() as name:
         for assignment, students in CLASSES.items():
             folder = Path(name, assignment)
             answers = {str(number): _answer(folder, assignment, number) for number in range(students)}
             _seconds({"0": answers["0"]}, assignment, folder, 1)
             two = _seconds(answers, assignment, folder, 2)
-            found[f"class.submissions_per_minute_{assignment[:2]}"] = round(60 * students / two, 1)
-            if assignment == ONE_AND_TWO:
-                found["class.two_workers_ratio"] = round(_seconds(answers, assignment, folder, 1) / two, 2)
-    return found
+            results[f"class.submissions_per_minute_{assignment[:2]}"] = round(60 * students / two, 1)
+            if assignment == COMPARED:
+                results["class.two_workers_ratio"] = round(_seconds(answers, assignment, folder, 1) / two, 2)
+    return results
 
 
 def _answer(folder: Path, assignment: str, number: int) -> Path:
@@ -39,9 +39,9 @@ def _answer(folder: Path, assignment: str, number: int) -> Path:
 
 
 def _seconds(answers: Mapping[str, Path], assignment: str, folder: Path, jobs: int) -> float:
-    began = time.monotonic()
+    start = time.monotonic()
     results = grade_all(answers, assignment, seed=DEFAULT_SEED, out=folder / "out", jobs=jobs)
-    spent = time.monotonic() - began
+    spent = time.monotonic() - start
     if any(result.score != result.max_score for result in results):
-        raise RuntimeError(f"not each reference of {assignment} has all points")
+        raise RuntimeError(f"not every reference of {assignment} got full marks")
     return spent

@@ -1,4 +1,4 @@
-"""Measures the overhead of a cluster. A pause and a reply of usual size replace each grading."""
+"""Measure the overhead of a cluster. A pause and a reply of usual size replace each grading."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from autograder.submission.intake import detect_layout
 
 ASSIGNMENT = "02_nodes"
 SUBMISSIONS, THREADS = 400, 16
-SOURCE = "x = 1\n" * 4000  # 24 kB, as an answer to 02 has
+SOURCE = "x = 1\n" * 4000  # 24 kB, the size of an answer to 02
 
 
 def figures() -> dict[str, float]:
-    """Return the overhead of a submission in milliseconds, with a grading that takes no time."""
+    """Return the overhead per submission in milliseconds, measured with gradings that take no time."""
     with connected(LOCAL, THREADS, Path()) as client:
         spent, _ = seconds(client, SUBMISSIONS, [0.0])
     return {"cluster.overhead_ms": round(1000 * spent / SUBMISSIONS, 2)}
@@ -38,11 +38,11 @@ def seconds(client: Client, submissions: int, pauses: Sequence[float]) -> tuple[
     """Return the seconds that a class takes on a cluster, and the sum of the submissions' pauses."""
     with tempfile.TemporaryDirectory() as name:
         jobs = [_job(Path(name), number) for number in range(submissions)]
-        grade_on(client, jobs[:1], lambda _: None, report=print, grade=partial(_answered, [0.0]))  # imports
-        began = time.monotonic()
+        grade_on(client, jobs[:1], lambda _: None, report=print, grade=partial(_reply, [0.0]))  # imports modules
+        start = time.monotonic()
         results: list[Result] = []
-        grade_on(client, jobs, results.append, report=print, grade=partial(_answered, pauses))
-        spent = time.monotonic() - began
+        grade_on(client, jobs, results.append, report=print, grade=partial(_reply, pauses))
+        spent = time.monotonic() - start
     assert len({result.submission_sha256 for result in results}) == submissions
     return spent, sum(result.seconds for result in results)
 
@@ -55,11 +55,11 @@ def _job(folder: Path, number: int) -> Job:
     return Job(source.parents[1], ASSIGNMENT, str(number), 7, folder / "out" / str(number), Isolation.PROCESS)
 
 
-def _answered(pauses: Sequence[float], data: bytes) -> bytes:
+def _reply(pauses: Sequence[float], data: bytes) -> bytes:
     task = Task.unpack(data)
     sha256 = detect_layout(list(task.files), ASSIGNMENT).sha256
     pause = pauses[int(sha256, 16) % len(pauses)]
     time.sleep(pause)
     result = refused(task.job, Diagnosis(Kind.BUILD_FAILED, "no", "x" * 4000))
-    told = replace(result, submission_sha256=sha256, seconds=pause).to_json()
-    return Reply({"result.json": json.dumps(told).encode()}).pack()
+    graded = replace(result, submission_sha256=sha256, seconds=pause).to_json()
+    return Reply({"result.json": json.dumps(graded).encode()}).pack()

@@ -1,4 +1,4 @@
-"""Measures the cost of a package of a message, a service and an action: as plain classes, and built by colcon."""
+"""Measure the cost of a package with a message, a service and an action: as plain classes, and built by colcon."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ RUNS = 3
 
 
 def figures() -> dict[str, float]:
-    """Return seconds and, where there is something to compute, core-seconds: medians of several runs, colcon's of one.
+    """Return seconds and core-seconds: the medians of several runs, or of one run of colcon.
 
     `interface.cold_*` makes the classes and their type supports, `interface.cached_s` finds them in the cache, and
     `interface.colcon_*` is `colcon build`.
@@ -51,7 +51,7 @@ def figures() -> dict[str, float]:
 
 
 def _make(texts: Texts) -> None:
-    """Make the classes, and the type supports for which rclpy asks."""
+    """Make the classes and the type supports that rclpy needs."""
     package = classes(((PACKAGE, texts),))
     action: Any = package.action.DriveDistance
     services = (package.srv.CheckTrip, action.Impl.SendGoalService, action.Impl.GetResultService)
@@ -64,10 +64,10 @@ def _colcon(folder: Path) -> None:
 
 
 def _cost(work: Callable[[], object]) -> tuple[float, float]:
-    """Return the seconds and the core-seconds that something takes, with all processes that it starts."""
-    began, before = time.perf_counter(), _spent()
+    """Return the seconds and core-seconds of a function, including all processes that it starts."""
+    start, before = time.perf_counter(), _spent()
     work()
-    return time.perf_counter() - began, _spent() - before
+    return time.perf_counter() - start, _spent() - before
 
 
 def _spent() -> float:

@@ -1,7 +1,8 @@
-"""Measures how many steps a second the grader makes: with one node, and with three that exchange messages.
+"""Measure the steps per second in lockstep, with one node and with three that exchange messages.
 
-The one is the reference controller at 10 Hz, shown a scan of 360 beams each step. The three pass each step's message
-on, from one to the next and to the grader. The nodes run in sandboxes, the grader's side in a cell, as in grading.
+The single node is the reference controller at 10 Hz, which gets a scan of 360 beams in each step. The three nodes pass
+each step's message on to the next node, and at last to the grader. The nodes run in sandboxes, and the grader in a
+worker sandbox, as in a grading.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from autograder.run.sandbox.worker_sandbox import run_in_worker_sandbox
 STEPS = 2000
 CHAIN_STEPS = 500
 RUNS = 5
-# A cell's process is started in /, from where no path leads to this module.
+# A worker sandbox's process starts in /, where Python would not find this module.
 RUN = f"""
 import json, sys
 from pathlib import Path
@@ -37,7 +38,7 @@ class Relay(Node):
     def __init__(self):
         super().__init__('{name}')
         self.out = self.create_publisher(String, '{out}', 10)
-        self.create_subscription(String, '{heard}', self.out.publish, 10)
+        self.create_subscription(String, '{source}', self.out.publish, 10)
         self.create_timer(0.1, lambda: None)
 rclpy.init()
 try:
@@ -57,7 +58,7 @@ def figures() -> dict[str, float]:
 
 
 def measure(scratch: Path) -> dict[str, list[float]]:
-    """Measure in a cell's scratch folder; steps a second, one figure a run."""
+    """Return the steps per second of each run; this function runs in a worker sandbox."""
     from autograder.ros import activate
 
     ros = activate()
@@ -65,12 +66,14 @@ def measure(scratch: Path) -> dict[str, list[float]]:
 
     (scratch / "home").mkdir()
     return {
-        "lockstep.steps_per_s": _one(Workspace(scratch / "one", ros, scratch / "home")),
-        "lockstep.three_programs_steps_per_s": _three(Workspace(scratch / "three", ros, scratch / "home")),
+        "lockstep.steps_per_s": _measure_one_node(Workspace(scratch / "one", ros, scratch / "home")),
+        "lockstep.three_programs_steps_per_s": _measure_three_nodes(
+            Workspace(scratch / "three", ros, scratch / "home")
+        ),
     }
 
 
-def _one(workspace: Any) -> list[float]:
+def _measure_one_node(workspace: Any) -> list[float]:
     from autograder.author.verification.mutants import write_reference
     from autograder.building.build import build
     from autograder.checks.ch02_nodes.support.robot import Robot
@@ -82,16 +85,16 @@ def _one(workspace: Any) -> list[float]:
     rates = []
     for _ in range(RUNS):
         with Robot(workspace) as robot:
-            began = time.perf_counter()
+            start = time.perf_counter()
             for _ in range(STEPS):
                 robot.show(message)
-            rates.append(STEPS / (time.perf_counter() - began))
+            rates.append(STEPS / (time.perf_counter() - start))
             if len(robot.messages("/cmd_vel")) != STEPS:
                 raise RuntimeError("the node did not answer every step")
     return rates
 
 
-def _three(workspace: Any) -> list[float]:
+def _measure_three_nodes(workspace: Any) -> list[float]:
     from std_msgs.msg import String
 
     from autograder.harness import Program, SteppedHarness
@@ -99,19 +102,19 @@ def _three(workspace: Any) -> list[float]:
     folder = workspace.install / "chain" / "lib" / "chain"
     folder.mkdir(parents=True)
     topics = ("in", *CHAIN)
-    for heard, name in zip(topics, CHAIN, strict=False):
-        (folder / name).write_text(RELAY.format(name=name, heard=heard, out=name))
+    for source, name in zip(topics, CHAIN, strict=False):
+        (folder / name).write_text(RELAY.format(name=name, source=source, out=name))
     programs = tuple(Program("chain", name) for name in CHAIN)
     rates = []
     for _ in range(RUNS):
         with SteppedHarness(
             workspace, programs=programs, publishes={"/in": String}, subscribes={"/third": String}
         ) as harness:
-            began = time.perf_counter()
+            start = time.perf_counter()
             for number in range(CHAIN_STEPS):
                 harness.publish("/in", String(data=str(number)))
                 harness.step(harness.tick_ns)
-            rates.append(CHAIN_STEPS / (time.perf_counter() - began))
+            rates.append(CHAIN_STEPS / (time.perf_counter() - start))
             if len(harness.messages("/third")) != CHAIN_STEPS:
-                raise RuntimeError("the chain did not pass every message on")
+                raise RuntimeError("the chain did not pass on every message")
     return rates

@@ -1,8 +1,9 @@
-"""Measures the simulator on one core, and ir-sim in the same run, in a 20 m x 20 m room of 40 walls.
+"""Measure the simulator on one core, and ir-sim in the same run, in a 20 m x 20 m room of 40 walls.
 
-A scan is the cast itself: exact ranges in double precision for a pose. `observe` adds what a LaserScan needs. The
-loop is 50 Hz physics and 10 Hz scans through the public functions, in open space and against a wall. All subjects take
-turns, round after round; a figure is the least of the rounds' medians, so that a busy machine disturbs it little.
+A scan is the ray casting alone: exact ranges in double precision for a pose. `observe` adds what a LaserScan needs. The
+loop runs physics at 50 Hz and scans at 10 Hz through the public functions, in open space and against a wall. In each of
+several rounds, all subjects are measured in turn. A figure is the smallest median of a round, which other load on the
+machine disturbs little.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ SECONDS = 10.0
 
 
 def room(walls: int, longest: float, seed: int = 1) -> World:
-    """A closed room with the given number of walls, half of `longest` to `longest` metres long."""
+    """Return a closed room with the given number of walls, half of `longest` to `longest` metres long."""
     random = np.random.default_rng(seed)
     begin = random.uniform(-10, 10, (walls - 4, 2))
     angle = random.uniform(0, math.tau, walls - 4)
@@ -46,7 +47,7 @@ def room(walls: int, longest: float, seed: int = 1) -> World:
 
 
 def open_space(begin: NDArray[np.float64], end: NDArray[np.float64]) -> tuple[float, float]:
-    """The point of a lattice that is farthest from all walls."""
+    """Return the point of a lattice that is farthest from all walls."""
     lattice = np.stack(np.meshgrid(np.linspace(-9, 9, 37), np.linspace(-9, 9, 37)), axis=-1).reshape(-1, 1, 2)
     edge = end - begin
     t = np.clip(((lattice - begin) * edge).sum(axis=2) / (edge * edge).sum(axis=1), 0, 1)
@@ -56,7 +57,7 @@ def open_space(begin: NDArray[np.float64], end: NDArray[np.float64]) -> tuple[fl
 
 
 def caster(world: World, lidar: LidarSpec, engine: str) -> Callable[[Pose], object]:
-    """The engine's own scan, called as `observe` calls it."""
+    """Return the engine's own scan, called as by `observe`."""
     scene = Simulation(world, (RobotSpec(lidar=lidar),), engine=engine).scene  # type: ignore[arg-type]
     beams = scene.bodies[0].beams
     assert beams is not None
@@ -71,7 +72,7 @@ def caster(world: World, lidar: LidarSpec, engine: str) -> Callable[[Pose], obje
 
 
 def observer(world: World, engine: str) -> Callable[[Pose], object]:
-    """The whole of `observe`: a LaserScan's fields in single precision."""
+    """Return a call of `observe`, which yields a LaserScan's fields in single precision."""
     simulation = Simulation(world, (RobotSpec(lidar=FAR_360),), engine=engine)  # type: ignore[arg-type]
     state = start(simulation)
     robot = state.robots[0]
@@ -79,7 +80,7 @@ def observer(world: World, engine: str) -> Callable[[Pose], object]:
 
 
 def ir_sim(world: World) -> Callable[[Pose], object]:
-    """ir-sim's lidar of 360 beams among the same walls."""
+    """Return a scan by ir-sim's lidar of 360 beams between the same walls."""
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
         import irsim
 
@@ -99,13 +100,13 @@ def ir_sim(world: World) -> Callable[[Pose], object]:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "world.yaml"
             path.write_text(yaml.safe_dump({"world": size, "robot": [robot], "obstacle": walls}), encoding="utf-8")
-            there = irsim.make(str(path), display=False, disable_all_plot=True, log_level="ERROR")
-    sensor = there.robot.lidar
+            environment = irsim.make(str(path), display=False, disable_all_plot=True, log_level="ERROR")
+    sensor = environment.robot.lidar
     return lambda pose: sensor.step(np.array([[pose.x], [pose.y], [pose.theta]]))
 
 
 def loop(world: World, engine: str, seconds: float, turn: float = 0.8) -> Callable[[], object]:
-    """Drive in a circle, or straight on: a scan, a command and five ticks of physics, ten times a simulated second."""
+    """Return a drive, in a circle or straight on, with a scan, a command and five ticks of physics every 0.1 s."""
     simulation = Simulation(world, (RobotSpec(lidar=FAR_360),), engine=engine)  # type: ignore[arg-type]
     first = start(simulation)
     command = Command(0.2, turn)
@@ -121,7 +122,7 @@ def loop(world: World, engine: str, seconds: float, turn: float = 0.8) -> Callab
 
 
 def median_us(call: Callable[[Pose], object], poses: list[Pose], calls: int) -> float:
-    """The median over some poses of the time of one call in microseconds."""
+    """Return the time of one call in microseconds, as the median over some poses."""
     times = []
     for pose in poses:
         begin = time.perf_counter()
@@ -132,30 +133,34 @@ def median_us(call: Callable[[Pose], object], poses: list[Pose], calls: int) -> 
 
 
 def import_cost() -> tuple[float, float]:
-    """Seconds and peak megabytes of `import sim` in a fresh process, numpy and all."""
+    """Return the seconds and the peak megabytes of `import sim` in a new process, including numpy."""
     script = (
         "import time; t = time.perf_counter(); import sim; s = time.perf_counter() - t; "
         "peak = next(line for line in open('/proc/self/status') if line.startswith('VmHWM')); "
         "print(s, int(peak.split()[1]) / 1024)"
     )
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
-    done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True)
-    seconds, megabytes = map(float, done.stdout.split())
+    process = subprocess.run(
+        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True
+    )
+    seconds, megabytes = map(float, process.stdout.split())
     return seconds, megabytes
 
 
-def figures(rounds: int = 15, places: int = 15, seconds: float = SECONDS, *, compare: bool = True) -> dict[str, float]:
-    """Measure everything, the fastest of several rounds.
+def figures(
+    rounds: int = 15, poses_per_round: int = 15, seconds: float = SECONDS, *, compare: bool = True
+) -> dict[str, float]:
+    """Return all figures, each the best of several rounds.
 
     Args:
-        rounds: how often everything is measured.
-        places: poses of a round.
+        rounds: the number of measurements of everything.
+        poses_per_round: the number of poses in each round.
         seconds: simulated seconds of each loop.
-        compare: whether ir-sim, which only `make bench` installs, is measured too.
+        compare: whether ir-sim, which only `make bench` installs, is also measured.
     """
     small, large = room(40, 4.0), room(10_000, 0.4)
     random = np.random.default_rng(2)
-    poses = [Pose(*random.uniform(-9, 9, 2).tolist(), float(random.uniform(-3, 3))) for _ in range(places)]
+    poses = [Pose(*random.uniform(-9, 9, 2).tolist(), float(random.uniform(-3, 3))) for _ in range(poses_per_round)]
     subjects: dict[str, tuple[Callable[[Pose], object], int]] = {
         "sim.scan360_numpy_us": (caster(small, FAR_360, "numpy"), 10),
         "sim.scan360_numba_us": (caster(small, FAR_360, "numba"), 100),
@@ -168,7 +173,7 @@ def figures(rounds: int = 15, places: int = 15, seconds: float = SECONDS, *, com
     if compare:
         subjects["sim.scan360_irsim_us"] = (ir_sim(small), 1)
     loops = {f"sim.loop_{engine}_rtf": loop(small, engine, seconds) for engine in ("numpy", "numba")}
-    closet = World.from_segments(box(1.0, 1.0).tolist(), name="a closet")  # a robot soon leans on its wall
+    closet = World.from_segments(box(1.0, 1.0).tolist(), name="a closet")  # a robot soon touches its wall
     loops |= {f"sim.contact_{engine}_rtf": loop(closet, engine, seconds, turn=0.0) for engine in ("numpy", "numba")}
     for call, _ in subjects.values():  # compile, and warm the caches
         call(poses[0])

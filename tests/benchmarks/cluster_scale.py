@@ -1,8 +1,8 @@
-"""Measure how a class goes faster on more workers, and draw it for docs/cluster.md.
+"""Measure and draw the speed-up of a class by more workers, for docs/cluster.md.
 
-`python -m tests.benchmarks.cluster_scale RESULTS` takes the durations of gradings from stored results; each submission
-waits for one of them instead of being graded. So 64 workers fit on any machine. They are Dask's own, with a connection
-each, and share a process; the scheduler runs in the same process. `... draw` draws stored measurements again.
+`python -m tests.benchmarks.cluster_scale RESULTS` takes the durations of gradings from stored results. A pause of such
+a duration replaces each grading, so that 64 workers fit on any machine. These are Dask workers with a connection each,
+in one process with the scheduler. `... draw` draws stored measurements again.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ from tests.benchmarks.bench_cluster import seconds
 
 MEASURED = Path(__file__).parents[2] / "docs" / "scale.json"
 WORKERS = (1, 4, 16, 64)
-SUBMISSIONS = 5000  # for the most workers; fewer have fewer, so that all take equally long
+SUBMISSIONS = 5000  # for 64 workers; fewer workers get fewer, so that all clusters take equally long
 
 
 def main(results: str) -> None:
-    """Measure all at the same time, since they wait, and draw."""
+    """Measure all clusters at the same time, which is possible because they only wait, and draw the result."""
     if results != "draw":
-        pauses = [stored.result.seconds for stored in load(Path(results))]
+        pauses = [result.seconds for result in load(Path(results))]
         commands = [[sys.executable, "-m", __spec__.name, json.dumps(pauses), str(workers)] for workers in WORKERS]
         running = [subprocess.Popen(command, stdout=subprocess.PIPE) for command in commands]
         measured = [json.loads(process.communicate()[0]) for process in running]
-        told = {"cores": os.cpu_count(), "pauses": sorted(set(pauses)), "measured": measured}
-        MEASURED.write_text(json.dumps(told, indent=1) + "\n")
+        figures = {"cores": os.cpu_count(), "pauses": sorted(set(pauses)), "measured": measured}
+        MEASURED.write_text(json.dumps(figures, indent=1) + "\n")
     draw()
 
 

@@ -1,4 +1,4 @@
-"""Grades the reference of the capstone many times: each grading must have all points and the same traces, bit for bit.
+"""Grade the reference of the capstone many times: each time must give full marks and the same traces, bit for bit.
 
     make capstones TIMES=1000
 
@@ -31,7 +31,7 @@ from autograder.suite import suites
 
 ASSIGNMENT = "08_capstone"
 SEED = 2026
-CROWD = 3
+CROWD = 3  # parallel gradings for each core, under load
 REPORT = ROOT / ".build" / "capstones.jsonl"
 
 
@@ -50,15 +50,15 @@ class Grading:
 
 def stored(report: Path, version: str) -> dict[int, Grading]:
     """Return the gradings of one version in a report, by their numbers. An incomplete line is ignored."""
-    found = {}
+    gradings_by_number = {}
     for line in report.read_text().splitlines() if report.is_file() else ():
         try:
             grading = Grading(**{**(data := json.loads(line)), "lost": tuple(data["lost"])})
         except (ValueError, TypeError, KeyError):
             continue
         if grading.version == version:
-            found[grading.number] = grading
-    return found
+            gradings_by_number[grading.number] = grading
+    return gradings_by_number
 
 
 def cut_off(report: Path) -> bool:
@@ -68,11 +68,11 @@ def cut_off(report: Path) -> bool:
 
 def grade(folder: Path, version: str, at_once: int, number: int) -> Grading:
     """Grade the reference in `folder`."""
-    began = time.monotonic()
+    start = time.monotonic()
     result = grade_submission(Job(folder / "reference", ASSIGNMENT, "reference", SEED, folder / str(number)))
     traces = {artifact.name: artifact.sha256[:16] for artifact in result.artifacts}
     lost = tuple(f"{check.id}: {check.message}" for check in result.checks if check.outcome is not Outcome.PASSED)
-    percent, seconds = 100.0 * result.score / result.max_score, time.monotonic() - began
+    percent, seconds = 100.0 * result.score / result.max_score, time.monotonic() - start
     return Grading(version, number, at_once, percent, lost, traces, round(seconds, 2))
 
 
@@ -93,13 +93,13 @@ def gradings(folder: Path, version: str, times: int, known: dict[int, Grading]) 
 
 
 def main() -> int:
-    """Grade it the given number of times, and report the differences."""
+    """Grade the reference the given number of times, and report the differences."""
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.repeat_capstone", description="See above.")
     parser.add_argument("-n", type=int, default=10, metavar="N", help="how often (default: 10)")
     parser.add_argument("--report", type=Path, default=REPORT, help=f"default: {REPORT.relative_to(ROOT)}")
     args = parser.parse_args()
     if args.n < 1:
-        parser.error("-n has to be 1 or more")
+        parser.error("-n must be 1 or more")
     version = suites.hidden(ASSIGNMENT).version
     known = {number: grading for number, grading in stored(args.report, version).items() if number <= args.n}
     print(f"checks and grader {version}: {len(known)} of {args.n} are graded", flush=True)
@@ -116,14 +116,14 @@ def main() -> int:
     return summarise(list(known.values()))
 
 
-def summarise(found: list[Grading]) -> int:
+def summarise(known: list[Grading]) -> int:
     """Report how many gradings agree, and describe how each of the others differs. Return the exit status."""
-    first = found[0].traces
-    bad = [grading for grading in found if grading.percent != 100.0 or not grading.traces or grading.traces != first]
+    first = known[0].traces
+    bad = [grading for grading in known if grading.percent != 100.0 or not grading.traces or grading.traces != first]
     for grading in bad:
         different = ", ".join(sorted({name for name, _ in grading.traces.items() ^ first.items()}))
         print(f"number {grading.number}: {grading.percent:g} %, other traces: {different or 'none'}")
-    print(f"{len(found) - len(bad)} of {len(found)} with all points and the same traces: {first}")
+    print(f"{len(known) - len(bad)} of {len(known)} with all points and the same traces: {first}")
     return 1 if bad else 0
 
 

@@ -1,4 +1,4 @@
-"""Finds images without alternative text in executed notebooks."""
+"""Find images without alternative text in executed notebooks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the cells of an executed notebook show."""
+"""The text that cells of an executed notebook show."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from nbformat import NotebookNode
 
 
-def said(cells: Iterable[NotebookNode]) -> str:
+def text_of(cells: Iterable[NotebookNode]) -> str:
     """Return all text that executed cells show."""
     outputs = [output for cell in cells for output in cell.get("outputs", [])]
     return "\n".join(output.get("text") or output.get("data", {}).get("text/plain", "") for output in outputs)

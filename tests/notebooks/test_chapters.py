@@ -1,4 +1,4 @@
-"""Every chapter runs to its end solved and as released, and is as a notebook of the course must be."""
+"""Every chapter runs to its end, solved and as released, and follows the rules for notebooks."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from autograder.submission.intake.exercises import SOURCE, exercises_of
 from autograder.submission.intake.writefile import written_file
 from autograder.suite import suites
 from tests.notebooks.alternative_texts import images_without_alt
-from tests.notebooks.outputs import said
+from tests.notebooks.outputs import text_of
 
 CHAPTERS = chapters()
 STILL_TO_BE_WRITTEN = "still to be written"
-MARKS = ("# BEGIN SOLUTION", "# END SOLUTION")
+SOLUTION_MARKERS = ("# BEGIN SOLUTION", "# END SOLUTION")
 each_chapter = pytest.mark.parametrize("chapter", CHAPTERS, ids=lambda chapter: chapter.assignment)
 
 
@@ -34,15 +34,15 @@ def test_the_course_has_at_least_one_chapter() -> None:
     assert CHAPTERS
 
 
-def test_the_chapters_are_up_to_date_clean_and_worth_what_their_suites_say() -> None:
-    checked = subprocess.run(
+def test_course_check_reports_nothing() -> None:
+    process = subprocess.run(
         [sys.executable, "-m", "autograder", "course", "check"], cwd=ROOT, text=True, capture_output=True
     )
-    assert (checked.returncode, checked.stdout) == (0, ""), checked.stdout + checked.stderr
+    assert (process.returncode, process.stdout) == (0, ""), process.stdout + process.stderr
 
 
 @each_chapter
-def test_a_release_holds_no_line_of_its_answers(chapter: Chapter) -> None:
+def test_a_release_contains_no_line_of_its_answers(chapter: Chapter) -> None:
     source, released = chapter.read(), in_form(chapter.read(), Form.RELEASED)
     for before, after in zip(source.cells, released.cells, strict=True):
         for answer in re.findall(r"# BEGIN SOLUTION\n(.*?)# END SOLUTION", before.source, re.DOTALL):
@@ -60,28 +60,28 @@ def test_a_release_folds_the_code_of_its_grade_cells_and_of_no_other(chapter: Ch
 def test_no_text_mentions_the_printed_chapter_or_a_textbook_that_00_does_not_introduce(chapter: Chapter) -> None:
     texts = [cell.source for cell in chapter.read().cells]
     assert [text for text in texts if re.search(r"\b[Tt]he (printed )?chapter\b", text)] == []
-    met = "call it *the textbook*" in " ".join(CHAPTERS[0].read().cells[-1].source.split())
-    assert met or not any("textbook" in text for text in texts)
+    is_introduced = "call it *the textbook*" in " ".join(CHAPTERS[0].read().cells[-1].source.split())
+    assert is_introduced or not any("textbook" in text for text in texts)
 
 
 @each_chapter
 def test_a_given_package_installs_only_executables_that_exist_in_the_chapter(chapter: Chapter) -> None:
     written = {cell.source.split()[1] for cell in chapter.read().cells if cell.source.startswith("%%writefile")}
-    there = {str(path.relative_to(chapter.folder)) for path in chapter.folder.glob("ws/src/**/*.py")} | written
+    modules = {str(path.relative_to(chapter.folder)) for path in chapter.folder.glob("ws/src/**/*.py")} | written
     for setup in chapter.folder.glob("ws/src/*/setup.py"):
         scripts = re.findall(r"'\w+ = ([\w.]+):main'", setup.read_text())
         assert scripts
         for script in scripts:
             module = setup.parent.relative_to(chapter.folder) / (script.replace(".", "/") + ".py")
-            assert str(module) in there
+            assert str(module) in modules
 
 
 def meaning(cell: str) -> object:
-    """Return what a code cell means to whoever reads what it writes: Python, YAML, XML, or lines with `#` comments."""
-    head, _, body = cell.partition("\n")
-    suffix = Path(head).suffix if head.startswith("%%writefile ") else ".py"
+    """Return the meaning of a code cell or of the file that it writes: Python, YAML, XML or lines with `#` comments."""
+    magic, _, body = cell.partition("\n")
+    suffix = Path(magic).suffix if magic.startswith("%%writefile ") else ".py"
     if suffix == ".py":
-        return ast.dump(ast.parse(body if head.startswith("%%writefile ") else cell))
+        return ast.dump(ast.parse(body if magic.startswith("%%writefile ") else cell))
     if suffix == ".yaml":
         return yaml.safe_load(body)
     if suffix == ".xml":
@@ -96,14 +96,14 @@ def text(element: ElementTree.Element) -> str:
 
 @each_chapter
 def test_a_solved_notebook_is_the_source_without_the_comments_around_its_answers(chapter: Chapter) -> None:
-    """So the source runs as a student's solved notebook does, and need not run in both forms."""
+    """So the source runs like a student's solved notebook, and only one of the two needs a run."""
     source, solved = chapter.read(), in_form(chapter.read(), Form.SOLVED)
     assert len(source.cells) == len(solved.cells)
     for before, after in zip(source.cells, solved.cells, strict=True):
         assert {**before, "source": ""} == {**after, "source": ""}
         if before.cell_type == "code" and before.source != after.source:
-            kept = [line for line in before.source.split("\n") if line.strip() not in MARKS]
-            assert after.source.split("\n") == kept
+            lines = [line for line in before.source.split("\n") if line.strip() not in SOLUTION_MARKERS]
+            assert after.source.split("\n") == lines
             assert meaning(after.source) == meaning(before.source)
 
 
@@ -118,36 +118,36 @@ def runs() -> list[ParameterSet]:
 
 @pytest.mark.promise("The tests execute the notebooks and grade some of the submissions with a known mark.")
 @pytest.mark.slow
-@pytest.mark.timeout(1200)  # half a minute on an idle machine; the bound is for a stuck kernel
+@pytest.mark.timeout(1200)  # takes half a minute on an idle machine; the limit ends a kernel that hangs
 @pytest.mark.parametrize(("chapter", "form"), runs())
 def test_a_chapter_runs_to_its_end_without_a_warning(chapter: Chapter, form: Form, tmp_path: Path) -> None:
     packages = tmp_path / "src"
     result = run_notebook(chapter, form, timeout=400, report=tmp_path / "report.ipynb", packages=packages)
     assert result.ok, result.failure
     if form is Form.SOURCE:
-        assert made_without_a_word(chapter, packages) == set()
+        assert undeclared_files(chapter, packages) == set()
     assert images_without_alt(result.notebook) == []
-    counts = re.findall(r"(\d+) of (\d+) visible checks passed", said(result.notebook.cells))
+    counts = re.findall(r"(\d+) of (\d+) visible checks passed", text_of(result.notebook.cells))
     solved = form is not Form.RELEASED
-    assert all((passed == every) is solved for passed, every in counts)
+    assert all((passed == total) is solved for passed, total in counts)
     if counts:
-        assert (STILL_TO_BE_WRITTEN in said(result.notebook.cells)) is not solved
+        assert (STILL_TO_BE_WRITTEN in text_of(result.notebook.cells)) is not solved
 
 
-def made_without_a_word(chapter: Chapter, packages: Path) -> set[str]:
-    """Return the files of an answer that the notebook made, and that neither `%%writefile` nor metadata name."""
+def undeclared_files(chapter: Chapter, packages: Path) -> set[str]:
+    """Return the answer's files that the notebook created and that neither `%%writefile` nor the metadata name."""
     exercises = exercises_of(chapter.assignment)
     assert exercises is not None
     graded = [name for name in suites.graded_assignments() if name == chapter.assignment]
     sources = suites.hidden(chapter.assignment).sources if graded else ()
-    written = {found[0] for cell in chapter.read().cells if (found := written_file(cell.source)) is not None}
-    made = set()
+    written = {file[0] for cell in chapter.read().cells if (file := written_file(cell.source)) is not None}
+    undeclared = set()
     for path in (path for source in sources for path in (packages / source).rglob("*") if path.is_file()):
         name = PurePosixPath(path.relative_to(packages))
         given = exercises.given.get(name)
         if name not in exercises.makes and SOURCE / name not in written:
-            made |= {str(name)} if given is None or given.data != path.read_bytes() else set()
-    return made
+            undeclared |= {str(name)} if given is None or given.data != path.read_bytes() else set()
+    return undeclared
 
 
 def drawing(figure: Path) -> str:

@@ -1,4 +1,4 @@
-"""The packages of chapter 01_package_structure are broken as described, and its repairs lead to the reference."""
+"""The packages of 01_package_structure have the described faults, and the repairs lead to the reference."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_the_repairs_in_the_notebook_turn_the_broken_package_into_the_reference(
     exec(source, {"Path": Path})
     assert "is not there" not in capsys.readouterr().out
     assert _texts(workspace / "wall_alarm") == _texts(SOLUTIONS / "wall_alarm")
-    exec(source, {"Path": Path})  # a cell may be run twice
+    exec(source, {"Path": Path})  # a student may run a cell twice
     assert _texts(workspace / "wall_alarm") == _texts(SOLUTIONS / "wall_alarm")
 
 
@@ -59,7 +59,12 @@ def test_the_files_that_the_notebook_writes_turn_the_given_ones_into_the_referen
 def test_the_broken_package_lacks_every_dependency_that_the_checks_count(workspace: Path) -> None:
     folder = workspace / "wall_alarm"
     missing = imports.missing(folder, manifest.read(folder))
-    assert [each.module for each in missing["exec"]] == ["ament_index_python", "launch", "launch_ros", "numpy"]
+    assert [dependency.module for dependency in missing["exec"]] == [
+        "ament_index_python",
+        "launch",
+        "launch_ros",
+        "numpy",
+    ]
     assert missing["test"] == ()
 
 

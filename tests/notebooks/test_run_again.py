@@ -14,18 +14,18 @@ from autograder.author.course.execute import execute, working_copy
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import Chapter, chapters
 from autograder.ros.domains import Domain
-from tests.notebooks.outputs import said
+from tests.notebooks.outputs import text_of
 
-# What the text around a cell relies on: which error is shown, how many checks passed, what was not found.
+# Parts of an output on which the text around a cell relies: the error, the number of passed checks, what is missing.
 RELIED_ON = re.compile(
     r"\b[A-Z]\w*(?:Error|Exception)\b|\d+ of \d+ visible checks passed|No executable found|exit status [1-9]\d*|"
     r"Package '?\w*'? ?not found|process has finished cleanly"
 )
 
 
-def shown(cell: NotebookNode) -> set[str]:
-    """Return what a cell shows of that on which the text may rely."""
-    return set(RELIED_ON.findall(said([cell])))
+def relied_on_parts(cell: NotebookNode) -> set[str]:
+    """Return the parts of a cell's output on which the text may rely."""
+    return set(RELIED_ON.findall(text_of([cell])))
 
 
 def twice(notebook: NotebookNode) -> NotebookNode:
@@ -50,7 +50,7 @@ def test_a_notebook_that_is_run_again_shows_the_same(chapter: Chapter, tmp_path:
             nbformat.write(executed, tmp_path / f"{name}.ipynb")
             assert failure is None, failure
     count = len(notebook.cells)
-    first = {cell.id: shown(cell) for cell in one_kernel.cells[:count]}
+    first = {cell.id: relied_on_parts(cell) for cell in one_kernel.cells[:count]}
     assert any(first.values())
-    assert {cell.id.removesuffix("-again"): shown(cell) for cell in one_kernel.cells[count:]} == first
-    assert {cell.id: shown(cell) for cell in new_kernel.cells} == first
+    assert {cell.id.removesuffix("-again"): relied_on_parts(cell) for cell in one_kernel.cells[count:]} == first
+    assert {cell.id: relied_on_parts(cell) for cell in new_kernel.cells} == first

@@ -1,6 +1,6 @@
 """Chapter 4's two robots, run as by a student: the cell's output matches the text above it.
 
-`RUNS` says how often at night, half of the runs beside two programs that keep two cores busy.
+The variable `RUNS` sets the number of nightly runs, half of them beside two programs that keep two cores busy.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from autograder.author.course.execute import execute, working_copy
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import Chapter, chapters
 from autograder.ros.domains import Domain
-from tests.notebooks.outputs import said
+from tests.notebooks.outputs import text_of
 
 NODES = ["/robot1/driver", "/robot1/reporter", "/robot2/driver", "/robot2/reporter", "/simulator"]
 CELLS = ["setup", "build", "robot-launch", "two-robots-launch", "try-fleet-run"]
-WATCHDOG = "{0}: watchdog, {0} had no new command for 0.5 s and stops"  # when its driver has ended
+WATCHDOG = "{0}: watchdog, {0} had no new command for 0.5 s and stops"  # after the end of its driver
 TURNS = """import numpy
 for run in robots.recording.poses.transpose(1, 0, 2):
     print('turned', abs(numpy.unwrap(run[:, 2])[-1] - run[0, 2]) / (2 * numpy.pi))
@@ -40,14 +40,14 @@ def _compute() -> None:
 
 @pytest.fixture
 def busy(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Keep two cores busy meanwhile, where it is asked for."""
-    others = [multiprocessing.get_context("spawn").Process(target=_compute, daemon=True) for _ in range(2)]
-    for other in others if request.param else []:
-        other.start()
+    """Keep two cores busy during the test if the parameter says so."""
+    programs = [multiprocessing.get_context("spawn").Process(target=_compute, daemon=True) for _ in range(2)]
+    for program in programs if request.param else []:
+        program.start()
     yield
-    for other in others if request.param else []:
-        other.kill()
-        other.join()
+    for program in programs if request.param else []:
+        program.kill()
+        program.join()
 
 
 @pytest.fixture(scope="module")
@@ -70,14 +70,14 @@ def test_all_nodes_are_found_and_both_robots_drive_a_circle(busy: None, folder: 
     with Domain() as domain:
         failure = execute(notebook, folder, 400, domain.number)
     assert failure is None, failure
-    told = said(notebook.cells[-2:])
-    lines = told.splitlines()
-    assert [line for line in lines if line.startswith("/") and "->" not in line] == NODES, told
-    assert f"5 nodes: {', '.join(NODES)}" in lines, told  # the drawn graph, in words
-    assert {f"/{robot}/reporter -> /fleet/status" for robot in ("robot1", "robot2")} <= set(lines), told
-    assert {f"data: {robot} drives at 0.12 m/s" for robot in ("robot1", "robot2")} <= set(lines), told
+    output = text_of(notebook.cells[-2:])
+    lines = output.splitlines()
+    assert [line for line in lines if line.startswith("/") and "->" not in line] == NODES, output
+    assert f"5 nodes: {', '.join(NODES)}" in lines, output  # the text of the drawn graph
+    assert {f"/{robot}/reporter -> /fleet/status" for robot in ("robot1", "robot2")} <= set(lines), output
+    assert {f"data: {robot} drives at 0.12 m/s" for robot in ("robot1", "robot2")} <= set(lines), output
     turned = [float(line.split()[1]) for line in lines if line.startswith("turned")]
-    assert len(turned) == 2, told
-    assert min(turned) >= 1.0, told
+    assert len(turned) == 2, output
+    assert min(turned) >= 1.0, output
     warnings = [line.partition("[simulator]: ")[2] for line in lines if line.startswith("[WARN]")]
-    assert sorted(warnings[-2:]) == [WATCHDOG.format(robot) for robot in ("robot1", "robot2")], told
+    assert sorted(warnings[-2:]) == [WATCHDOG.format(robot) for robot in ("robot1", "robot2")], output

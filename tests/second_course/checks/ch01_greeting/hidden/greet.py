@@ -1,4 +1,4 @@
-"""Greetings of names that are drawn."""
+"""Greetings of random names."""
 
 import random
 
@@ -18,8 +18,8 @@ def test_greets(workspace: Workspace, draw: random.Random) -> None:
 
 
 @check(points=1, covers="strips", after=("greets",))
-@hint("str.strip() takes the spaces away.")
+@hint("str.strip() removes the spaces.")
 def test_strips(workspace: Workspace, draw: random.Random) -> None:
-    """It takes the spaces around a name away."""
+    """It removes the spaces around a name."""
     name = draw.choice(NAMES)
     expect_greeting(workspace, f"  {name} ", f"Hello, {name}!")

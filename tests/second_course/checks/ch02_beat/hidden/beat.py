@@ -1,4 +1,4 @@
-"""Some beats, as many as are drawn."""
+"""A random number of beats."""
 
 import random
 

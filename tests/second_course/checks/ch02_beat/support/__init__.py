@@ -1,1 +1,1 @@
-"""What the visible and the hidden checks of 02_beat share."""
+"""Code that the visible and the hidden checks of 02_beat share."""
