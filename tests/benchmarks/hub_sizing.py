@@ -1,7 +1,7 @@
-"""Measures what students need on a hub: memory and processor time while several run all of chapter 02 at the same time.
+"""Measure the memory and processor time that students need on a hub while several run chapter 02 at the same time.
 
-`sudo .venv/bin/python -m tests.benchmarks.hub_sizing 2` prints a line for each and the sum; docs/jupyterhub.md has the
-figures. Students run this clone's own environment.
+`sudo .venv/bin/python -m tests.benchmarks.hub_sizing 2` prints a line for each student; docs/jupyterhub.md has the
+figures. The students use the environment of this clone.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ ASSIGNMENT = "02_nodes"
 TICKS = os.sysconf("SC_CLK_TCK")
 
 
-def use_of(name: str) -> tuple[float, float]:
+def usage_of(name: str) -> tuple[float, float]:
     """Return the memory of a user's processes in MiB (proportional set size), and their CPU seconds so far."""
     uid, memory, seconds = pwd.getpwnam(name).pw_uid, 0.0, 0.0
     for process in Path("/proc").glob("[0-9]*"):
@@ -39,7 +39,7 @@ def use_of(name: str) -> tuple[float, float]:
             )
             times = (process / "stat").read_text().rpartition(")")[2].split()[11:15]
         except (OSError, StopIteration):
-            continue  # it has ended
+            continue  # the process has ended
         memory += int(share.split()[1]) / 1024
         seconds += sum(map(int, times)) / TICKS
     return memory, seconds
@@ -48,31 +48,31 @@ def use_of(name: str) -> tuple[float, float]:
 def run_the_chapter(hub: Hub, name: str) -> float:
     """Log in, run each code cell of the solved chapter in a kernel, and return the seconds that the cells took."""
     user = User(hub, name).log_in()
-    user.ask("PUT", f"api/contents/{ASSIGNMENT}", json={"type": "directory"})
+    user.request("PUT", f"api/contents/{ASSIGNMENT}", json={"type": "directory"})
     notebook = in_form(Chapter(course_paths.chapter(ASSIGNMENT)).read(), Form.SOLVED)
     path = f"{ASSIGNMENT}/{ASSIGNMENT}.ipynb"
-    user.ask("PUT", f"api/contents/{path}", json={"type": "notebook", "content": nbformat.from_dict(notebook)})
+    user.request("PUT", f"api/contents/{path}", json={"type": "notebook", "content": nbformat.from_dict(notebook)})
     cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
-    begin = monotonic()
+    start = monotonic()
     user.run(path, f"!cp -r {course_paths.chapter(ASSIGNMENT)}/ws .", *cells)
-    return monotonic() - begin
+    return monotonic() - start
 
 
 def main() -> None:
-    """Run the chapter as the given number of students (two by default), and print what each has used."""
+    """Run the chapter as the given number of students (two by default), and print what each of them has used."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 2
     with tempfile.TemporaryDirectory(dir="/tmp") as scratch:
         Path(scratch).chmod(0o755)
         with serving(Path(scratch), course_paths.ROOT) as hub, ThreadPoolExecutor(count) as pool:
             names, pause = hub.students[:count], Event()
             runs = {name: pool.submit(run_the_chapter, hub, name) for name in names}
-            most = dict.fromkeys(names, (0.0, 0.0))
+            peaks = dict.fromkeys(names, (0.0, 0.0))
             while not all(run.done() for run in runs.values()):
                 for name in names:
-                    most[name] = tuple(map(max, most[name], use_of(name)))  # type: ignore[assignment]
+                    peaks[name] = tuple(map(max, peaks[name], usage_of(name)))  # type: ignore[assignment]
                 pause.wait(0.5)
             for name, run in runs.items():
-                print(f"{name}: {most[name][0]:.0f} MiB, {most[name][1]:.0f} core-seconds in {run.result():.0f} s")
+                print(f"{name}: {peaks[name][0]:.0f} MiB, {peaks[name][1]:.0f} core-seconds in {run.result():.0f} s")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What a canvas of the player shows, in numbers of pixels."""
+"""Count the pixels of each colour on a canvas of the player."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from playwright.sync_api import Locator
 
 from sim.view import LIGHT
 
-COUNT = """(canvas, wanted) => {
+COUNT = """(canvas, colours) => {
     const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", {willReadFrequently: true});
     copy.drawImage(canvas, 0, 0);
     const {data} = copy.getImageData(0, 0, canvas.width, canvas.height);
-    const counts = wanted.map(() => 0);
-    for (let place = 0; place < data.length; place += 4)
-        wanted.forEach((colour, index) => {
-            if (colour.every((part, channel) => Math.abs(data[place + channel] - part) <= 8)) counts[index] += 1;
+    const counts = colours.map(() => 0);
+    for (let offset = 0; offset < data.length; offset += 4)
+        colours.forEach((colour, index) => {
+            if (colour.every((part, channel) => Math.abs(data[offset + channel] - part) <= 8)) counts[index] += 1;
         });
     return counts;
 }"""
 
 LATE = to_hex(LIGHT.time_colours(0)(0.75))
-"""The colour of a track before its end, which is below the robot."""
+"""The colour of a track shortly before its end, which the robot covers."""
 
 DRAWN = {
     "the start of the track": LIGHT.time_hues(0)[0],
@@ -28,18 +28,18 @@ DRAWN = {
     "the robot": LIGHT.robot,
     "hits of the lidar": LIGHT.hit,
     "the start pose, and numbers beside the axes": LIGHT.muted,
-    "walls, and the closest place": LIGHT.ink,
+    "walls, and the closest point": LIGHT.ink,
 }
-"""What is on the canvas of a run at its end, by its colour in the light theme."""
+"""The things on the canvas at the end of a run, and their colours in the light theme."""
 
 
 def count(canvas: Locator, *colours: str) -> list[int]:
-    """Return for each colour, as #RRGGBB, how many pixels of the canvas have it, or nearly."""
-    wanted = [[int(colour[place : place + 2], 16) for place in (1, 3, 5)] for colour in colours]
-    return [int(number) for number in canvas.evaluate(COUNT, wanted)]
+    """Return how many pixels of the canvas have each colour (#RRGGBB), or nearly."""
+    channels = [[int(colour[start : start + 2], 16) for start in (1, 3, 5)] for colour in colours]
+    return [int(number) for number in canvas.evaluate(COUNT, channels)]
 
 
 def missing(canvas: Locator) -> list[str]:
-    """Return which things of `DRAWN` have fewer than five pixels on the canvas."""
+    """Return the things in `DRAWN` that have fewer than five pixels on the canvas."""
     counts = count(canvas, *DRAWN.values())
     return [name for name, number in zip(DRAWN, counts, strict=True) if number < 5]

@@ -48,7 +48,7 @@ def page(chromium: Browser) -> Iterator[Page]:
 
 @pytest.fixture(scope="session")
 def screenshots() -> Path:
-    """The folder where screenshots are kept for people to look at."""
+    """The folder of the screenshots, for people to inspect."""
     folder = ROOT / ".build" / "screenshots"
     folder.mkdir(parents=True, exist_ok=True)
     return folder

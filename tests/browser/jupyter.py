@@ -58,7 +58,7 @@ class Lab:
         }""")
 
     def run_all(self, page: Page) -> None:
-        """Begin to run all cells of the notebook in the page."""
+        """Start to run all cells of the notebook in the page."""
         page.evaluate("() => { window.jupyterapp.commands.execute('notebook:run-all-cells'); }")
 
 

@@ -1,4 +1,4 @@
-"""A class on a hub, in the browser from the first login to the feedback: the sums are the same everywhere.
+"""A class on a hub works in the browser from the first login to the feedback, with the same sums everywhere.
 
 `tests/e2e/test_hub.py` covers the main steps over HTTP in `make test`.
 """
@@ -23,24 +23,24 @@ from autograder.lms.hub.trial import Hub
 from autograder.lms.hub.trial import serving as serving_hub
 from autograder.suite import suites
 from tests.browser.jupyter import Lab
-from tests.browser.test_formgrader import ASSIGNMENT, MOST, QUESTION, give_points
+from tests.browser.test_formgrader import ASSIGNMENT, MAX_POINTS, QUESTION, give_points
 from tests.browser.test_solve_in_jupyterlab import outputs, type_in
 from tests.browser.test_students_lab import OPEN
-from tests.e2e.test_hub import ON_A_HUB, place
+from tests.e2e.test_hub import ON_A_HUB, shared_folder
 
-__all__ = ["place"]
+__all__ = ["shared_folder"]
 
 pytestmark = [
     pytest.mark.browser,
     pytest.mark.nightly,
     pytest.mark.timeout(3600),
     *ON_A_HUB,
-    # What nbgrader does with SQLAlchemy.
+    # nbgrader's use of SQLAlchemy.
     pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning"),
 ]
 PATIENCE = 300_000.0  # milliseconds: a deadline, not an expectation
 NOTEBOOK = f"{ASSIGNMENT}/{ASSIGNMENT}.ipynb"
-ANSWERS, RIGHT, NO_LETTER, WRONG = f"{ASSIGNMENT}/ws/src/assessment/answers.yaml", "q12: c", "q12: e", "q12: d"
+ANSWERS, RIGHT, INVALID, WRONG = f"{ASSIGNMENT}/ws/src/assessment/answers.yaml", "q12: c", "q12: e", "q12: d"
 SETTINGS = "c = get_config()\nc.LabApp.expose_app_in_browser = True\n"
 RUN = """async ids => {
     const notebook = window.jupyterapp.shell.currentWidget.content;
@@ -78,7 +78,7 @@ class Person:
         self.page.evaluate("() => { window.jupyterapp.commands.execute('nbgrader:open-assignment-list'); }")
 
     def press(self, button: str, *, until: str) -> None:
-        """Press a button of the assignment in that list, and wait for the next button."""
+        """Press the assignment's button in nbgrader's list, and wait for the next button."""
         row = self.page.locator(".list_item", has_text=ASSIGNMENT)
         row.get_by_role("button", name=button, exact=True).first.click()
         expect(row.get_by_role("button", name=until, exact=True).first).to_be_visible(timeout=PATIENCE)
@@ -96,9 +96,9 @@ class Person:
         """Click in a row of one of formgrader's tables, and wait until nbgrader has finished."""
         self.page.goto(f"{self.url}/formgrader/{page}")
         self.page.locator("tr", has_text=row).locator(f".{column} a").click()
-        told = self.page.locator("#success-modal, #error-modal")
-        expect(told).to_be_visible(timeout=PATIENCE)
-        assert "Success" in told.inner_text(), told.inner_text()
+        dialog = self.page.locator("#success-modal, #error-modal")
+        expect(dialog).to_be_visible(timeout=PATIENCE)
+        assert "Success" in dialog.inner_text(), dialog.inner_text()
 
 
 @contextmanager
@@ -125,10 +125,10 @@ def solved_cells() -> dict[str, str]:
     return {cell.id: cell.source for cell in solved.cells if is_solution(cell)}
 
 
-def all_pass(shown: str) -> bool:
+def all_pass(output: str) -> bool:
     """Return whether a cell with `check(...)` shows that each visible check passed."""
-    count = re.search(r"(\d+) of (\d+) visible checks passed", shown)
-    assert count, shown
+    count = re.search(r"(\d+) of (\d+) visible checks passed", output)
+    assert count, output
     return count[1] == count[2]
 
 
@@ -147,7 +147,7 @@ def solve_all(student: Person) -> None:
 def answer_in_the_editor(student: Person) -> None:
     """Answer two questions. The check rejects an invalid letter; then the editor gets a wrong one."""
     student.show()
-    type_in(student.page, "answers", solved_cells()["answers"].replace(RIGHT, NO_LETTER))
+    type_in(student.page, "answers", solved_cells()["answers"].replace(RIGHT, INVALID))
     type_in(student.page, QUESTION, f"The words of {student.name} about `package.xml`.")
     assert not all_pass(student.run("setup", "answers", "check-question-1"))
     student.page.evaluate(OPEN, ANSWERS)
@@ -155,7 +155,7 @@ def answer_in_the_editor(student: Person) -> None:
     text = (student.home / ANSWERS).read_text()
     editor.click()
     student.page.keyboard.press("Control+A")
-    student.page.keyboard.insert_text(text.replace(NO_LETTER, WRONG))
+    student.page.keyboard.insert_text(text.replace(INVALID, WRONG))
     student.page.keyboard.press("Control+S")
     expect(student.page.locator(".jp-mod-dirty")).to_have_count(0, timeout=PATIENCE)
     student.show()
@@ -168,9 +168,9 @@ def score_in_formgrader(teacher: Person, student: Person) -> str:
 
 
 def check_a_class(hub: Hub, chromium: Browser) -> None:
-    """Two students and the teacher of a new hub do their work in the browser."""
+    """Let two students and the teacher of a new hub do their work in the browser."""
     suite = suites.hidden(ASSIGNMENT)
-    most = suite.max_score + MOST
+    max_score = suite.max_score + MAX_POINTS
     with (
         logged_in(chromium, hub, hub.teacher) as teacher,
         logged_in(chromium, hub, hub.students[0]) as ada,
@@ -198,21 +198,23 @@ def check_a_class(hub: Hub, chromium: Browser) -> None:
             teacher.manage("manage_assignments", ASSIGNMENT, step)
 
         for student, score in expected.items():
-            assert score_in_formgrader(teacher, student) == f"{score:g} / {most:g}"
+            assert score_in_formgrader(teacher, student) == f"{score:g} / {max_score:g}"
             student.open_assignments()
             student.press("Fetch Feedback", until="Fetch Feedback")
             student.page.get_by_text("(view feedback)").click()
             (feedback,) = (student.home / ASSIGNMENT / "feedback").rglob(f"{ASSIGNMENT}.html")
             student.page.goto(f"{student.url}/files/{feedback.relative_to(student.home)}")
-            expect(student.page.locator("body")).to_contain_text(f"(Score: {score:.1f} / {most:.1f})", timeout=PATIENCE)
-        refused = ben.page.goto(f"{ada.url}/files/{NOTEBOOK}")
-        assert refused is not None
-        assert refused.status == 403
+            expect(student.page.locator("body")).to_contain_text(
+                f"(Score: {score:.1f} / {max_score:.1f})", timeout=PATIENCE
+            )
+        response = ben.page.goto(f"{ada.url}/files/{NOTEBOOK}")
+        assert response is not None
+        assert response.status == 403
         with Gradebook(f"sqlite:///{teacher.home}/course/gradebook.db") as gradebook:
-            booked = {name: gradebook.find_submission(ASSIGNMENT, name).score for name in (ada.name, ben.name)}
-        assert booked == {student.name: score for student, score in expected.items()}
+            recorded = {name: gradebook.find_submission(ASSIGNMENT, name).score for name in (ada.name, ben.name)}
+        assert recorded == {student.name: score for student, score in expected.items()}
 
 
-def test_students_and_their_teacher_do_it_all_in_the_browser(place: Path, chromium: Browser) -> None:
-    with serving_hub(place, course_paths.ROOT) as hub:
+def test_students_and_their_teacher_do_all_their_work_in_the_browser(shared_folder: Path, chromium: Browser) -> None:
+    with serving_hub(shared_folder, course_paths.ROOT) as hub:
         check_a_class(hub, chromium)

@@ -1,4 +1,4 @@
-"""The page of a class in a real browser: its table sorts, filters, and is a list of cards on a phone."""
+"""The table of a class's page sorts and filters in a browser, and is a list of cards on a phone."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ pytestmark = pytest.mark.browser
 
 
 @pytest.fixture
-def written(
+def class_page(
     make_result: Callable[..., Result],
     make_check: Callable[..., Check],
     broken_result: Result,
     ungraded_result: Result,
     tmp_path: Path,
 ) -> Path:
-    """The page of five submissions: 40, 0, no, 85 and 95 per cent."""
+    """The page of five submissions, with 40, 0, no, 85 and 95 per cent."""
     check = make_check("moves", "It moves.", 20.0, "graph")
 
     def moves(student: str, fraction: float) -> Result:
@@ -38,14 +38,14 @@ def written(
 
 
 @pytest.fixture
-def table(page: Page, written: Path) -> Locator:
+def table(page: Page, class_page: Path) -> Locator:
     """The table, on the open page."""
-    page.goto(written.as_uri())
+    page.goto(class_page.as_uri())
     return page.get_by_role("region", name="Submissions").get_by_role("table")
 
 
 def names(table: Locator) -> list[str]:
-    """Whose rows can be seen, from top to bottom."""
+    """Return the students of the visible rows, from top to bottom."""
     return table.get_by_role("rowheader").all_inner_texts()
 
 
@@ -68,13 +68,13 @@ def test_the_table_keeps_its_filter_after_visiting_a_page(page: Page, table: Loc
     assert names(table) == ["Zoë Müller"]
     expect(page.get_by_role("status")).to_have_text("1 of 5")
     page.get_by_label("Find").fill("")
-    for choice, shown in (
+    for choice, students in (
         ("Not graded (1)", ["carol"]),
         ("Less than half (2)", ["alice", "bob"]),
         ("It moves. (2)", ["dave", "Zoë Müller"]),
     ):
         page.get_by_label("Show").select_option(choice)
-        assert names(table) == shown
+        assert names(table) == students
     table.get_by_role("button", name="Submission").click()
     page.get_by_role("link", name="dave").click()
     expect(page.get_by_role("heading", level=1)).to_have_text("dave")
@@ -102,14 +102,14 @@ def test_a_class_of_a_hundred_is_a_list_of_cards_on_a_phone(
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
         page.screenshot(path=screenshots / f"class-phone-{scheme}.png")
-        found = Axe().run(page, options={"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21aa"]}})
-        assert found.violations_count == 0, found.generate_report()
+        report = Axe().run(page, options={"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21aa"]}})
+        assert report.violations_count == 0, report.generate_report()
 
 
-def test_without_scripts_the_table_is_whole_and_has_no_fields(chromium: Browser, written: Path) -> None:
+def test_without_javascript_the_table_is_complete_and_has_no_controls(chromium: Browser, class_page: Path) -> None:
     context = chromium.new_context(java_script_enabled=False)
     page = context.new_page()
-    page.goto(written.as_uri())
+    page.goto(class_page.as_uri())
     assert names(page.get_by_role("region", name="Submissions")) == ["alice", "bob", "carol", "Zoë Müller", "dave"]
     expect(page.get_by_label("Find")).to_be_hidden()
     expect(page.get_by_role("button")).to_have_count(0)

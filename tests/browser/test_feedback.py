@@ -12,19 +12,19 @@ from autograder.report import feedback
 from autograder.result.artifacts import Artifacts
 from autograder.result.model import Artifact, CheckResult, Result
 from autograder.suite import Check, Outcome
-from tests.browser.wall_run import keep_run
+from tests.browser.wall_run import save_run
 
 pytestmark = pytest.mark.browser
 
 
 @pytest.fixture
-def complaints(page: Page) -> list[str]:
-    """All that the browser complains about while the page is open."""
-    heard: list[str] = []
-    page.on("console", lambda message: heard.append(message.text) if message.type in ("error", "warning") else None)
-    page.on("pageerror", lambda error: heard.append(str(error)))
-    page.on("requestfailed", lambda request: heard.append(request.url))
-    return heard
+def browser_messages(page: Page) -> list[str]:
+    """The browser's errors, warnings and failed requests while the page is open."""
+    messages: list[str] = []
+    page.on("console", lambda message: messages.append(message.text) if message.type in ("error", "warning") else None)
+    page.on("pageerror", lambda error: messages.append(str(error)))
+    page.on("requestfailed", lambda request: messages.append(request.url))
+    return messages
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def flawed(make_result: Callable[..., Result], track: Callable[..., Artifact], t
 
 
 def test_the_track_is_shown_and_hints_unfold(
-    page: Page, flawed: Path, complaints: list[str], screenshots: Path
+    page: Page, flawed: Path, browser_messages: list[str], screenshots: Path
 ) -> None:
     page.goto(flawed.as_uri())
     expect(page.get_by_role("heading", level=1)).to_have_text("alice")
@@ -51,7 +51,7 @@ def test_the_track_is_shown_and_hints_unfold(
     expect(second).to_be_visible()
 
     page.screenshot(path=screenshots / "feedback.png", full_page=True)
-    assert complaints == []
+    assert browser_messages == []
 
 
 @pytest.mark.parametrize("width", [1280, 390])
@@ -60,17 +60,17 @@ def test_consequences_unfold_below_their_cause(
     make_result: Callable[..., Result],
     make_check: Callable[..., Check],
     tmp_path: Path,
-    complaints: list[str],
+    browser_messages: list[str],
     screenshots: Path,
     width: int,
 ) -> None:
     first = make_check("first", "It drives where the way is clear.", 1.0, "graph")
-    with_it = [
+    consequences = [
         make_check(f"also_{n}", f"It does another thing, number {n}.", 2.0, "graph", after=("first",)) for n in range(3)
     ]
     blind = make_check("blind", "It stands still where it is blind.", 3.0, "safety", needs=("first",))
     checks = (
-        *(CheckResult.of(check, Outcome.FAILED, "it stood still at 0.0 m/s") for check in (first, *with_it)),
+        *(CheckResult.of(check, Outcome.FAILED, "it stood still at 0.0 m/s") for check in (first, *consequences)),
         CheckResult.of(blind, Outcome.NOT_CHECKED, "not checked"),
     )
     page.set_viewport_size({"width": width, "height": 800})
@@ -85,7 +85,7 @@ def test_consequences_unfold_below_their_cause(
     expect(page.locator("#check-first")).to_be_in_viewport()
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     page.screenshot(path=screenshots / f"feedback-unfolded-{width}.png", full_page=True)
-    assert complaints == []
+    assert browser_messages == []
 
 
 @pytest.mark.promise(
@@ -95,11 +95,11 @@ def test_consequences_unfold_below_their_cause(
     "in the same player",
 )
 def test_the_run_of_a_failed_check_plays(
-    page: Page, make_result: Callable[..., Result], tmp_path: Path, complaints: list[str], screenshots: Path
+    page: Page, make_result: Callable[..., Result], tmp_path: Path, browser_messages: list[str], screenshots: Path
 ) -> None:
     artifacts = Artifacts(tmp_path)
     for check in ("starts", "turns"):
-        keep_run(artifacts, check)
+        save_run(artifacts, check)
     path = feedback.write(make_result(artifacts=tuple(artifacts.saved)), tmp_path)
     page.goto(f"{path.as_uri()}#t=2.5")
     player = page.locator("#run-turns-track")
@@ -110,26 +110,26 @@ def test_the_run_of_a_failed_check_plays(
     expect(player.get_by_role("img", name="The run of turns.")).to_have_count(1)
     page.goto(f"{path.as_uri()}#run=run-starts-track&t=1.0")
     expect(page.locator("#run-starts-track output")).to_have_text("1.00 s")
-    expect(page.locator("#run-starts-track canvas")).to_be_visible()  # its details have been opened
+    expect(page.locator("#run-starts-track canvas")).to_be_visible()  # the link has opened its details
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
         page.screenshot(path=screenshots / f"feedback-run-{scheme}.png", full_page=True)
     page.emulate_media(media="print")
     expect(player.locator("img")).to_be_visible()
     expect(player.locator("canvas")).to_be_hidden()
-    assert complaints == []
+    assert browser_messages == []
 
 
-def test_the_page_fits_a_phone(page: Page, flawed: Path, complaints: list[str], screenshots: Path) -> None:
+def test_the_page_fits_a_phone(page: Page, flawed: Path, browser_messages: list[str], screenshots: Path) -> None:
     page.set_viewport_size({"width": 360, "height": 740})
     page.goto(flawed.as_uri())
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
     page.screenshot(path=screenshots / "feedback-phone.png", full_page=True)
-    assert complaints == []
+    assert browser_messages == []
 
 
 def test_the_page_is_dark_if_the_browser_prefers_dark(
-    page: Page, flawed: Path, complaints: list[str], screenshots: Path
+    page: Page, flawed: Path, browser_messages: list[str], screenshots: Path
 ) -> None:
     page.goto(flawed.as_uri())
     colour = "getComputedStyle(document.body).backgroundColor"
@@ -137,17 +137,17 @@ def test_the_page_is_dark_if_the_browser_prefers_dark(
     page.emulate_media(color_scheme="dark")
     assert page.evaluate(colour) != light
     page.screenshot(path=screenshots / "feedback-dark.png", full_page=True)
-    assert complaints == []
+    assert browser_messages == []
 
 
 def test_a_script_from_the_student_does_not_run(
-    page: Page, make_result: Callable[..., Result], tmp_path: Path, complaints: list[str]
+    page: Page, make_result: Callable[..., Result], tmp_path: Path, browser_messages: list[str]
 ) -> None:
     attack = "<script>document.title = 'owned'</script><img src=x onerror=\"document.title='owned'\">"
     page.goto(feedback.write(make_result(attack), tmp_path).as_uri())
     expect(page.get_by_role("heading", level=1)).to_have_text(attack)
     assert "owned" not in page.title().replace(attack, "")
-    assert complaints == []
+    assert browser_messages == []
 
 
 def test_the_class_table_links_to_each_page(
@@ -157,7 +157,7 @@ def test_the_class_table_links_to_each_page(
     ungraded_result: Result,
     track: Callable[..., Artifact],
     tmp_path: Path,
-    complaints: list[str],
+    browser_messages: list[str],
     screenshots: Path,
 ) -> None:
     results = [make_result("anna é%?#", artifacts=(track(tmp_path / "anna é%?#"),)), broken_result, ungraded_result]
@@ -170,4 +170,4 @@ def test_the_class_table_links_to_each_page(
         expect(page.get_by_role("heading", level=1)).to_have_text(result.student)
         page.screenshot(path=screenshots / f"feedback-{result.status.value}-{len(result.checks)}.png", full_page=True)
         page.go_back()
-    assert complaints == []
+    assert browser_messages == []

@@ -1,4 +1,4 @@
-"""Grades a class with nbgrader, and question 2 by hand in formgrader: all systems show the same sums."""
+"""A class graded by nbgrader, and by hand in formgrader, has the same sums in all systems."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ from tests.e2e.classroom import Classroom
 pytestmark = [
     pytest.mark.browser,
     pytest.mark.slow,
-    # What nbgrader does with SQLAlchemy.
+    # nbgrader's use of SQLAlchemy.
     pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning"),
 ]
 ASSIGNMENT = "09_assessment"
-CHOICES, QUESTION, MOST = "answers", "q2-answer", 6.0
+CHOICES, QUESTION, MAX_POINTS = "answers", "q2-answer", 6.0
 SCHEME = "Mark scheme, 6 points."
 
 
@@ -48,25 +48,25 @@ class Student:
 def students(size: int) -> list[Student]:
     """Return a class, in which every third or fourth student submits the released notebook unchanged."""
     codes = ["no code", "no code", "untouched"] if size == 3 else ["no code", "reference", "flawed", "untouched"]
-    found = []
+    members = []
     for number in range(size):
         code = codes[number % len(codes)]
-        points = None if code == "untouched" else (number + 1) % (2 * MOST + 1) / 2
-        found.append(Student(f"s{number:02}", code, points))
-    return found
+        points = None if code == "untouched" else (number + 1) % (2 * MAX_POINTS + 1) / 2
+        members.append(Student(f"s{number:02}", code, points))
+    return members
 
 
-def hand_in(room: Classroom, student: Student) -> None:
+def submit(room: Classroom, student: Student) -> None:
     """Put a student's work into the exchange, as `nbgrader submit` does."""
     answer = None
     if student.code in ("reference", "flawed"):
-        answer, sources = room.place / "answers" / student.name, suites.hidden(ASSIGNMENT).sources
+        answer, sources = room.root / "answers" / student.name, suites.hidden(ASSIGNMENT).sources
         flawed = next(mutant for mutant in mutants(ASSIGNMENT) if not mutant.slow)
         write = write_reference if student.code == "reference" else partial(write_mutant, flawed)
         write(sources, answer)
     room.hand_in(student.name, answer)
-    handed_in = room.course / "submitted" / student.name / ASSIGNMENT
-    path = handed_in / f"{ASSIGNMENT}.ipynb"
+    submitted = room.course / "submitted" / student.name / ASSIGNMENT
+    path = submitted / f"{ASSIGNMENT}.ipynb"
     notebook = nbformat.read(path, as_version=4)
     if student.points is not None:
         solved = in_form(Chapter(course_paths.chapter(ASSIGNMENT)).read(), Form.SOLVED)
@@ -76,7 +76,7 @@ def hand_in(room: Classroom, student: Student) -> None:
     stamp = "2026-05-04 09:00:00.000000 UTC"
     inbound = room.exchange / "ros2-python" / "inbound" / f"{student.name}+{ASSIGNMENT}+{stamp}+{secrets.token_hex(8)}"
     inbound.parent.mkdir(parents=True, exist_ok=True)
-    shutil.move(handed_in, inbound)
+    shutil.move(submitted, inbound)
     (inbound / "timestamp.txt").write_text(stamp)
     shutil.rmtree(room.course / "submitted")
 
@@ -93,10 +93,10 @@ def cell_of(notebook: NotebookNode, name: str) -> NotebookNode:
     "size", [3, pytest.param(30, marks=[pytest.mark.nightly, pytest.mark.timeout(7200)])], ids=["3", "30"]
 )
 def test_points_given_in_formgrader_are_added_everywhere(size: int, tmp_path: Path, chromium: Browser) -> None:
-    room, everybody = Classroom(tmp_path / "class", ASSIGNMENT), students(size)
+    room, members = Classroom(tmp_path / "class", ASSIGNMENT), students(size)
     room.nbgrader("generate_assignment")
-    for student in everybody:
-        hand_in(room, student)
+    for student in members:
+        submit(room, student)
     room.nbgrader("collect")
     graded = room.course / ".build" / "nbgrader" / ASSIGNMENT
     room.grade("-j", "2", "--out", str(graded))
@@ -105,36 +105,34 @@ def test_points_given_in_formgrader_are_added_everywhere(size: int, tmp_path: Pa
     after = {path: path.stat().st_mtime_ns for path in graded.glob("*/result.json")}
     assert after == before, "graded again instead of recorded"
     marks = {result.student: result.score for result in load(graded)}
-    assert {student.name for student in everybody if marks[student.name]} == {
-        student.name for student in everybody if student.points is not None
+    assert {student.name for student in members if marks[student.name]} == {
+        student.name for student in members if student.points is not None
     }
 
-    grade_by_hand(room, everybody, tmp_path / "jupyter", chromium)
+    grade_by_hand(room, members, tmp_path / "jupyter", chromium)
 
-    expected = {student.name: marks[student.name] + (student.points or 0.0) for student in everybody}
+    expected = {student.name: marks[student.name] + (student.points or 0.0) for student in members}
     room.nbgrader("generate_feedback")
     room.run(room.course, sys.executable, "-m", "nbgrader", "export", "--to=grades.csv")
     with (room.course / "grades.csv").open(encoding="utf-8", newline="") as file:
         exported = {row["student_id"]: float(row["score"]) for row in csv.DictReader(file, strict=True)}
     assert exported == pytest.approx(expected)
-    most = suites.hidden(ASSIGNMENT).max_score + MOST
-    for student in everybody:
+    max_score = suites.hidden(ASSIGNMENT).max_score + MAX_POINTS
+    for student in members:
         page = room.course / "feedback" / student.name / ASSIGNMENT / f"{ASSIGNMENT}.html"
-        assert f"(Score: {expected[student.name]:.1f} / {most:.1f})" in page.read_text(encoding="utf-8")
+        assert f"(Score: {expected[student.name]:.1f} / {max_score:.1f})" in page.read_text(encoding="utf-8")
 
 
-def grade_by_hand(room: Classroom, everybody: list[Student], home: Path, chromium: Browser) -> None:
-    """Enter the points for each student's text in formgrader, which opens one submission after another."""
+def grade_by_hand(room: Classroom, members: list[Student], home: Path, chromium: Browser) -> None:
+    """Enter the points for each student's text in formgrader."""
     home.mkdir()
-    points = {
-        f"The words of {student.name} about": student.points for student in everybody if student.points is not None
-    }
+    points = {f"The words of {student.name} about": student.points for student in members if student.points is not None}
     context = chromium.new_context(viewport={"width": 1100, "height": 900})
     with serving("jupyter_server", home, room.course) as server:
         page = context.new_page()
         page.set_default_timeout(PATIENCE * 1000)
         page.goto(f"{server.url}/login?token={server.token}")
-        give_points(page, f"{server.url}/formgrader", len(everybody), points)
+        give_points(page, f"{server.url}/formgrader", len(members), points)
     context.close()
 
 
@@ -142,23 +140,23 @@ def give_points(page: Page, formgrader: str, submissions: int, points: dict[str,
     """Open each submission in formgrader, and give the answer that contains a text its points.
 
     Args:
-        page: of the person who grades, logged in.
+        page: a page on which the grader is logged in.
         formgrader: the address of formgrader.
-        submissions: how many are listed.
-        points: the points by the texts; each is in one submission.
+        submissions: the number of listed submissions.
+        points: the points for each text, which occurs in one submission.
     """
     page.goto(f"{formgrader}/gradebook/{ASSIGNMENT}/{ASSIGNMENT}")
-    listed = page.locator("a.name-hidden[href*='/submissions/']")
-    expect(listed).to_have_count(submissions, timeout=PATIENCE * 1000)
-    left = dict(points)
-    for link in [str(each.get_attribute("href")) for each in listed.all()]:
+    links = page.locator("a.name-hidden[href*='/submissions/']")
+    expect(links).to_have_count(submissions, timeout=PATIENCE * 1000)
+    remaining = dict(points)
+    for link in [str(item.get_attribute("href")) for item in links.all()]:
         page.goto(urljoin(formgrader, link))
-        page.wait_for_function("window.formgrader?.grades?.loaded")  # until then, it ignores keys
-        words = page.locator("body").inner_text()
-        assert SCHEME in words
-        for text in [text for text in left if text in words]:
+        page.wait_for_function("window.formgrader?.grades?.loaded")  # formgrader ignores keys until then
+        body = page.locator("body").inner_text()
+        assert SCHEME in body
+        for text in [text for text in remaining if text in body]:
             score = page.locator(f"input#{QUESTION}.score")
-            score.fill(f"{left.pop(text):g}")
+            score.fill(f"{remaining.pop(text):g}")
             with page.expect_response(lambda answer: "/api/grade/" in answer.url and answer.request.method == "PUT"):
                 score.press("Tab")
-    assert left == {}
+    assert remaining == {}

@@ -49,22 +49,22 @@ DriveReport(recording, "", ())
 
 
 def pixels(image: Locator) -> Any:
-    """The part of the live image that shows the world, without the clock above it, as (H, W, 3) numbers."""
+    """Return the part of the live image that shows the world, without the clock above it, as (H, W, 3) numbers."""
     picture = np.asarray(Image.open(io.BytesIO(image.screenshot())).convert("RGB"), dtype=np.int16)
     height, width, _ = picture.shape
     return picture[int(0.1 * height) :, : int(0.62 * width)]
 
 
-def changed(before: Any, after: Any) -> int:
+def changed_pixels(before: Any, after: Any) -> int:
     """Return how many pixels have clearly changed."""
     return int((np.abs(before - after).max(axis=2) > 60).sum())
 
 
 def wait_until_moved(image: Locator, before: Any, least: int = 40) -> int:
-    """Wait until the world's picture differs from `before`; return by how many pixels."""
+    """Wait until the world's picture differs from `before`; return the number of changed pixels."""
     deadline, difference = time.monotonic() + PATIENCE, 0
     while time.monotonic() < deadline:
-        difference = changed(before, pixels(image))
+        difference = changed_pixels(before, pixels(image))
         if difference >= least:
             return difference
     pytest.fail(f"the picture did not change: {difference} pixels")
@@ -84,7 +84,7 @@ def wait_until_still(page: Page, image: Locator) -> None:
     )
 
 
-def test_the_robot_moves_pauses_and_obeys_the_pad(page: Page, lab: Lab, screenshots: Path) -> None:
+def test_the_robot_moves_pauses_and_follows_the_pad(page: Page, lab: Lab, screenshots: Path) -> None:
     lab.open(page, "drive.ipynb", [DRIVE.format(world=str(ROOT / "assets/worlds/lab.yaml"))])
     image = page.locator(".jp-OutputArea-output img").first
     expect(image).to_be_visible(timeout=PATIENCE * 1000)
@@ -95,7 +95,7 @@ def test_the_robot_moves_pauses_and_obeys_the_pad(page: Page, lab: Lab, screensh
     expect(page.get_by_title("Play", exact=True)).to_be_visible(timeout=PATIENCE * 1000)
     wait_until_still(page, image)
     paused = pixels(image)
-    assert changed(paused, pixels(image)) == 0
+    assert changed_pixels(paused, pixels(image)) == 0
 
     page.get_by_title("Forward", exact=True).click()
     expect(page.get_by_text("+0.22 m/s +0.00 rad/s")).to_be_visible(timeout=PATIENCE * 1000)
@@ -122,9 +122,7 @@ def test_an_error_of_the_callback_is_shown_in_the_cell(page: Page, lab: Lab, scr
     page.screenshot(path=screenshots / "live-view-error.png")
 
 
-def test_a_drive_opens_drawn_in_the_notebook_and_plays_and_its_keys_do_not_reach_the_notebook(
-    page: Page, lab: Lab, screenshots: Path
-) -> None:
+def test_a_drive_plays_in_the_notebook_which_gets_none_of_its_keys(page: Page, lab: Lab, screenshots: Path) -> None:
     first = DRIVE.format(world=str(ROOT / "assets/worlds/smile.yaml")).replace("\nview\n", "\nview.pause()\n")
     lab.open(page, "replay.ipynb", [first, REPLAY])
     player = page.locator(".run-player")
@@ -138,9 +136,9 @@ def test_a_drive_opens_drawn_in_the_notebook_and_plays_and_its_keys_do_not_reach
     page.locator(".jp-Cell .jp-InputPrompt").first.click()  # command mode, in which b adds a cell
     canvas.hover()
     cells = page.locator(".jp-Notebook .jp-Cell").count()
-    for key, shown in (("ArrowLeft", "4.90"), ("b", "4.90"), ("Home", "0.00")):
+    for key, seconds in (("ArrowLeft", "4.90"), ("b", "4.90"), ("Home", "0.00")):
         page.keyboard.press(key)
-        expect(clock).to_have_text(f"{shown} s")
+        expect(clock).to_have_text(f"{seconds} s")
     player.get_by_label("Time in seconds").fill("2")
     page.keyboard.press("b")
     assert page.locator(".jp-Notebook .jp-Cell").count() == cells

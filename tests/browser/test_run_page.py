@@ -1,4 +1,4 @@
-"""The player of a run in a real browser: it opens drawn, plays, zooms, obeys keys, and a link leads to an instant."""
+"""The player of a run in a browser draws, plays, zooms and reacts to keys, and a link leads to an instant."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ new MutationObserver(() => {
 
 COUNT_FRAMES = """seconds => new Promise(resolve => {
     let frames = 0;
-    const begin = performance.now();
+    const start = performance.now();
     const count = now => {
         frames += 1;
-        if (now - begin < 1000 * seconds) requestAnimationFrame(count); else resolve(1000 * frames / (now - begin));
+        if (now - start < 1000 * seconds) requestAnimationFrame(count); else resolve(1000 * frames / (now - start));
     };
     requestAnimationFrame(count);
 })"""
@@ -51,31 +51,31 @@ def drive(world: str, seconds: float, command: Command = AHEAD) -> Recording:
 
 
 @pytest.fixture
-def complaints(page: Page) -> list[str]:
-    heard: list[str] = []
-    page.on("pageerror", lambda error: heard.append(str(error)))
-    page.on("console", lambda message: heard.append(message.text))
-    page.on("requestfailed", lambda request: heard.append(request.url))
-    return heard
+def browser_messages(page: Page) -> list[str]:
+    messages: list[str] = []
+    page.on("pageerror", lambda error: messages.append(str(error)))
+    page.on("console", lambda message: messages.append(message.text))
+    page.on("requestfailed", lambda request: messages.append(request.url))
+    return messages
 
 
 @pytest.fixture
-def opened(page: Page, complaints: list[str], tmp_path: Path) -> Path:
-    """The page of a run of two seconds, open."""
+def opened(page: Page, browser_messages: list[str], tmp_path: Path) -> Path:
+    """The open page of a run of two seconds."""
     path = to_html(drive("moving_obstacle", 2.0), tmp_path / "run.html")
     page.goto(path.as_uri())
     expect(page.locator(".run-player.run-ready")).to_be_visible(timeout=PATIENCE)
     return path
 
 
-def drawn(page: Page) -> str:
-    """What the canvas shows."""
+def canvas_picture(page: Page) -> str:
+    """Return the picture on the canvas, as a data URL."""
     return str(page.locator(".run-player canvas").evaluate("canvas => canvas.toDataURL()"))
 
 
 @pytest.mark.parametrize("width", [1280, 390])
-def test_a_run_opens_at_its_end_with_all_that_its_picture_shows(
-    page: Page, complaints: list[str], tmp_path: Path, screenshots: Path, width: int
+def test_a_run_opens_at_its_end_with_everything_that_its_picture_shows(
+    page: Page, browser_messages: list[str], tmp_path: Path, screenshots: Path, width: int
 ) -> None:
     page.set_viewport_size({"width": width, "height": 800})
     page.goto(to_html(drive("smile", 6.0, ROUND), tmp_path / "run.html").as_uri())
@@ -87,13 +87,13 @@ def test_a_run_opens_at_its_end_with_all_that_its_picture_shows(
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     page.screenshot(path=screenshots / f"run-page-{width}.png")
     page.keyboard.press("Home")
-    late, own = count(canvas, LATE, LIGHT.robot)
+    late, robot = count(canvas, LATE, LIGHT.robot)
     assert late < 5  # the future path is thin, in the robot's colour
-    assert own > 5
-    assert complaints == []
+    assert robot > 5
+    assert browser_messages == []
 
 
-def test_a_run_of_an_earlier_version_is_drawn(page: Page, complaints: list[str], tmp_path: Path) -> None:
+def test_a_run_of_an_earlier_version_is_drawn(page: Page, browser_messages: list[str], tmp_path: Path) -> None:
     text = page_of(drive("lab", 6.0))
     (stored,) = STORED.findall(text)
     data = json.loads(stored)
@@ -108,10 +108,10 @@ def test_a_run_of_an_earlier_version_is_drawn(page: Page, complaints: list[str],
     expect(page.locator(".run-hit")).to_contain_text("met", timeout=PATIENCE)
     expect(page.locator(".run-title")).to_have_text("the lab")
     assert missing(page.locator(".run-player canvas")) == []
-    assert complaints == []
+    assert browser_messages == []
 
 
-def test_a_run_without_a_script_is_a_picture(chromium: Browser, tmp_path: Path) -> None:
+def test_a_run_is_a_picture_without_javascript(chromium: Browser, tmp_path: Path) -> None:
     context = chromium.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(to_html(drive("smile", 3.0), tmp_path / "run.html").as_uri())
@@ -122,24 +122,24 @@ def test_a_run_without_a_script_is_a_picture(chromium: Browser, tmp_path: Path) 
 
 
 def test_the_player_plays_to_the_end_of_the_run_and_stops(
-    page: Page, opened: Path, complaints: list[str], screenshots: Path
+    page: Page, opened: Path, browser_messages: list[str], screenshots: Path
 ) -> None:
     clock = page.locator(".run-player output")
     page.keyboard.press("Home")
     expect(clock).to_have_text("0.00 s")
-    before = drawn(page)
+    before = canvas_picture(page)
     page.get_by_role("button", name="Play").click()
     expect(page.get_by_role("button", name="Pause")).to_be_visible()
     expect(clock).to_have_text("2.00 s", timeout=PATIENCE)
     expect(page.get_by_role("button", name="Play")).to_be_visible()
-    assert drawn(page) != before
+    assert canvas_picture(page) != before
     page.screenshot(path=screenshots / "run-page.png")
-    assert complaints == []
+    assert browser_messages == []
 
 
 @pytest.mark.parametrize("broken", [False, True])
-def test_a_run_plays_once_when_it_is_seen_unless_it_broke_a_rule(
-    page: Page, complaints: list[str], tmp_path: Path, broken: bool
+def test_a_run_plays_once_when_it_becomes_visible_unless_it_broke_a_rule(
+    page: Page, browser_messages: list[str], tmp_path: Path, broken: bool
 ) -> None:
     margins = [Margin("the gap in m", (0.0, 2.0), (1.0, -1.0), 1.0)] if broken else []
     player = Player(drive("smile", 2.0), margins=margins, play=True)
@@ -153,16 +153,16 @@ def test_a_run_plays_once_when_it_is_seen_unless_it_broke_a_rule(
     expect(page.get_by_role("button", name="Play")).to_be_visible()
     times = page.evaluate("times")
     assert times == ["1.00 s"] if broken else times[:2] == ["2.00 s", "0.00 s"] and times.count("0.00 s") == 1
-    assert complaints == []
+    assert browser_messages == []
 
 
 @pytest.mark.promise("Press Play, drag the time line, or use the space bar and the arrow keys.")
-def test_the_slider_and_the_keys_show_any_instant(page: Page, opened: Path, complaints: list[str]) -> None:
-    clock, first = page.locator(".run-player output"), drawn(page)
+def test_the_slider_and_the_keys_show_any_instant(page: Page, opened: Path, browser_messages: list[str]) -> None:
+    clock, first = page.locator(".run-player output"), canvas_picture(page)
     page.get_by_label("Time in seconds").fill("1.5")
     expect(clock).to_have_text("1.50 s")
     expect(page.locator(".run-said")).to_contain_text("moves +0.40 m/s, +0.20 rad/s · commanded +0.40 m/s, +0.20 rad/s")
-    assert drawn(page) != first
+    assert canvas_picture(page) != first
     for key, time in (("ArrowLeft", "1.40"), ("Shift+ArrowLeft", "0.40"), ("End", "2.00"), ("Home", "0.00")):
         page.keyboard.press(key)
         expect(clock).to_have_text(f"{time} s")
@@ -171,10 +171,10 @@ def test_the_slider_and_the_keys_show_any_instant(page: Page, opened: Path, comp
     expect(page.get_by_role("button", name="Pause")).to_be_visible()
     page.keyboard.press("Space")
     expect(page.get_by_role("button", name="Play")).to_be_visible()
-    assert complaints == []
+    assert browser_messages == []
 
 
-def test_keys_are_for_the_player_below_the_mouse_unless_somebody_types(page: Page, opened: Path) -> None:
+def test_keys_control_the_player_under_the_mouse_unless_a_field_has_the_focus(page: Page, opened: Path) -> None:
     clocks = page.locator(".run-player output")
     page.evaluate("""() => {
         document.querySelector("main").insertAdjacentHTML("beforeend", "<input id=field>");
@@ -202,19 +202,19 @@ def test_keys_are_for_the_player_below_the_mouse_unless_somebody_types(page: Pag
 
 
 def test_the_picture_zooms_moves_and_follows_the_robot(
-    page: Page, opened: Path, complaints: list[str], screenshots: Path
+    page: Page, opened: Path, browser_messages: list[str], screenshots: Path
 ) -> None:
-    canvas, whole = page.locator(".run-player canvas"), drawn(page)
+    canvas, whole = page.locator(".run-player canvas"), canvas_picture(page)
     canvas.hover()
     page.keyboard.press("+")
-    zoomed = drawn(page)
+    zoomed = canvas_picture(page)
     assert zoomed != whole
     page.mouse.down()
     page.mouse.move(300, 300)
     page.mouse.up()
-    assert drawn(page) not in (whole, zoomed)
+    assert canvas_picture(page) not in (whole, zoomed)
     page.get_by_role("button", name="Show the whole world").click()
-    assert drawn(page) == whole
+    assert canvas_picture(page) == whole
     canvas.hover()
     page.keyboard.down("Control")
     page.mouse.wheel(0, -200)
@@ -228,10 +228,10 @@ def test_the_picture_zooms_moves_and_follows_the_robot(
     page.screenshot(path=screenshots / "run-page-follow.png")
     follow.click()
     expect(follow).to_have_attribute("aria-pressed", "false")
-    assert complaints == []
+    assert browser_messages == []
 
 
-def test_several_robots_are_named(page: Page, complaints: list[str], tmp_path: Path, screenshots: Path) -> None:
+def test_several_robots_are_named(page: Page, browser_messages: list[str], tmp_path: Path, screenshots: Path) -> None:
     robots = (RobotSpec(name="one", radius=0.18), RobotSpec(name="two", radius=0.18))
     world = load_world(ROOT / "assets" / "worlds" / "moving_obstacle.yaml")
     commands = {"one": Command(0.3, 0.2), "two": Command(0.2, -0.3)}
@@ -245,18 +245,20 @@ def test_several_robots_are_named(page: Page, complaints: list[str], tmp_path: P
     page.get_by_role("button", name="Follow: one").click()
     expect(page.get_by_role("button", name="Follow: two")).to_be_visible()
     page.screenshot(path=screenshots / "run-page-robots.png")
-    assert complaints == []
+    assert browser_messages == []
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_axe_finds_nothing_wrong_with_the_player(page: Page, opened: Path, scheme: str, screenshots: Path) -> None:
+def test_axe_finds_no_violation_in_the_player(page: Page, opened: Path, scheme: str, screenshots: Path) -> None:
     page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
     page.screenshot(path=screenshots / f"run-page-{scheme}.png")
-    found = Axe().run(page, options=RULES)
-    assert found.violations_count == 0, found.generate_report()
+    report = Axe().run(page, options=RULES)
+    assert report.violations_count == 0, report.generate_report()
 
 
-def test_a_link_with_an_instant_opens_the_run_at_that_instant(page: Page, opened: Path, complaints: list[str]) -> None:
+def test_a_link_with_an_instant_opens_the_run_at_that_instant(
+    page: Page, opened: Path, browser_messages: list[str]
+) -> None:
     page.goto("about:blank")
     page.goto(f"{opened.as_uri()}#t=1.3")
     expect(page.locator(".run-player output")).to_have_text("1.30 s")
@@ -266,7 +268,7 @@ def test_a_link_with_an_instant_opens_the_run_at_that_instant(page: Page, opened
     page.get_by_label("Time in seconds").fill("0")
     page.evaluate("location.hash = 't=0.70'")
     expect(page.locator(".run-player output")).to_have_text("0.70 s")
-    assert complaints == []
+    assert browser_messages == []
 
 
 def test_the_player_is_dark_if_the_browser_prefers_dark(page: Page, opened: Path) -> None:
@@ -275,14 +277,14 @@ def test_the_player_is_dark_if_the_browser_prefers_dark(page: Page, opened: Path
 
     page.emulate_media(color_scheme="light")
     assert background() == "rgb(255, 255, 255)"
-    light = drawn(page)
+    light = canvas_picture(page)
     page.emulate_media(color_scheme="dark")
     assert background() == "rgb(17, 22, 27)"
     page.wait_for_function("light => document.querySelector('canvas').toDataURL() !== light", arg=light)
 
 
 def test_a_broken_rule_shows_its_instant_and_a_click_jumps_to_it(
-    page: Page, complaints: list[str], tmp_path: Path, screenshots: Path
+    page: Page, browser_messages: list[str], tmp_path: Path, screenshots: Path
 ) -> None:
     recording = drive("lab", 60.0)
     gaps, times = recording.clearances[:, 0], recording.times
@@ -292,7 +294,8 @@ def test_a_broken_rule_shows_its_instant_and_a_click_jumps_to_it(
     size = path.stat().st_size
     assert size <= MAX_BYTES
     page.goto(path.as_uri())
-    expect(page.locator(".run-player output")).to_have_text(f"{broken:.2f} s", timeout=PATIENCE)  # it opens there
+    # The player opens at the instant of the failure.
+    expect(page.locator(".run-player output")).to_have_text(f"{broken:.2f} s", timeout=PATIENCE)
     assert count(page.locator(".run-player canvas"), LIGHT.alarm)[0] > 20
     page.keyboard.press("End")
     page.get_by_role("button", name=f"broken at t = {broken:.1f} s").click()
@@ -305,11 +308,11 @@ def test_a_broken_rule_shows_its_instant_and_a_click_jumps_to_it(
     page.screenshot(path=screenshots / "run-page-rule.png")
     page.get_by_role("button", name="Play").click()
     print(f"a minute: {size} bytes, {page.evaluate(COUNT_FRAMES, 2.0):.0f} frames/s")
-    assert complaints == []
+    assert browser_messages == []
 
 
 def test_lines_of_programs_are_shown_as_text_with_their_instants(
-    page: Page, complaints: list[str], tmp_path: Path, screenshots: Path
+    page: Page, browser_messages: list[str], tmp_path: Path, screenshots: Path
 ) -> None:
     attack = "<script>document.title = 'owned'</script><img src=x onerror=\"document.title='owned'\">"
     flood = tuple((0.5 + number / 1000, f"[INFO] [loop]: {number}") for number in range(1000))
@@ -332,4 +335,4 @@ def test_lines_of_programs_are_shown_as_text_with_their_instants(
         expect(clock).to_have_text(f"{time} s")
     page.screenshot(path=screenshots / "run-page-log.png", full_page=True)
     assert page.title() == "the lab: 3.0 s"
-    assert complaints == []
+    assert browser_messages == []

@@ -1,4 +1,4 @@
-"""The site: it builds without a warning, and its pages can be read on a phone, in the dark, by keyboard and aloud."""
+"""The site builds without warnings, and its pages are accessible on a phone, in dark mode and by keyboard."""
 
 from __future__ import annotations
 
@@ -28,11 +28,10 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(900)]
 
 ASSIGNMENT = "02_nodes"
 STUDENTS = "amal bao chloe dario elif femi greta hugo ines jonas kaya lars mina noor omar pia quentin rosa sami tuva"
-MADE = runpy.run_path(str(ROOT / "docs" / "build_site.py"))
-CHAPTER = pytest.param(
-    f"chapters/{ASSIGNMENT}", id="a chapter"
-)  # tests that name one would be built for on another worker
-READ = ("index", "students", "instructors", "trust", "glossary", CHAPTER, "api/sim")
+BUILD_SITE = runpy.run_path(str(ROOT / "docs" / "build_site.py"))
+# A test whose id contains a chapter's name runs on another worker, which would build the site again.
+CHAPTER = pytest.param(f"chapters/{ASSIGNMENT}", id="a chapter")
+PAGES = ("index", "students", "instructors", "trust", "glossary", CHAPTER, "api/sim")
 RULES = {"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}}
 LINK = re.compile(r'<(?:a|img|iframe|link|script)[^>]+(?:href|src)="([^"]+)"')
 
@@ -46,7 +45,7 @@ SIZE = """address => new Promise((resolve, reject) => {
 
 @pytest.fixture(scope="module")
 def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A class's folder: one graded robot with a flaw, among others whose failures the verification has recorded."""
+    """A class's folder: a graded robot with a flaw, and other students whose failures are those of recorded mutants."""
     folder, answer = (tmp_path_factory.mktemp(name) for name in ("graded", "answer"))
     flaws = {mutant.id: mutant for mutant in mutants(ASSIGNMENT)}
     write_mutant(flaws["brakes_too_late"], suites.hidden(ASSIGNMENT).sources, answer)
@@ -67,7 +66,7 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def pictures(chromium: Browser, graded: Path) -> Path:
-    """The pictures of the instructors' guide: a page of feedback, a run in it, and the page of a class."""
+    """The screenshots of the instructors' guide: a page of feedback, a run in it, and the page of a class."""
     page = chromium.new_page(viewport={"width": 1100, "height": 800})
     folder = graded / "screenshots"
     for name, path in (("class", "index.html"), ("alice", "alice/feedback.html")):
@@ -85,34 +84,32 @@ def pictures(chromium: Browser, graded: Path) -> Path:
 @pytest.fixture(scope="module")
 def site(pictures: Path) -> Path:
     """The folder of the built site."""
-    assert MADE["build"](pictures).stderr == ""
-    return Path(MADE["HTML"])
+    assert BUILD_SITE["build"](pictures).stderr == ""
+    return Path(BUILD_SITE["HTML"])
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("name", READ)
-def test_axe_finds_nothing_wrong_with_a_page_of_the_site(
+@pytest.mark.parametrize("name", PAGES)
+def test_axe_finds_no_violation_on_a_page_of_the_site(
     site: Path, page: Page, name: str, scheme: str, screenshots: Path
 ) -> None:
     page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
     page.goto((site / f"{name}.html").as_uri())
     page.screenshot(path=screenshots / f"site-{name.replace('/', '-')}-{scheme}.png")
-    found = Axe().run(page, options=RULES)
-    assert found.violations_count == 0, found.generate_report()
+    report = Axe().run(page, options=RULES)
+    assert report.violations_count == 0, report.generate_report()
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("name", ["alice/feedback.html", "index.html"])
-def test_axe_finds_nothing_wrong_with_feedback(
-    pictures: Path, graded: Path, page: Page, name: str, scheme: str
-) -> None:
+def test_axe_finds_no_violation_in_feedback(pictures: Path, graded: Path, page: Page, name: str, scheme: str) -> None:
     page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
     page.goto((graded / name).as_uri())
-    found = Axe().run(page, options=RULES)
-    assert found.violations_count == 0, found.generate_report()
+    report = Axe().run(page, options=RULES)
+    assert report.violations_count == 0, report.generate_report()
 
 
-@pytest.mark.parametrize("name", READ)
+@pytest.mark.parametrize("name", PAGES)
 def test_a_page_fits_a_phone(site: Path, page: Page, name: str) -> None:
     page.set_viewport_size({"width": 360, "height": 740})
     page.goto((site / f"{name}.html").as_uri())
@@ -157,28 +154,28 @@ def test_a_button_copies_commands_without_their_prompts(site: Path, page: Page) 
 
 def test_a_page_has_an_icon_a_summary_and_a_picture_for_links_to_it(site: Path, page: Page) -> None:
     page.goto((site / "index.html").as_uri())
-    for meta, words in (("og:description", "A ROS 2 course"), ("og:image:alt", "lidar"), ("og:image", "preview.png")):
-        expect(page.locator(f'meta[property="{meta}"]')).to_have_attribute("content", re.compile(words))
+    for meta, text in (("og:description", "A ROS 2 course"), ("og:image:alt", "lidar"), ("og:image", "preview.png")):
+        expect(page.locator(f'meta[property="{meta}"]')).to_have_attribute("content", re.compile(text))
     icon = page.locator('link[rel~="icon"]').evaluate("link => link.href")
     for address, size in ((icon, [64, 64]), ((site / "preview.png").as_uri(), [1200, 630])):
         assert page.evaluate(SIZE, address) == size
 
 
 @pytest.mark.parametrize("name", ["sim", "autograder"])
-def test_a_page_of_the_api_begins_with_a_guide_and_names_no_words_a_type(site: Path, page: Page, name: str) -> None:
+def test_a_page_of_the_api_begins_with_a_guide_and_has_no_fields_for_types(site: Path, page: Page, name: str) -> None:
     page.goto((site / "api" / f"{name}.html").as_uri())
-    begin = page.locator("section > section").first
-    expect(begin.locator(".highlight-python").first).to_be_visible()
-    expect(begin.locator("dl.py")).to_have_count(0)
+    guide = page.locator("section > section").first
+    expect(guide.locator(".highlight-python").first).to_be_visible()
+    expect(guide.locator("dl.py")).to_have_count(0)
     assert page.locator("dt", has_text=re.compile("^Type")).all_inner_texts() == []
 
 
 def test_each_glossary_term_is_linked_at_most_once_in_a_chapter(site: Path) -> None:
-    for chapter in chapters():  # no parameter: see CHAPTER
+    for chapter in chapters():  # not parametrized, for the reason at CHAPTER
         text = (site / "chapters" / f"{chapter.assignment}.html").read_text(encoding="utf-8")
-        words = re.findall(r'href="\.\./glossary\.html#(term-[^"]+)"', text)
-        assert len(words) >= 5, chapter.assignment
-        assert len(words) == len(set(words)), chapter.assignment
+        terms = re.findall(r'href="\.\./glossary\.html#(term-[^"]+)"', text)
+        assert len(terms) >= 5, chapter.assignment
+        assert len(terms) == len(set(terms)), chapter.assignment
 
 
 @pytest.mark.promise(
@@ -186,7 +183,7 @@ def test_each_glossary_term_is_linked_at_most_once_in_a_chapter(site: Path) -> N
     "`make docs` builds the site: guides, chapters with their outputs, and the simulator's API reference.",
 )
 def test_each_internal_link_of_the_site_has_a_target(site: Path) -> None:
-    """Sphinx checks links from page to page. It does not check those of raw HTML and of notebook outputs."""
+    """Sphinx checks links between pages, but not those in raw HTML and in notebooks' outputs."""
     for path in site.rglob("*.html"):
         for link in LINK.findall(path.read_text(encoding="utf-8")):
             target = urlsplit(link)

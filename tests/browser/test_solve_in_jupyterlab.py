@@ -1,7 +1,7 @@
-"""A chapter's release is opened in JupyterLab, the answers are typed in, and the check passes.
+"""A chapter's release is solved in JupyterLab: the answers are typed in, all cells run, and the check passes.
 
-`make test` takes at most one chapter, with a robot that drives; `make tour` and `make nightly` take them all.
-Screenshots of each chapter's pictures and of its check stay in `.build/screenshots`.
+`make test` solves one chapter; `make tour` and `make nightly` solve all. Screenshots of each chapter's pictures and of
+its check are written to `.build/screenshots`.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ __all__ = ["lab"]
 
 pytestmark = pytest.mark.browser
 
-EACH_TIME = ("07_best_practices",)
+EVERY_RUN = ("07_best_practices",)
 MINUTES = 8
 CHOSEN = [
-    pytest.param(chapter, id=chapter.assignment, marks=[] if chapter.assignment in EACH_TIME else [pytest.mark.nightly])
+    pytest.param(chapter, id=chapter.assignment, marks=[] if chapter.assignment in EVERY_RUN else [pytest.mark.nightly])
     for chapter in chapters()
 ]
 
@@ -68,7 +68,7 @@ LOADED = """id => {
     const cell = window.jupyterapp.shell.currentWidget.content.widgets.find(cell => cell.model.id === id);
     return [...cell.node.querySelectorAll("img")].every(image => image.complete && image.naturalWidth > 0);
 }"""
-# Its pictures have a height now, and may have pushed it out of sight.
+# Loaded pictures have a height, and may have moved the cell out of sight.
 CENTRE = """id => {
     const cell = window.jupyterapp.shell.currentWidget.content.widgets.find(cell => cell.model.id === id);
     (cell.node.querySelector("img") ?? cell.node).scrollIntoView({block: "center"});
@@ -97,7 +97,7 @@ def outputs(page: Page) -> dict[str, list[dict[str, Any]]]:
 
 
 def photograph(page: Page, cell: str, path: Path) -> None:
-    """Take a screenshot of a cell's output; all its pictures have loaded, and none is wider than the page."""
+    """Take a screenshot of a cell's output; all its pictures must have loaded, and fit into the cell."""
     page.evaluate(SCROLL, cell)
     page.wait_for_function(LOADED, arg=cell)
     page.evaluate(CENTRE, cell)
@@ -106,7 +106,7 @@ def photograph(page: Page, cell: str, path: Path) -> None:
 
 
 def is_blank(picture: str) -> bool:
-    """Say whether a picture, given as Base64, is of hardly more than one colour."""
+    """Return whether a picture, given as Base64, has hardly more than one colour."""
     with Image.open(io.BytesIO(base64.b64decode(picture))) as image:
         return len(image.convert("RGB").resize((64, 64)).getcolors(64 * 64) or ()) < 8
 
@@ -127,23 +127,25 @@ def test_a_chapters_release_is_solved_in_jupyterlab(page: Page, lab: Lab, screen
     lab.run_all(page)
     page.wait_for_function(FINISHED, timeout=60_000 * MINUTES, polling=500)
 
-    shown = outputs(page)
-    errors = [output for cell in shown.values() for output in cell if output["output_type"] == "error"]
+    cell_outputs = outputs(page)
+    errors = [output for cell in cell_outputs.values() for output in cell if output["output_type"] == "error"]
     assert not errors, errors[0]["traceback"]
     # Jupyter shows an exception that ends a thread of the kernel, and continues.
-    streams = ["".join(output.get("text", "")) for cell in shown.values() for output in cell]
-    assert not [text for text in streams if "Exception in thread" in text]
-    said = json.dumps(shown, ensure_ascii=False)
-    counts = re.findall(r"(\d+) of (\d+) visible checks passed", said)
+    streams = ["".join(output.get("text", "")) for cell in cell_outputs.values() for output in cell]
+    assert not [stream for stream in streams if "Exception in thread" in stream]
+    text = json.dumps(cell_outputs, ensure_ascii=False)
+    counts = re.findall(r"(\d+) of (\d+) visible checks passed", text)
     assert counts
-    assert all(passed == every for passed, every in counts), counts
+    assert all(passed == total for passed, total in counts), counts
     drawn = {
-        cell: [out["data"]["image/png"] for out in made if "image/png" in out.get("data", {})]
-        for cell, made in shown.items()
+        cell: [output["data"]["image/png"] for output in outputs_of_cell if "image/png" in output.get("data", {})]
+        for cell, outputs_of_cell in cell_outputs.items()
     }
     assert not any(is_blank(picture) for pictures in drawn.values() for picture in pictures)
     figures = [cell.id for cell in chapter.read().cells if cell.cell_type == "markdown" and "](figures/" in cell.source]
-    checks = [cell for cell, made in shown.items() if "visible checks passed" in json.dumps(made)]
+    checks = [
+        cell for cell, outputs_of_cell in cell_outputs.items() if "visible checks passed" in json.dumps(outputs_of_cell)
+    ]
     page.set_viewport_size({"width": 1100, "height": 1100})
     for cell in (*figures[:1], *[cell for cell, pictures in drawn.items() if pictures][:3], checks[-1]):
         photograph(page, cell, screenshots / f"tour-{name}-{cell}.png")

@@ -27,8 +27,8 @@ OPEN = """async path => {
     const editor = await window.jupyterapp.commands.execute("docmanager:open", {path, factory: "Editor"});
     await editor.context.ready;
 }"""
-# Jupyter's own command, without its question. It ends when the last cell has. It saves the notebook,
-# which JupyterLab would otherwise do two minutes later: until then, a marker shows unsaved changes.
+# Jupyter's own command without its dialog, which ends with the last cell. It also saves the notebook, which JupyterLab
+# would do two minutes later: until then, a marker shows unsaved changes.
 RUN_ALL = """async () => {
     const panel = window.jupyterapp.shell.currentWidget;
     await panel.sessionContext.session.kernel.restart();
@@ -42,17 +42,17 @@ OUTPUTS = """() => window.jupyterapp.shell.currentWidget.content.widgets
 
 @pytest.fixture
 def chapter(lab: Lab, request: pytest.FixtureRequest) -> Path:
-    """The first chapter's release, in a folder of the test's own; of its cells, those that write files."""
+    """The first chapter's release in the test's own folder, reduced to the cells that write files."""
     folder = lab.folder / request.node.name
     shutil.copytree(FIRST.folder, folder, ignore=shutil.ignore_patterns("build", "install", "log"))
     released = in_form(FIRST.read(), Form.RELEASED)
-    written = [cell for cell in released.cells if cell.source.startswith("%%writefile")]
-    released.cells = [new_code_cell("from autograder.notebook import ros\n\nros()"), *written]
+    writing_cells = [cell for cell in released.cells if cell.source.startswith("%%writefile")]
+    released.cells = [new_code_cell("from autograder.notebook import ros\n\nros()"), *writing_cells]
     nbformat.write(released, folder / FIRST.notebook_path.name)
     return folder
 
 
-def edit_in_the_editor(page: Page, folder: Path) -> None:
+def edit_file(page: Page, folder: Path) -> None:
     """Open the file in a tab of JupyterLab, type the answer over its text and save it with Ctrl-S."""
     page.evaluate(OPEN, f"{folder.name}/{FILE}")
     page.locator(".jp-FileEditor .cm-content").click()
@@ -78,24 +78,24 @@ def run_all(page: Page, lab: Lab, folder: Path) -> str:
 def test_run_all_keeps_a_file_that_was_edited_in_the_editor(page: Page, lab: Lab, chapter: Path) -> None:
     run_all(page, lab, chapter)
     assert "NotImplementedError" in (chapter / FILE).read_text()
-    edit_in_the_editor(page, chapter)
-    told = run_all(page, lab, chapter)
+    edit_file(page, chapter)
+    outputs = run_all(page, lab, chapter)
     assert (chapter / FILE).read_text() == ANSWER
-    assert f"{FILE} was kept as it is" in told
+    assert f"{FILE} was kept as it is" in outputs
     assert not (chapter / "ws" / REPLACED).exists()
 
 
 def test_a_file_and_its_cell_that_were_both_changed_are_both_kept(page: Page, lab: Lab, chapter: Path) -> None:
     run_all(page, lab, chapter)
-    edit_in_the_editor(page, chapter)
+    edit_file(page, chapter)
     notebook = nbformat.read(chapter / FIRST.notebook_path.name, as_version=4)
     notebook.cells[-1].source = CELL
     nbformat.write(notebook, chapter / FIRST.notebook_path.name)
-    told = run_all(page, lab, chapter)
+    outputs = run_all(page, lab, chapter)
     copy = Path("ws", REPLACED, Path(FILE).relative_to("ws")).with_suffix(".py.1")
     assert (chapter / FILE).read_text() == CELL.partition("\n")[2]
     assert (chapter / copy).read_text() == ANSWER
-    assert f"{FILE} was changed outside of this cell. Its old text was copied to {copy}." in told
+    assert f"{FILE} was changed outside of this cell. Its old text was copied to {copy}." in outputs
 
 
 def test_the_student_interface_has_no_button_validate(page: Page, lab: Lab, chapter: Path) -> None:

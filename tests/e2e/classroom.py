@@ -24,16 +24,16 @@ Grades = dict[str, tuple[float, float, bool]]
 
 
 class Classroom:
-    """A course directory, an exchange and the students' folders, all below one place.
+    """A course directory, an exchange and the students' folders.
 
     Args:
-        place: a folder for all of it.
+        root: the folder that contains them.
         assignment: the assignment of the class.
     """
 
-    def __init__(self, place: Path, assignment: str) -> None:
-        self.place, self.assignment = place, assignment
-        self.course, self.exchange = place / "course", place / "exchange"
+    def __init__(self, root: Path, assignment: str) -> None:
+        self.root, self.assignment = root, assignment
+        self.course, self.exchange = root / "course", root / "exchange"
         self.exchange.mkdir(parents=True)
         shutil.copytree(
             course_paths.chapter(assignment), self.course / "chapters" / assignment, ignore=course_paths.NOT_COPIED
@@ -42,9 +42,11 @@ class Classroom:
 
     def run(self, folder: Path, *command: str) -> str:
         """Run a command that must succeed; return its output."""
-        # Each person has settings and a cache of their own.
-        own = {name: str(folder / ".jupyter") for name in ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "IPYTHONDIR")}
-        environment = {**os.environ, **own, "NBGRADER_EXCHANGE": str(self.exchange)}
+        # Each person has their own settings and cache.
+        own_folders = {
+            name: str(folder / ".jupyter") for name in ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "IPYTHONDIR")
+        }
+        environment = {**os.environ, **own_folders, "NBGRADER_EXCHANGE": str(self.exchange)}
         done = subprocess.run(
             command, cwd=folder, env=environment, capture_output=True, text=True, timeout=1800, check=False
         )
@@ -58,13 +60,13 @@ class Classroom:
 
     def grade(self, *options: str) -> Path:
         """Grade all submissions with `autograder grade`; return the folder of the results."""
-        out = self.place / "results" / self.assignment
+        out = self.root / "results" / self.assignment
         verb = (sys.executable, "-c", "from autograder.cli import main; main()", "grade")
         self.run(self.course, *verb, "submitted", "--assignment", self.assignment, "--out", str(out), *options)
         return out
 
     def grades(self, student: str) -> Grades:
-        """Return each grade cell's points in the gradebook, its maximum, and whether a person is to grade it."""
+        """Return each grade cell's points in the gradebook, its maximum, and whether it needs manual grading."""
         with Gradebook(f"sqlite:///{self.course}/gradebook.db") as gradebook:
             submission = gradebook.find_submission_notebook(self.assignment, self.assignment, student)
             return {
@@ -85,7 +87,7 @@ class Classroom:
         path = folder / f"{self.assignment}.ipynb"
         notebook = nbformat.read(path, as_version=4)
         fill_in(notebook, self.assignment)
-        write_down(notebook, self.assignment, answer / "src")
+        add_cells_for_changes(notebook, self.assignment, answer / "src")
         nbformat.write(notebook, path)
 
 
@@ -97,34 +99,34 @@ def fill_in(released: NotebookNode, assignment: str) -> None:
         cell.source = answers.get(cell.id, cell.source)
 
 
-def write_down(notebook: NotebookNode, assignment: str, src: Path) -> None:
-    """Make a solved notebook write the files of `src` that differ from the reference, each in its own or a new cell."""
+def add_cells_for_changes(notebook: NotebookNode, assignment: str, src: Path) -> None:
+    """Make a solved notebook write the files of `src` that differ from the reference, by changed and new cells."""
     cells = {cell.source.partition("\n")[0]: cell for cell in notebook.cells if cell.cell_type == "code"}
-    for name, text in changes(assignment, src):
-        head = f"%%writefile ws/src/{name}"
+    for name, text in changed_files(assignment, src):
+        magic = f"%%writefile ws/src/{name}"
         if text is None:
             notebook.cells.append(new_code_cell(f"!rm ws/src/{name}"))
         elif not text:  # %%writefile does not write an empty file
             notebook.cells.append(new_code_cell(f"!: > ws/src/{name}"))
-        elif head in cells:
-            cells[head].source = f"{head}\n{text}"
+        elif magic in cells:
+            cells[magic].source = f"{magic}\n{text}"
         else:
             notebook.cells.append(new_code_cell(f"!mkdir -p {Path('ws/src', name).parent}"))
-            notebook.cells.append(new_code_cell(f"{head}\n{text}"))
+            notebook.cells.append(new_code_cell(f"{magic}\n{text}"))
 
 
-def changes(assignment: str, src: Path) -> Iterator[tuple[str, str | None]]:
-    """Yield the files that differ from the reference's, by name, with their text; None for one that is gone."""
+def changed_files(assignment: str, src: Path) -> Iterator[tuple[str, str | None]]:
+    """Yield the name and text of each file that differs from the reference; the text of a deleted file is None."""
     sources = suites.hidden(assignment).sources
     reference = {name: (course_paths.SOLUTIONS / name).read_text() for name in files(course_paths.SOLUTIONS, sources)}
-    there = {name: (src / name).read_text() for name in files(src, sources)}
-    for name in sorted(reference.keys() | there.keys()):
-        if reference.get(name) != there.get(name):
-            text = there.get(name)
+    submitted = {name: (src / name).read_text() for name in files(src, sources)}
+    for name in sorted(reference.keys() | submitted.keys()):
+        if reference.get(name) != submitted.get(name):
+            text = submitted.get(name)
             yield name, None if text is None else text.removesuffix("\n")
 
 
 def files(root: Path, folders: tuple[str, ...]) -> list[str]:
-    """Return the files below some folders of a root, without what Python leaves."""
-    found = (path for folder in folders for path in (root / folder).rglob("*") if path.is_file())
-    return [str(path.relative_to(root)) for path in found if "__pycache__" not in path.parts]
+    """Return the files in some folders of `root`, without Python's caches."""
+    paths = (path for folder in folders for path in (root / folder).rglob("*") if path.is_file())
+    return [str(path.relative_to(root)) for path in paths if "__pycache__" not in path.parts]

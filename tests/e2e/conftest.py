@@ -1,4 +1,4 @@
-"""What the long tests share: the reference packages, all of them in one workspace that is built once."""
+"""Fixtures of the long tests: all reference packages, in one workspace that is built once."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tests.e2e.sandbox_support import in_worker_sandbox, is_forked
 
 
 def forked(scratch: Path) -> bool:
-    """Return whether a program that may be forked into its sandbox is."""
+    """Return whether a program whose profile allows a fork is forked into its sandbox."""
     program = scratch / "program.py"
     program.write_text("import signal\nsignal.pause()")
     spec = Sandbox(scratch, mounts=(Mount(scratch, writable=True),))
@@ -33,9 +33,9 @@ def forked(scratch: Path) -> bool:
 
 @pytest.fixture(scope="session")
 def forks() -> None:
-    """For tests of programs that are forked into sandboxes, which a kernel may forbid: then they are started."""
+    """Skip the test if the kernel does not allow a fork into a sandbox: programs are then started instead."""
     if not in_worker_sandbox(forked):
-        pytest.skip("this machine lets no process join a sandbox")
+        pytest.skip("this machine does not let a process join a sandbox")
 
 
 @dataclass(frozen=True)
@@ -59,10 +59,10 @@ class Terminal:
 
 @pytest.fixture(scope="session")
 def reference(tmp_path_factory: pytest.TempPathFactory) -> Terminal:
-    """A sourced workspace with every package of `solutions/`, as colcon built them; `log/build.txt` has its words.
+    """A sourced workspace with every package of `solutions/`, as colcon built them; `log/build.txt` has its output.
 
-    Message packages, which take by far the longest, are built and cached in the same way as by the grader. The others
-    are built as a student does it. The workers of a run share the workspace: the first one builds it.
+    Message packages, which take by far the longest, are built and cached as by the grader, the others as by a student.
+    The workers of a run share the workspace: the first one builds it.
     """
     base = tmp_path_factory.getbasetemp()
     root = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "reference-workspace"
@@ -79,11 +79,11 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> Terminal:
 
 def _build_reference(terminal: Terminal, ros: environment.RosEnvironment, scratch: Path) -> None:
     """Build the workspace. Its log is written last, so it shows that the build is complete."""
-    found, broken = find_packages(SOLUTIONS)
+    packages, broken = find_packages(SOLUTIONS)
     assert not broken
-    for name, folder in found.items():
+    for name, folder in packages.items():
         shutil.copytree(folder, terminal.root / "src" / name)
-    messages = [name for name, folder in found.items() if (folder / "CMakeLists.txt").is_file()]
+    messages = [name for name, folder in packages.items() if (folder / "CMakeLists.txt").is_file()]
     for name in messages:
         (home := scratch / name).mkdir()
         build(Workspace(terminal.root, ros, home), (name,))

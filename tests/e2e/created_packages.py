@@ -1,6 +1,7 @@
 """Packages as `ros2 pkg create` writes them, and a student's additions.
 
-`python -m tests.e2e.created_packages` prints the files that the tool writes. With the real ros2cli, that is the record.
+`python -m tests.e2e.created_packages` prints the files that the tool writes. With the real ros2cli, its output is
+the record.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ from autograder import course_paths
 
 RECORD = Path(__file__).with_name("created_packages.yaml")
 ROS2 = (sys.executable, "-m", "autograder.ros.ros2", "pkg", "create", "--license", "Apache-2.0")
-WHO = ("--maintainer-name", "Robot Course", "--maintainer-email", "robot.course@example.com")
-VERSION = "0.1.0"  # 08 asks for it, and the tool writes 0.0.0
+MAINTAINER = ("--maintainer-name", "Robot Course", "--maintainer-email", "robot.course@example.com")
+VERSION = "0.1.0"  # 08 requires it; the tool writes 0.0.0
 PYTHON, CMAKE = "ament_python", "ament_cmake"
 
 
@@ -31,24 +32,24 @@ def create(folder: Path, package: str) -> Path:
     reference = ElementTree.parse(course_paths.SOLUTIONS / package / "package.xml")
     build_type = CMAKE if (course_paths.SOLUTIONS / package / "CMakeLists.txt").is_file() else PYTHON
     options = ["--build-type", build_type, "--description", reference.findtext("description") or ""]
-    if needs := [one.text or "" for one in reference.iter("depend")]:
-        options += ["--dependencies", *needs]
-    subprocess.run([*ROS2, package, *WHO, *options], cwd=folder, check=True, capture_output=True)
+    if dependencies := [element.text or "" for element in reference.iter("depend")]:
+        options += ["--dependencies", *dependencies]
+    subprocess.run([*ROS2, package, *MAINTAINER, *options], cwd=folder, check=True, capture_output=True)
     return folder / package
 
 
-def fill_in(made: Path, target: Path, given: Collection[str] = ()) -> None:
+def fill_in(created: Path, target: Path, given: Collection[str] = ()) -> None:
     """Put the tool's files into `target`, a copy of the reference package, and add the student's files.
 
-    Modules, launch files, configuration and further tests stay the reference's, and so do the folders of the package
-    that the chapter gives.
+    Modules, launch files, configuration and further tests stay the reference's. So do the folders in `given`, which
+    students get with the chapter.
     """
-    for file in sorted(made.rglob("*")):
-        if file.is_file() and file.relative_to(made).parts[0] not in given:
-            copy = target / file.relative_to(made)
+    for file in sorted(created.rglob("*")):
+        if file.is_file() and file.relative_to(created).parts[0] not in given:
+            copy = target / file.relative_to(created)
             copy.parent.mkdir(parents=True, exist_ok=True)
             copy.write_bytes(file.read_bytes())
-    reference = course_paths.SOLUTIONS / made.name
+    reference = course_paths.SOLUTIONS / created.name
     _declare(target / "package.xml", reference / "package.xml")
     if (target / "setup.py").is_file():
         _install(target / "setup.py", (reference / "setup.py").read_text())
@@ -56,8 +57,8 @@ def fill_in(made: Path, target: Path, given: Collection[str] = ()) -> None:
         _generate(target / "CMakeLists.txt", (reference / "CMakeLists.txt").read_text())
 
 
-def written(package: Path) -> set[str]:
-    """Return the lines of all files of a package, each with its file; those with the version are left out."""
+def lines_of(package: Path) -> set[str]:
+    """Return the lines of all files of a package, each with its file, except lines with the version."""
     return {
         f"{file.relative_to(package)}: {line.rstrip(', ')}"
         for file in package.rglob("*")
@@ -69,9 +70,15 @@ def written(package: Path) -> set[str]:
 
 def _declare(manifest: Path, reference: Path) -> None:
     text = manifest.read_text().replace("0.0.0", VERSION)
-    here = {(one.tag, one.text) for one in ElementTree.fromstring(text)}
-    more = [one for one in ElementTree.parse(reference).getroot() if (one.tag, one.text) not in here]
-    lines = [f"  <{one.tag}>{one.text}</{one.tag}>\n" for one in more if "depend" in one.tag or "group" in one.tag]
+    present = {(element.tag, element.text) for element in ElementTree.fromstring(text)}
+    missing = [
+        element for element in ElementTree.parse(reference).getroot() if (element.tag, element.text) not in present
+    ]
+    lines = [
+        f"  <{element.tag}>{element.text}</{element.tag}>\n"
+        for element in missing
+        if "depend" in element.tag or "group" in element.tag
+    ]
     manifest.write_text(text.replace("  <export>", f"{''.join(lines)}\n  <export>"))
 
 
@@ -94,21 +101,27 @@ def _generate(cmake: Path, reference: str) -> None:
 
 
 def facts(folder: Path) -> dict[str, Any]:
-    """Create a package of each kind in `folder` and return their contents, apart from the wording."""
-    found = {}
-    for kind, more in ((PYTHON, ("--node-name", "hello")), (CMAKE, ())):
+    """Create a package of each kind in `folder` and return their contents without the prose."""
+    contents = {}
+    for kind, options in ((PYTHON, ("--node-name", "hello")), (CMAKE, ())):
         package = f"of_{kind}"
-        command = [*ROS2, package, *WHO, "--build-type", kind, "--dependencies", "rclpy", "std_msgs", *more]
+        command = [*ROS2, package, *MAINTAINER, "--build-type", kind, "--dependencies", "rclpy", "std_msgs", *options]
         subprocess.run(command, cwd=folder, check=True, capture_output=True)
-        found[kind] = dict(_facts(folder / package))
-    return found
+        contents[kind] = dict(_facts(folder / package))
+    return contents
 
 
 def _facts(package: Path) -> Iterable[tuple[str, Any]]:
     for file in sorted(package.rglob("*")):
         name = str(file.relative_to(package))
         if file.name == "package.xml":
-            yield name, [f"{one.tag}: {(one.text or '').strip()} {one.attrib or ''}".strip() for one in _all(file)]
+            yield (
+                name,
+                [
+                    f"{element.tag}: {(element.text or '').strip()} {element.attrib or ''}".strip()
+                    for element in _all(file)
+                ],
+            )
         elif file.suffix == ".py":
             yield name, _python(file.read_text())
         elif file.suffix == ".cfg":
@@ -124,18 +137,18 @@ def _all(manifest: Path) -> list[ElementTree.Element]:
 
 
 def _python(text: str) -> list[str]:
-    """Return the imports, the calls' arguments by name, the functions and their marks, and the called functions."""
-    said = []
+    """Return the imports, the calls' arguments by name, the functions and their pytest marks."""
+    parts = []
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import | ast.ImportFrom):
-            said.append(ast.unparse(node))
+            parts.append(ast.unparse(node))
         elif isinstance(node, ast.keyword) and node.arg != "reason":
-            said.append(f"{node.arg}={ast.unparse(node.value)}")
+            parts.append(f"{node.arg}={ast.unparse(node.value)}")
         elif isinstance(node, ast.FunctionDef):
-            said.append(f"def {node.name}")
+            parts.append(f"def {node.name}")
         elif isinstance(node, ast.Attribute) and ast.unparse(node).startswith("pytest.mark."):
-            said.append(ast.unparse(node))
-    return said
+            parts.append(ast.unparse(node))
+    return parts
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """A cluster on one machine: a scheduler and workers, each with its own network and mount namespace.
 
-Where namespaces cannot be made (not root, no iproute2), all run side by side on the loopback address.
+Where namespaces cannot be made (not root, no iproute2), all of them use the loopback address.
 """
 
 from __future__ import annotations
@@ -28,23 +28,23 @@ def can_make_namespaces() -> bool:
     if os.geteuid() != 0 or shutil.which("ip") is None:
         return False
     name = f"probe-{os.getpid()}"
-    made = subprocess.run(["ip", "netns", "add", name], capture_output=True, check=False).returncode == 0
-    if made:
+    is_made = subprocess.run(["ip", "netns", "add", name], capture_output=True, check=False).returncode == 0
+    if is_made:
         subprocess.run(["ip", "netns", "del", name], check=True)
-    return made
+    return is_made
 
 
 @dataclass
 class LocalCluster:
-    """The machines of a cluster, by their names, and what runs on them.
+    """The machines of a cluster, by their names, and the processes that run on them.
 
     Attributes:
-        place: the folder of the client, which workers do not see in namespaces.
-        apart: whether each machine has its own namespaces.
+        client_folder: the client's folder, which is hidden from workers that have their own namespaces.
+        has_namespaces: whether each machine has its own namespaces.
     """
 
-    place: Path
-    apart: bool
+    client_folder: Path
+    has_namespaces: bool
     certificates: Path
     machines: Path
     running: dict[str, subprocess.Popen[bytes]] = field(default_factory=dict)
@@ -52,7 +52,7 @@ class LocalCluster:
     @property
     def address(self) -> str:
         """The address of the scheduler."""
-        return f"tls://10.77.0.1:{PORT}" if self.apart else f"tls://127.0.0.1:{PORT + os.getpid() % 1000}"
+        return f"tls://10.77.0.1:{PORT}" if self.has_namespaces else f"tls://127.0.0.1:{PORT + os.getpid() % 1000}"
 
     def namespace(self, machine: str) -> str:
         """Return the name of a machine's network namespace."""
@@ -74,22 +74,22 @@ class LocalCluster:
         """Run a command on a machine, in its own session."""
         folder = self.machines / machine
         folder.mkdir(exist_ok=True)
-        if self.apart:
-            if machine != CLIENT:  # submissions and results are on no other machine
+        if self.has_namespaces:
+            if machine != CLIENT:  # no other machine has submissions and results
                 command = [
                     "unshare",
                     "--mount",
                     "sh",
                     "-c",
                     'mount -t tmpfs none "$0" && exec "$@"',
-                    str(self.place),
+                    str(self.client_folder),
                     *command,
                 ]
             command = ["ip", "netns", "exec", self.namespace(machine), *command]
         with (folder / "log").open("ab") as log:
             self.running[machine] = subprocess.Popen(
                 command,
-                cwd=self.place if machine == CLIENT else folder,
+                cwd=self.client_folder if machine == CLIENT else folder,
                 env={**os.environ, "TMPDIR": str(folder)},
                 start_new_session=True,
                 stdout=log,
@@ -105,7 +105,7 @@ class LocalCluster:
         process.wait(30)
 
     def restart_ended(self) -> None:
-        """Start again whatever has ended of the cluster, as its service manager would."""
+        """Restart the machines whose process has ended, as a service manager would."""
         for machine in (SCHEDULER, *WORKERS):
             if machine not in self.running or self.running[machine].poll() is not None:
                 self.start(machine)
@@ -117,23 +117,25 @@ class LocalCluster:
 
 @contextmanager
 def local_cluster(folder: Path) -> Iterator[LocalCluster]:
-    """Give a cluster whose files are below a folder; nothing runs yet."""
-    made = LocalCluster(folder / "client", can_make_namespaces(), folder / "cluster-certificates", folder / "machines")
-    made.place.mkdir()
-    made.machines.mkdir()
-    subprocess.run(["make", "-f", course_paths.ROOT / "Makefile", made.certificates.name], cwd=folder, check=True)
+    """Yield a cluster whose files are in a folder; nothing runs yet."""
+    cluster = LocalCluster(
+        folder / "client", can_make_namespaces(), folder / "cluster-certificates", folder / "machines"
+    )
+    cluster.client_folder.mkdir()
+    cluster.machines.mkdir()
+    subprocess.run(["make", "-f", course_paths.ROOT / "Makefile", cluster.certificates.name], cwd=folder, check=True)
     with ExitStack() as stack:
-        if made.apart:
-            _connect(made, stack)
+        if cluster.has_namespaces:
+            _connect(cluster, stack)
         try:
-            yield made
+            yield cluster
         finally:
-            for machine in made.running:
-                made.kill(machine)
+            for machine in cluster.running:
+                cluster.kill(machine)
 
 
 def _connect(cluster: LocalCluster, stack: ExitStack) -> None:
-    """Make the namespaces, joined by a bridge in the scheduler's. No address is added to the machine's own network."""
+    """Make the namespaces and join them by a bridge in the scheduler's. The machine's own network gets no address."""
 
     def ip(*arguments: str) -> None:
         subprocess.run(["ip", *arguments], check=True)

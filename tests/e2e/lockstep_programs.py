@@ -217,7 +217,7 @@ run(program)
 """,
 }
 
-PATIENT = """
+WAITING_CLIENT = """
 class Patient(Speaker):
     def __init__(self):
         super().__init__('patient')
@@ -232,7 +232,7 @@ class Patient(Speaker):
 spin(Patient)
 """
 
-GIVES_UP = """
+CLIENT_WITH_TIMEOUT = """
 def program():
     node = Speaker('asking')
     client = node.create_client(Trigger, 'ask')
@@ -301,7 +301,7 @@ while context.ok():
     executor.spin_once(timeout_sec=0.25)
 """
 
-BY_EVENTS = """
+EVENTS_EXECUTOR = """
 from rclpy.experimental import EventsExecutor
 
 class Ticker(Speaker):
@@ -315,7 +315,7 @@ executor.add_node(Ticker())
 executor.spin()
 """
 
-SLEEPS_BY_CLOCKS = """
+CLOCK_SLEEPS = """
 class Sleeper(Speaker):
     def __init__(self):
         super().__init__('sleeper')
@@ -335,7 +335,7 @@ class Sleeper(Speaker):
 spin(Sleeper)
 """
 
-TALK_AT_HOME = """
+TWO_NODES = """
 class Asker(Speaker):
     def __init__(self):
         super().__init__('asker')
@@ -420,7 +420,7 @@ class Ponger(Speaker):
 spin(Ponger)
 """
 
-OWN_TYPE_SPEAKER = """
+CUSTOM_TYPE_SPEAKER = """
 from lockstep_interfaces.msg import Word
 class Talker(Node):
     def __init__(self):
@@ -449,7 +449,7 @@ class Talker(Node):
 spin(Talker)
 """
 
-OWN_TYPE_LISTENER = """
+CUSTOM_TYPE_LISTENER = """
 from lockstep_interfaces.msg import Word
 class Listener(Speaker):
     def __init__(self):
@@ -521,7 +521,7 @@ FLOODS = {
 class Flood(Node):
     def __init__(self):
         super().__init__('flood')
-        self.them = [self.create_publisher(String, f'/topic_{number}', 10) for number in range(3000)]
+        self.topics = [self.create_publisher(String, f'/topic_{number}', 10) for number in range(3000)]
 
 
 rclpy.init()

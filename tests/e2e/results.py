@@ -1,4 +1,4 @@
-"""A result without its times, to compare two gradings of a submission."""
+"""Compare two gradings of a submission by their results without times."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Any
 
 
 def without_times(result: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a result, as its file has it, without the times of its grading."""
-    kept = copy.deepcopy(dict(result))
-    for timed in filter(None, (kept, kept["build"], *kept["checks"])):
+    """Return a result, in the form of its JSON file, without the times of its grading."""
+    compared = copy.deepcopy(dict(result))
+    for timed in filter(None, (compared, compared["build"], *compared["checks"])):
         del timed["seconds"]
     for field in ("started", "phases", "held_up"):
-        del kept[field]
-    return kept
+        del compared[field]
+    return compared

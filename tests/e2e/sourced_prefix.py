@@ -1,8 +1,8 @@
-"""Arranges the ROS 2 of this virtual environment like an installation from packages, such as /opt/ros/jazzy.
+"""Arrange the ROS 2 of this virtual environment like an installation from packages, such as /opt/ros/jazzy.
 
 `python -m tests.e2e.sourced_prefix FOLDER` copies the wheels, the real launch and ros2cli (`make real-launch`), and the
-packages that colcon has built into the environment. A shell that sources FOLDER/setup.bash then has a ROS 2 Jazzy as
-one from packages is, without the wheels' own start-up hook.
+packages that colcon has built into the environment. A shell that sources FOLDER/setup.bash then has ROS 2 Jazzy as
+installed from packages, without the wheels' start-up hook.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ SITE = Path(sysconfig.get_path("purelib"))
 REAL = ("ament_copyright", "launch", "ros2", "rosidl_runtime_py")
 FROM_APT = ("argcomplete", "lark", "numpy", "osrf-pycommon", "packaging", "psutil", "pyyaml")
 OURS = ("ros2_python_course", "ros2_course_standins")
-SETUP = """# Source this file, as that of an installed ROS 2: it sets what the real setup.bash sets.
+SETUP = """# Source this file as you would source setup.bash of an installed ROS 2: it sets the same variables.
 export ROS_VERSION=2 ROS_PYTHON_VERSION=3 ROS_DISTRO=jazzy
 export AMENT_PREFIX_PATH="{prefix}${{AMENT_PREFIX_PATH:+:$AMENT_PREFIX_PATH}}"
 export CMAKE_PREFIX_PATH="{prefix}${{CMAKE_PREFIX_PATH:+:$CMAKE_PREFIX_PATH}}"
@@ -33,13 +33,13 @@ export PATH="{prefix}/bin:$PATH"
 
 
 def is_ros(distribution: Distribution) -> bool:
-    """Whether a distribution is one of ROS's own; those of the package index are not part of the prefix."""
+    """Return whether a distribution is part of ROS, and not one that ROS needs from the package index."""
     name = distribution.name.lower().replace("-", "_")
     return name.startswith(("ros_", *REAL)) and name not in OURS and not name.startswith("ros_wheels")
 
 
 def files() -> Iterator[Path]:
-    """Yield all files of the prefix: those of the distributions, and those that colcon has installed."""
+    """Yield all files of ROS: those of its distributions, and those that colcon has installed."""
     for distribution in distributions():
         if is_ros(distribution):
             yield from (
@@ -54,11 +54,11 @@ def files() -> Iterator[Path]:
         yield from folder.rglob("*")
 
 
-def lay_out(target: Path) -> None:
-    """Copy the files below `target`, which is made, with an interpreter for its programs.
+def copy_prefix(target: Path) -> None:
+    """Copy the files of ROS to `target`, with an interpreter for its programs.
 
-    That is a virtual environment in `target` with what ROS needs from the package index. It stands for the system's
-    Python, for which apt installs these packages.
+    The interpreter is that of a virtual environment in `target`, with the packages that ROS needs from the package
+    index. It takes the place of the system's Python, for which apt installs these packages.
 
     Raises:
         FileExistsError: `target` exists.
@@ -67,7 +67,11 @@ def lay_out(target: Path) -> None:
     target.mkdir(parents=True)
     system = target / "python"
     subprocess.run([Path(sys.executable).resolve(), "-m", "venv", system], check=True)
-    pinned = [f"{one.name}=={one.version}" for one in distributions() if one.name.lower() in FROM_APT]
+    pinned = [
+        f"{distribution.name}=={distribution.version}"
+        for distribution in distributions()
+        if distribution.name.lower() in FROM_APT
+    ]
     subprocess.run([system / "bin/python", "-m", "pip", "install", "-qq", *pinned], check=True)
     interpreter = f"#!{system}/bin/python\n".encode()
     for file in sorted(set(files())):
@@ -79,7 +83,7 @@ def lay_out(target: Path) -> None:
         head, _, rest = copy.read_bytes().partition(b"\n")
         if head.startswith(f"#!{PREFIX}".encode()):
             copy.write_bytes(interpreter + rest)
-        elif copy.suffix == ".cmake":  # they name numpy's headers
+        elif copy.suffix == ".cmake":  # these files name the folder of numpy's headers
             copy.write_bytes(copy.read_bytes().replace(bytes(PREFIX), bytes(system)))
     site = SITE.relative_to(PREFIX)
     libraries = ":".join(map(str, [target / "lib", *(target / site).glob("ros_*.libs")]))
@@ -87,11 +91,11 @@ def lay_out(target: Path) -> None:
 
 
 def main() -> int:
-    """Lay the prefix out and say where."""
+    """Create the prefix and print the command that sources it."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("folder", type=Path, help="where; it must not exist")
+    parser.add_argument("folder", type=Path, help="the new folder; it must not exist")
     target = parser.parse_args().folder.absolute()
-    lay_out(target)
+    copy_prefix(target)
     print(f"source {target}/setup.bash")
     return 0
 

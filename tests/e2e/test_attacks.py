@@ -1,8 +1,8 @@
 """No attack gains a point, sees a hidden check, or stops the grader.
 
-Each attack is graded by the checks that it must lose. Those on 02 are graded by all checks but two sorts: the drives
-through a world take most of a grading, and one attack makes each check wait. `make verify` grades every attack by all
-checks.
+Each attack is graded by the checks that it must fail. Attacks on 02 are graded by all checks, with two exceptions: the
+drives through a world, which take most of a grading, and an attack that makes each check wait. `make verify` grades
+every attack by all checks.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ NIGHTLY = frozenset({"hasty in real time", "seldom in real time", "fixed in real
 
 
 def _attacks() -> Iterator[object]:
-    """Yield each attack with its assignment."""
+    """Yield each attack with its assignment, as parameters of a test."""
     for assignment in suites.graded_assignments():
         for attack in attacks(assignment):
             marks = [pytest.mark.nightly] if attack.id in NIGHTLY else []
@@ -43,7 +43,7 @@ def _attacks() -> Iterator[object]:
 
 
 def _everything_written(out: Path) -> str:
-    """Return the text of every file that grading and feedback left."""
+    """Return the text of every file that grading and feedback wrote."""
     texts = (path.read_text(errors="replace") for path in out.rglob("*") if path.suffix in (".json", ".html", ".ipynb"))
     return "\n".join(texts)
 
@@ -64,14 +64,14 @@ def test_an_attack_gains_no_point_and_learns_nothing(
     if attack.id == "fork bomb" and "pids" not in cgroup.bounds():
         pytest.skip("root without control groups: a fork bomb stops the machine")
     monkeypatch.setenv("SECRET_OF_THE_GRADER", CANARY)
-    everything = assignment == CHAPTER.assignment and attack.id not in STALLS
-    checks = CHAPTER.checks - (DRIVES - attack.fails) if everything else attack.fails
+    uses_all_checks = assignment == CHAPTER.assignment and attack.id not in STALLS
+    checks = CHAPTER.checks - (DRIVES - attack.fails) if uses_all_checks else attack.fails
     result = _grade(assignment, attack, checks, tmp_path)
     assert attack.verify(result, checks) == ""
 
     feedback.write(result, tmp_path / "out")
     written = _everything_written(tmp_path / "out")
-    assert STOLEN not in written  # the notebook's own source says "STOLEN", and a comma
+    assert STOLEN not in written  # in the notebook's own source, a comma follows the word
     assert f"SECRET_OF_THE_GRADER={CANARY}" not in written
     assert not [word for text in texts_of(tmp_path / "out") for word in hidden_text_in(text, hidden_lines(assignment))]
 
@@ -79,11 +79,11 @@ def test_an_attack_gains_no_point_and_learns_nothing(
         notebook = nbformat.read(tmp_path / "out" / NOTEBOOK, as_version=4)
         source = nbformat.read(course_paths.source_notebook(assignment), as_version=4)
         graded_cells = [cell for cell in notebook.cells if grade_id(cell)]
-        wanted = {grade_id(cell): cell for cell in source.cells if grade_id(cell)}
-        assert sorted(map(grade_id, graded_cells)) == sorted(wanted)
+        source_cells = {grade_id(cell): cell for cell in source.cells if grade_id(cell)}
+        assert sorted(map(grade_id, graded_cells)) == sorted(source_cells)
         for cell in graded_cells:
-            assert cell.metadata.nbgrader == wanted[grade_id(cell)].metadata.nbgrader
-            assert not cell.metadata.nbgrader.locked or cell.source == wanted[grade_id(cell)].source
+            assert cell.metadata.nbgrader == source_cells[grade_id(cell)].metadata.nbgrader
+            assert not cell.metadata.nbgrader.locked or cell.source == source_cells[grade_id(cell)].source
 
 
 def test_the_list_of_hidden_texts_is_not_empty() -> None:

@@ -1,4 +1,4 @@
-"""Notebooks that do not end, print without end, ask for input or end their kernel, in the sandboxed kernel."""
+"""The sandboxed kernel runs notebooks that do not end, print without end, ask for input or end their kernel."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 from tests.e2e.sandbox_support import in_worker_sandbox
 
 
-def executed(scratch: Path, cells: list[str]) -> dict[str, Any]:
+def execute(scratch: Path, cells: list[str]) -> dict[str, Any]:
     """Run cells in the sandboxed kernel; return the output of each, and the kernel's remaining processes."""
     from nbformat.v4 import new_code_cell, new_notebook
 
@@ -24,18 +24,20 @@ def executed(scratch: Path, cells: list[str]) -> dict[str, Any]:
     folder, home = scratch / "assignment", scratch / "home"
     folder.mkdir()
     home.mkdir()
-    book = new_notebook(cells=[new_code_cell(cell) for cell in cells])
+    notebook = new_notebook(cells=[new_code_cell(cell) for cell in cells])
     run_notebook.CELL_SECONDS = 8
-    run_notebook.execute(book, folder, Workspace(scratch / "ws", activate(), home))
+    run_notebook.execute(notebook, folder, Workspace(scratch / "ws", activate(), home))
     deadline = time.monotonic() + 30
-    while (left := _kernels()) and time.monotonic() < deadline:
+    while (remaining := _kernels()) and time.monotonic() < deadline:
         threading.Event().wait(0.05)
-    printed = ["".join(output.get("text", output.get("evalue", "")) for output in cell.outputs) for cell in book.cells]
-    return {"printed": printed, "files": sorted(path.name for path in folder.iterdir()), "left": left}
+    printed = [
+        "".join(output.get("text", output.get("evalue", "")) for output in cell.outputs) for cell in notebook.cells
+    ]
+    return {"printed": printed, "files": sorted(path.name for path in folder.iterdir()), "remaining": remaining}
 
 
 def _kernels() -> list[str]:
-    """Return the kernels in this cell's network namespace and below it: every sandbox is a child of this process."""
+    """Return the process ids of running kernels: each sandbox is a child of this process."""
     children = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
     return [pid for pid in children if Path(f"/proc/{pid}/comm").read_text().strip() == "bwrap"]
 
@@ -44,21 +46,23 @@ def _kernels() -> list[str]:
     ("cell", "printed"),
     [
         pytest.param("while True: pass", "", id="never ends"),
-        pytest.param("import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\nwhile True: pass", "", id="deaf"),
-        pytest.param("import os\nos._exit(0)", "", id="dies"),
+        pytest.param(
+            "import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\nwhile True: pass", "", id="ignores SIGINT"
+        ),
+        pytest.param("import os\nos._exit(0)", "", id="exits"),
         pytest.param("import os, signal\nos.kill(os.getpid(), signal.SIGKILL)", "", id="kills itself"),
         pytest.param("get_ipython().kernel.do_shutdown(True)", None, id="restarts its kernel"),
-        pytest.param("while True: print('x' * 10_000)", None, id="prints for ever"),
+        pytest.param("while True: print('x' * 10_000)", None, id="never stops printing"),
     ],
 )
-def test_a_cell_over_a_limit_ends_the_run_and_files_written_before_count(cell: str, printed: str | None) -> None:
-    answer = in_worker_sandbox(executed, ["%%writefile before.txt\nkept", cell])
+def test_a_cell_over_a_limit_ends_the_run_and_keeps_earlier_files(cell: str, printed: str | None) -> None:
+    answer = in_worker_sandbox(execute, ["%%writefile before.txt\nkept", cell])
     assert "before.txt" in answer["files"]
     assert printed is None or answer["printed"][1] == printed
-    assert answer["left"] == []
+    assert answer["remaining"] == []
 
 
-EMPTIES = """
+EMPTY_THE_ANSWER = """
 import os
 for pid in filter(str.isdigit, os.listdir("/proc")):
     try:
@@ -73,12 +77,12 @@ os.kill(os.getppid(), 9)
 """
 
 
-def test_a_cell_that_empties_the_answer_loses_outputs_and_its_files_count() -> None:
-    answer = in_worker_sandbox(executed, ["%%writefile before.txt\nkept", EMPTIES])
+def test_a_cell_that_empties_the_answer_loses_the_outputs_but_not_its_files() -> None:
+    answer = in_worker_sandbox(execute, ["%%writefile before.txt\nkept", EMPTY_THE_ANSWER])
     assert answer["files"] == ["after.txt", "before.txt"]
 
 
-FORGED = "import os\nkernel = get_ipython().kernel\nsession, io = kernel.session, kernel.iopub_socket\n"
+KERNEL = "import os\nkernel = get_ipython().kernel\nsession, io = kernel.session, kernel.iopub_socket\n"
 
 
 @pytest.mark.parametrize(
@@ -87,15 +91,15 @@ FORGED = "import os\nkernel = get_ipython().kernel\nsession, io = kernel.session
         pytest.param("session.send(io, 'status', content={}, parent=kernel.get_parent())", id="status without a state"),
         pytest.param("session.key = b'mine'", id="signed with another key"),
         pytest.param("io.send_multipart([b'', b'<IDS|MSG>'])", id="cut short"),
-        pytest.param("io.send_multipart([b'x' * 1000] * 100_000)", id="of a hundred thousand parts"),
+        pytest.param("io.send_multipart([b'x' * 1000] * 100_000)", id="a hundred thousand parts"),
         pytest.param("session.send(io, 'stream', content=[], parent=kernel.get_parent())", id="content is a list"),
-        pytest.param("io.send(memoryview(__import__('mmap').mmap(-1, 3 << 30)), copy=False)", id="of 3 GB"),
+        pytest.param("io.send(memoryview(__import__('mmap').mmap(-1, 3 << 30)), copy=False)", id="3 GB"),
     ],
 )
-def test_a_message_that_no_kernel_sends_at_most_ends_the_run_and_earlier_files_count(message: str) -> None:
-    answer = in_worker_sandbox(executed, ["%%writefile before.txt\nkept", f"{FORGED}{message}\nprint('sent')", "1 + 1"])
+def test_an_invalid_kernel_message_keeps_the_files_of_earlier_cells(message: str) -> None:
+    answer = in_worker_sandbox(execute, ["%%writefile before.txt\nkept", f"{KERNEL}{message}\nprint('sent')", "1 + 1"])
     assert answer["files"] == ["before.txt"]
-    assert answer["left"] == []
+    assert answer["remaining"] == []
 
 
 def test_a_cell_that_asks_for_input_raises_or_exits_does_not_stop_the_next_cell() -> None:
@@ -106,7 +110,7 @@ def test_a_cell_that_asks_for_input_raises_or_exits_does_not_stop_the_next_cell(
         "raise KeyboardInterrupt",
         "print('still here')",
     ]
-    answer = in_worker_sandbox(executed, cells)
+    answer = in_worker_sandbox(execute, cells)
     assert "division by zero" in answer["printed"][1]
     assert answer["printed"][-1] == "still here\n"
 
@@ -124,4 +128,4 @@ try:
 except OSError as error:
     print(error.errno in (101, 111))
 """
-    assert in_worker_sandbox(executed, [code])["printed"] == ["hidden\nTrue\n"]
+    assert in_worker_sandbox(execute, [code])["printed"] == ["hidden\nTrue\n"]

@@ -1,4 +1,4 @@
-"""The simulator as a ROS 2 robot in its own process: it sends and receives over DDS, as for a student's node."""
+"""The simulator in its own process, as students' nodes meet it: a ROS 2 robot that sends and receives over DDS."""
 
 from __future__ import annotations
 
@@ -31,24 +31,24 @@ PATIENCE = 60.0  # seconds: a deadline, not an expectation
 
 
 class Listener:
-    """A node that keeps received messages and waits for conditions."""
+    """A node that stores received messages and waits for conditions."""
 
     def __init__(self, context: rclpy.Context) -> None:
         self.node = rclpy.create_node("listener", context=context)
         self._executor = SingleThreadedExecutor(context=context)
         self._executor.add_node(self.node)
 
-    def hear(self, kind: Any, topic: str, qos: Any = 10) -> list[Any]:
-        """Subscribe; the list grows with each message."""
-        heard: list[Any] = []
-        self.node.create_subscription(kind, topic, heard.append, qos)
-        return heard
+    def subscribe(self, kind: Any, topic: str, qos: Any = 10) -> list[Any]:
+        """Subscribe to a topic; return the list to which each message is added."""
+        received: list[Any] = []
+        self.node.create_subscription(kind, topic, received.append, qos)
+        return received
 
     def wait(self, condition: Callable[[], Any], what: str) -> None:
         """Spin until the condition is true."""
         deadline = time.monotonic() + PATIENCE
         while not condition():
-            assert time.monotonic() < deadline, f"waited in vain for {what}"
+            assert time.monotonic() < deadline, f"timed out waiting for {what}"
             self._executor.spin_once(timeout_sec=0.1)
 
     def call(self, kind: Any, name: str, request: Any) -> Any:
@@ -79,7 +79,7 @@ Start = Callable[..., subprocess.Popen[str]]
 
 @pytest.fixture
 def simulator() -> Iterator[Start]:
-    """Start simulators that are ended with the test."""
+    """Return a function that starts a simulator, which is killed after the test."""
     started: list[subprocess.Popen[str]] = []
 
     def start(world: str | Path, *parameters: str) -> subprocess.Popen[str]:
@@ -104,9 +104,9 @@ def seconds(stamp: Any) -> float:
     return float(stamp.sec + stamp.nanosec * 1e-9)
 
 
-def test_scans_arrive_as_a_lidar_driver_sends_them(listener: Listener, simulator: Start) -> None:
-    scans = listener.hear(LaserScan, "/scan", qos_profile_sensor_data)
-    clock = listener.hear(Clock, "/clock", qos_profile_sensor_data)
+def test_scans_have_the_fields_and_qos_of_a_lidar_driver(listener: Listener, simulator: Start) -> None:
+    scans = listener.subscribe(LaserScan, "/scan", qos_profile_sensor_data)
+    clock = listener.subscribe(Clock, "/clock", qos_profile_sensor_data)
     simulator(WORLDS / "empty_room.yaml", "engine:=numpy")
     listener.wait(lambda: len(scans) >= 3, "three scans")
 
@@ -130,15 +130,15 @@ def test_scans_arrive_as_a_lidar_driver_sends_them(listener: Listener, simulator
 
 
 def test_a_reliable_subscription_gets_no_scan(listener: Listener, simulator: Start) -> None:
-    deaf = listener.hear(LaserScan, "/scan", 10)
-    scans = listener.hear(LaserScan, "/scan", qos_profile_sensor_data)
+    reliable = listener.subscribe(LaserScan, "/scan", 10)
+    scans = listener.subscribe(LaserScan, "/scan", qos_profile_sensor_data)
     simulator(WORLDS / "empty_room.yaml", "engine:=numpy")
     listener.wait(lambda: len(scans) >= 3, "three scans")
-    assert deaf == []
+    assert reliable == []
 
 
-def test_the_robot_obeys_cmd_vel_and_its_watchdog(listener: Listener, simulator: Start) -> None:
-    odometry = listener.hear(Odometry, "/odom")
+def test_the_robot_follows_cmd_vel_until_its_watchdog_stops_it(listener: Listener, simulator: Start) -> None:
+    odometry = listener.subscribe(Odometry, "/odom")
     publisher = listener.node.create_publisher(Twist, "/cmd_vel", 10)
     simulator(WORLDS / "empty_room.yaml", "engine:=numpy")
     listener.wait(lambda: odometry and publisher.get_subscription_count(), "the simulator")
@@ -155,8 +155,8 @@ def test_the_robot_obeys_cmd_vel_and_its_watchdog(listener: Listener, simulator:
     assert 0.05 < 2.0 * math.atan2(last.orientation.z, last.orientation.w) < 0.5
 
 
-def test_a_command_that_is_not_finite_is_not_obeyed(listener: Listener, simulator: Start) -> None:
-    odometry = listener.hear(Odometry, "/odom")
+def test_a_command_that_is_not_finite_is_ignored(listener: Listener, simulator: Start) -> None:
+    odometry = listener.subscribe(Odometry, "/odom")
     publisher = listener.node.create_publisher(Twist, "/cmd_vel", 10)
     simulator(WORLDS / "empty_room.yaml", "engine:=numpy")
     listener.wait(lambda: odometry and publisher.get_subscription_count(), "the simulator")
@@ -169,7 +169,7 @@ def test_a_command_that_is_not_finite_is_not_obeyed(listener: Listener, simulato
 
 
 def test_the_simulator_accepts_twist_stamped_if_its_parameter_says_so(listener: Listener, simulator: Start) -> None:
-    odometry = listener.hear(Odometry, "/odom")
+    odometry = listener.subscribe(Odometry, "/odom")
     publisher = listener.node.create_publisher(TwistStamped, "/cmd_vel", 10)
     simulator(WORLDS / "empty_room.yaml", "engine:=numpy", "stamped_cmd_vel:=true")
     listener.wait(lambda: odometry and publisher.get_subscription_count(), "the simulator")
@@ -179,11 +179,12 @@ def test_the_simulator_accepts_twist_stamped_if_its_parameter_says_so(listener: 
     listener.wait(lambda: odometry[-1].twist.twist.linear.x == pytest.approx(0.3), "the robot to drive")
 
 
-def test_several_robots_live_in_their_namespaces(listener: Listener, simulator: Start) -> None:
+def test_each_of_several_robots_has_its_own_namespace(listener: Listener, simulator: Start) -> None:
     scans = {
-        name: listener.hear(LaserScan, f"/{name}/scan", qos_profile_sensor_data) for name in ("alpha", "beta", "gamma")
+        name: listener.subscribe(LaserScan, f"/{name}/scan", qos_profile_sensor_data)
+        for name in ("alpha", "beta", "gamma")
     }
-    odometry = {name: listener.hear(Odometry, f"/{name}/odom") for name in scans}
+    odometry = {name: listener.subscribe(Odometry, f"/{name}/odom") for name in scans}
     publisher = listener.node.create_publisher(Twist, "/beta/cmd_vel", 10)
     simulator(WORLDS / "lab.yaml", "engine:=numpy", "robots:=[alpha, beta, gamma]")
     listener.wait(lambda: all(scans.values()) and all(odometry.values()), "all robots")
@@ -198,8 +199,8 @@ def test_several_robots_live_in_their_namespaces(listener: Listener, simulator: 
     assert odometry["alpha"][-1].pose.pose.position.x == 0.0
 
 
-def test_time_can_be_paused_stepped_exactly_and_started_again(listener: Listener, simulator: Start) -> None:
-    clock = listener.hear(Clock, "/clock", 10)
+def test_time_can_be_paused_stepped_exactly_and_resumed(listener: Listener, simulator: Start) -> None:
+    clock = listener.subscribe(Clock, "/clock", 10)
     simulator(WORLDS / "empty_room.yaml", "engine:=numpy", "start_paused:=true", "step_time:=0.5")
     for expected in ("paused at 0.500 s", "paused at 1.000 s"):
         assert listener.call(Trigger, "/simulator/step", Trigger.Request()).message == expected
@@ -210,14 +211,14 @@ def test_time_can_be_paused_stepped_exactly_and_started_again(listener: Listener
     running = listener.call(SetBool, "/simulator/pause", SetBool.Request(data=False))
     assert running.message.startswith("running at")
     clock.clear()
-    listener.wait(lambda: clock and seconds(clock[-1].clock) > 0.5, "time to go on")
+    listener.wait(lambda: clock and seconds(clock[-1].clock) > 0.5, "time to advance")
     paused = listener.call(SetBool, "/simulator/pause", SetBool.Request(data=True))
     again = listener.call(SetBool, "/simulator/pause", SetBool.Request(data=True))
     assert paused.message == again.message
 
 
-def test_time_runs_at_the_speed_asked_for_and_the_speed_can_change(listener: Listener, simulator: Start) -> None:
-    clock = listener.hear(Clock, "/clock", 10)
+def test_the_speed_of_time_can_change_while_it_runs(listener: Listener, simulator: Start) -> None:
+    clock = listener.subscribe(Clock, "/clock", 10)
     simulator(WORLDS / "empty_room.yaml", "engine:=numpy", "speed:=0.01")
     listener.wait(lambda: len(clock) >= 2, "the clock")
     request = SetParameters.Request(parameters=[Parameter("speed", value=50.0).to_parameter_msg()])
@@ -249,7 +250,7 @@ def test_each_parameter_is_described_and_only_two_can_change(listener: Listener,
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_the_simulator_ends_cleanly_on_a_signal(listener: Listener, simulator: Start, number: signal.Signals) -> None:
-    clock = listener.hear(Clock, "/clock", 10)
+    clock = listener.subscribe(Clock, "/clock", 10)
     process = simulator(WORLDS / "empty_room.yaml", "engine:=numpy")
     listener.wait(lambda: clock, "the clock")
     process.send_signal(number)
@@ -258,7 +259,7 @@ def test_the_simulator_ends_cleanly_on_a_signal(listener: Listener, simulator: S
     assert "Traceback" not in output
 
 
-# The simulator, which is interrupted while it adds the second row to its recording.
+# Runs the simulator and interrupts it while it adds the second row to its recording.
 INTERRUPTED = """
 import os, signal, sys
 from sim import recording

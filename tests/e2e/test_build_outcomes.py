@@ -1,4 +1,4 @@
-"""Where a build may fail, each package has colcon's result, and a failed package does not change that of another."""
+"""If a build may fail, each package gets its own result from colcon, whatever happens to the other packages."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ setup(name='{name}', version='0.1.0', packages=['{name}'], data_files=[
 """
 
 
-MESSAGES = """<package format="3">
+MESSAGE_MANIFEST = """<package format="3">
   <name>words</name><version>0.1.0</version><description>A package</description>
   <maintainer email="a@example.com">A</maintainer><license>Apache-2.0</license>
   <buildtool_depend>ament_cmake</buildtool_depend><member_of_group>rosidl_interface_packages</member_of_group>
@@ -38,13 +38,13 @@ MESSAGES = """<package format="3">
 """
 
 
-def write_messages(folder: Path, fills: str = "") -> None:
-    """Write a package that installs what `fills` puts into the folder `sys.argv[1]`, and its package.xml."""
+def write_messages(folder: Path, script: str = "") -> None:
+    """Write a package that installs its package.xml and runs `script`, with the install folder as `sys.argv[1]`."""
     folder.mkdir(parents=True)
     python = os.path.realpath("/usr/bin/python3")
-    run = f"{python} ${{CMAKE_CURRENT_SOURCE_DIR}}/fill.py ${{CMAKE_INSTALL_PREFIX}}"
-    (folder / "package.xml").write_text(MESSAGES)
-    (folder / "fill.py").write_text(fills)
+    run = f"{python} ${{CMAKE_CURRENT_SOURCE_DIR}}/script.py ${{CMAKE_INSTALL_PREFIX}}"
+    (folder / "package.xml").write_text(MESSAGE_MANIFEST)
+    (folder / "script.py").write_text(script)
     (folder / "CMakeLists.txt").write_text(
         "cmake_minimum_required(VERSION 3.8)\nproject(words NONE)\ninstall(FILES package.xml DESTINATION share)\n"
         f'install(CODE "execute_process(COMMAND {run})")\n'
@@ -68,40 +68,40 @@ def workspace(tmp_path: Path) -> Workspace:
 
 
 def test_a_failed_package_does_not_stop_the_build_of_other_packages(workspace: Workspace) -> None:
-    seen = build_workspace(workspace, ("bad", "good", "missing"), may_fail=True)
-    assert seen.diagnoses["good"] is OK
+    outcome = build_workspace(workspace, ("bad", "good", "missing"), may_fail=True)
+    assert outcome.diagnoses["good"] is OK
     assert (workspace.install / "good/share/good/package.xml").is_file()
-    assert seen.diagnosis is seen.diagnoses["bad"]
-    assert seen.diagnosis.kind is Kind.BUILD_FAILED
-    assert "can't copy 'resource/bad'" in seen.diagnosis.sentence
-    assert seen.diagnoses["missing"].kind is Kind.MISSING_PACKAGE
-    assert not seen.build.ok
-    assert seen.build.packages == ("bad", "good")
+    assert outcome.diagnosis is outcome.diagnoses["bad"]
+    assert outcome.diagnosis.kind is Kind.BUILD_FAILED
+    assert "can't copy 'resource/bad'" in outcome.diagnosis.sentence
+    assert outcome.diagnoses["missing"].kind is Kind.MISSING_PACKAGE
+    assert not outcome.build.ok
+    assert outcome.build.packages == ("bad", "good")
 
 
 def test_packages_that_build_are_built_by_one_run_of_colcon(workspace: Workspace) -> None:
     marker = workspace.root / "src/bad/resource/bad"
     marker.parent.mkdir()
     marker.touch()
-    seen = build_workspace(workspace, ("bad", "good"), may_fail=True)
-    assert (seen.build.ok, seen.build.log, seen.diagnosis) == (True, "", OK)
+    outcome = build_workspace(workspace, ("bad", "good"), may_fail=True)
+    assert (outcome.build.ok, outcome.build.log, outcome.diagnosis) == (True, "", OK)
     assert all((workspace.install / name / "share" / name / "package.xml").is_file() for name in ("bad", "good"))
 
 
-def test_a_failed_package_does_not_stop_the_build_if_no_package_is_missing(workspace: Workspace) -> None:
-    seen = build_workspace(workspace, ("bad", "good"), may_fail=True)
-    assert [found is OK for found in seen.diagnoses.values()] == [False, True]
+def test_each_package_is_built_separately_after_a_build_of_all_failed(workspace: Workspace) -> None:
+    outcome = build_workspace(workspace, ("bad", "good"), may_fail=True)
+    assert [diagnosis is OK for diagnosis in outcome.diagnoses.values()] == [False, True]
     assert (workspace.install / "good/share/good/package.xml").is_file()
 
 
 def test_a_link_that_a_failed_build_left_ends_the_grading(workspace: Workspace) -> None:
-    leaves = "import os\nos.makedirs('../../install', exist_ok=True)\nos.symlink('/etc', '../../install/stray')\n"
-    (workspace.root / "src/bad/setup.py").write_text(f"{leaves}raise SystemExit('broken')\n")
+    code = "import os\nos.makedirs('../../install', exist_ok=True)\nos.symlink('/etc', '../../install/stray')\n"
+    (workspace.root / "src/bad/setup.py").write_text(f"{code}raise SystemExit('broken')\n")
     with pytest.raises(StudentError, match="leads out of the install space"):
         build_workspace(workspace, ("bad",), may_fail=True)
 
 
-def test_a_build_that_a_limit_ended_is_not_tried_again(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_build_that_a_limit_ended_is_not_repeated(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(colcon, "BUILD", replace(BUILD, wall_seconds=3.0))
     (workspace.root / "src/bad/setup.py").write_text("import time\ntime.sleep(1000)\n")
     with pytest.raises(StudentError, match=r"colcon build was stopped \(wall time\)"):
@@ -117,9 +117,9 @@ def test_a_folder_in_which_colcon_sees_no_package_is_not_built(workspace: Worksp
     folder = workspace.root / "src" / "good"
     (folder / "package.xml").write_text("<package><name>good</name></package>")
     (folder / "setup.py").write_text("raise SystemExit('not yet')\n")
-    seen = build_workspace(workspace, ("good",), may_fail=True)
-    assert (seen.build.ok, seen.diagnosis.kind) == (False, Kind.BUILD_FAILED)
-    assert "colcon does not see the package" in seen.diagnosis.sentence
+    outcome = build_workspace(workspace, ("good",), may_fail=True)
+    assert (outcome.build.ok, outcome.diagnosis.kind) == (False, Kind.BUILD_FAILED)
+    assert "colcon does not see the package" in outcome.diagnosis.sentence
 
 
 def test_the_quoted_error_belongs_to_the_package_that_failed(workspace: Workspace) -> None:
@@ -131,14 +131,14 @@ def test_the_quoted_error_belongs_to_the_package_that_failed(workspace: Workspac
 
 
 @pytest.mark.parametrize("may_fail", [True, False])
-def test_an_unwritten_package_is_reported_as_unwritten(workspace: Workspace, may_fail: bool) -> None:
+def test_a_stub_is_reported_as_still_to_be_written(workspace: Workspace, may_fail: bool) -> None:
     (workspace.root / "src/bad/setup.py").write_text(CODE_STUB)
     try:
-        found = build_workspace(workspace, ("bad",), may_fail=may_fail).diagnosis
+        diagnosis = build_workspace(workspace, ("bad",), may_fail=may_fail).diagnosis
     except StudentError as error:
-        found = error.diagnosis
-    assert found.kind is Kind.UNFINISHED
-    assert found.sentence.startswith("src/bad/setup.py is still to be written")
+        diagnosis = error.diagnosis
+    assert diagnosis.kind is Kind.UNFINISHED
+    assert diagnosis.sentence.startswith("src/bad/setup.py is still to be written")
 
 
 TRAPS = """import os
@@ -156,8 +156,8 @@ raise SystemExit('broken')
 
 def test_a_build_uses_no_folder_that_an_earlier_build_could_write_to(workspace: Workspace) -> None:
     (workspace.root / "src/bad/setup.py").write_text(TRAPS)
-    seen = build_workspace(workspace, ("bad", "good"), may_fail=True)
-    assert (seen.diagnoses["bad"].kind, seen.diagnoses["good"]) == (Kind.BUILD_FAILED, OK)
+    outcome = build_workspace(workspace, ("bad", "good"), may_fail=True)
+    assert (outcome.diagnoses["bad"].kind, outcome.diagnoses["good"]) == (Kind.BUILD_FAILED, OK)
     assert (workspace.scratch / "bundle").is_symlink()
     assert not list(workspace.scratch.rglob("*.cmake"))
 
@@ -167,9 +167,9 @@ def test_nothing_is_installed_through_a_link_that_a_failed_build_left(
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     (tmp_path / "out").mkdir()
-    moved = "import os, shutil\nshutil.rmtree('../../install', ignore_errors=True)\n"
-    moved += "os.symlink('../out', '../../install')\nraise SystemExit('broken')\n"
-    (workspace.root / "src/bad/setup.py").write_text(moved)
+    code = "import os, shutil\nshutil.rmtree('../../install', ignore_errors=True)\n"
+    code += "os.symlink('../out', '../../install')\nraise SystemExit('broken')\n"
+    (workspace.root / "src/bad/setup.py").write_text(code)
     write_messages(workspace.root / "src" / "words")
     with pytest.raises(StudentError, match="install, which leads out of the install space"):
         build_workspace(workspace, ("bad", "words"), may_fail=True)

@@ -1,4 +1,4 @@
-"""Students' functions are called in a process of their own, and only plain values come back."""
+"""Students' functions are called in a separate process, which returns only plain values."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Node:
 
 @pytest.fixture
 def workspace(tmp_path: Path) -> Workspace:
-    """An install space with one module, as colcon would leave it."""
+    """An install space with one module, as colcon writes it."""
     site = f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
     folder = tmp_path / "ws" / "install" / "demo" / site
     folder.mkdir(parents=True)
@@ -105,7 +105,7 @@ def test_a_value_made_by_a_step_can_be_used_in_later_steps(workspace: Workspace)
     assert [outcome.value for outcome in outcomes] == [None, None, 5, 5]
 
 
-def test_a_changed_argument_is_seen(workspace: Workspace) -> None:
+def test_a_changed_argument_is_returned(workspace: Workspace) -> None:
     (outcome,) = calls(workspace, "demo", call("empty", [1, 2]))
     assert outcome.arguments == ([],)
 
@@ -125,24 +125,24 @@ def test_an_exception_is_recognized_by_its_class_and_base_classes(workspace: Wor
     assert "ValueError" not in pretender.kinds
 
 
-def test_exceptions_and_strange_values_are_named(workspace: Workspace) -> None:
-    failed, odd, unwritten = calls(workspace, "demo", call("fails"), call("strange"), call("unwritten"))
+def test_exceptions_and_values_that_are_not_plain_are_named(workspace: Workspace) -> None:
+    failed, not_plain, unwritten = calls(workspace, "demo", call("fails"), call("strange"), call("unwritten"))
     with pytest.raises(CheckFailed, match=r"fails\(\) raised ValueError: no such thing"):
         value(failed, "fails()")
     with pytest.raises(CheckFailed, match=r"strange\(\) returned a value of type object, instead of plain Python"):
-        value(odd, "strange()")
+        value(not_plain, "strange()")
     with pytest.raises(CheckFailed, match=r"unwritten\(\) is still to be written"):
         value(unwritten, "unwritten()")
 
 
-def test_a_callback_that_is_a_coroutine_is_begun_and_another_function_is_not(workspace: Workspace) -> None:
+def test_a_coroutine_is_started_only_as_a_callback(workspace: Workspace) -> None:
     steps = (call("Node"), callback("breaks", on=0), callback("waits", on=0), call("breaks", on=0))
     _, broken, waiting, called = calls(workspace, "demo", *steps)
     assert (broken.raised, broken.message, waiting.raised, waiting.type) == ("ValueError", "a bug", "", "")
     assert (called.raised, called.type) == ("", "coroutine")
 
 
-def test_another_module_can_take_part(workspace: Workspace) -> None:
+def test_a_step_can_call_a_function_of_another_module(workspace: Workspace) -> None:
     (outcome,) = calls(workspace, "demo", call("hypot", 3.0, 4.0, module="math"))
     assert outcome == StepResult(value=5.0, arguments=(3.0, 4.0))
 
@@ -164,14 +164,14 @@ def test_a_module_that_cannot_be_imported_is_diagnosed(
     assert "importlib" not in caught.value.diagnosis.detail  # the loader's frames do not help a student
 
 
-def test_code_that_ends_the_process_gains_nothing(workspace: Workspace) -> None:
+def test_code_that_ends_the_process_is_reported_as_ended_early(workspace: Workspace) -> None:
     with pytest.raises(StudentError) as caught:
         calls(workspace, "demo", call("gone"), call("double", [1]))
     assert caught.value.diagnosis.kind is Kind.ENDED_EARLY
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "alike"),
+    ("one", "other", "is_same"),
     [
         (nan, nan, True),
         (1, 1.0, True),
@@ -184,5 +184,5 @@ def test_code_that_ends_the_process_gains_nothing(workspace: Workspace) -> None:
         ({"a": 1}, {"a": 1}, True),
     ],
 )
-def test_json_values_are_compared_by_kind_and_value(one: object, other: object, alike: bool) -> None:
-    assert same(one, other) is alike
+def test_json_values_are_compared_by_kind_and_value(one: object, other: object, is_same: bool) -> None:
+    assert same(one, other) is is_same

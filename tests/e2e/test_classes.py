@@ -1,7 +1,7 @@
-"""A class of five hands in each chapter. nbgrader's gradebook agrees with `autograder grade`, run with one job and two.
+"""Classes of five students submit each chapter. nbgrader's gradebook must agree with `autograder grade -j 2`.
 
-Correct, flawed and missing answers are files; a student submits them as a notebook that writes them. `make classes`
-and `make nightly` take every chapter.
+Correct, flawed and missing answers are files. A student submits a notebook that writes them. `make classes` and `make
+nightly` run these tests.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from tests.e2e.classroom import Classroom
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.nightly,
-    pytest.mark.timeout(3600),  # a quarter of an hour on a busy machine; the bound is for a stuck grader
-    # What nbgrader does with SQLAlchemy.
+    pytest.mark.timeout(3600),  # takes 15 minutes on a busy machine; the limit ends a grader that hangs
+    # nbgrader's use of SQLAlchemy.
     pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning"),
 ]
 
@@ -45,7 +45,7 @@ class Pupil:
 
 @dataclass(frozen=True)
 class Graded:
-    """A class after grading: its classroom, its students, and the results with one and with two parallel jobs."""
+    """A class after grading: its classroom, its students, and its results from nbgrader and from two parallel jobs."""
 
     room: Classroom
     pupils: tuple[Pupil, ...]
@@ -54,7 +54,7 @@ class Graded:
 
 
 def pupils(assignment: str) -> Iterator[Pupil]:
-    """Yield the class: the reference, the right answers of another style, two mutants, and an untouched notebook."""
+    """Yield the class: the reference, the correct answers in another style, two mutants, and an untouched notebook."""
     for case in cases(assignment, quick=True):
         if case.kind in (CaseKind.REFERENCE, CaseKind.VARIANT):
             yield Pupil(case.name, case.write, case.verify)
@@ -80,21 +80,21 @@ def assignment(request: pytest.FixtureRequest) -> str:
 
 @pytest.fixture(scope="module")
 def graded(assignment: str, tmp_path_factory: pytest.TempPathFactory) -> Graded:
-    """The class of an assignment after both ways to grade it."""
-    place = tmp_path_factory.mktemp(assignment)
-    room, everybody = Classroom(place / "class", assignment), tuple(pupils(assignment))
+    """The class of an assignment, graded by nbgrader and by `autograder grade -j 2`."""
+    folder = tmp_path_factory.mktemp(assignment)
+    room, students = Classroom(folder / "class", assignment), tuple(pupils(assignment))
     room.nbgrader("generate_assignment")
-    for pupil in everybody:
+    for pupil in students:
         if pupil.write is None:
             room.hand_in(pupil.name)
         else:
-            pupil.write(place / "answers" / pupil.name)
-            room.hand_in(pupil.name, place / "answers" / pupil.name)
+            pupil.write(folder / "answers" / pupil.name)
+            room.hand_in(pupil.name, folder / "answers" / pupil.name)
     room.nbgrader("autograde")
     parallel = room.grade("-j", "2")
     return Graded(
         room,
-        everybody,
+        students,
         {result.student: result for result in load(room.course / ".build" / "nbgrader" / assignment)},
         {result.student: result for result in load(parallel)},
     )
@@ -102,8 +102,8 @@ def graded(assignment: str, tmp_path_factory: pytest.TempPathFactory) -> Graded:
 
 def test_each_submission_gets_its_expected_mark(graded: Graded) -> None:
     assert len(graded.pupils) >= 4
-    wrong = {pupil.name: pupil.verify(graded.serial[pupil.name]) for pupil in graded.pupils}
-    assert set(wrong.values()) == {""}, wrong
+    problems = {pupil.name: pupil.verify(graded.serial[pupil.name]) for pupil in graded.pupils}
+    assert set(problems.values()) == {""}, problems
 
 
 def test_the_gradebook_has_the_points_that_the_grader_gave(graded: Graded, assignment: str) -> None:
@@ -111,7 +111,7 @@ def test_the_gradebook_has_the_points_that_the_grader_gave(graded: Graded, assig
     for pupil in graded.pupils:
         result = graded.parallel[pupil.name]
         grades = graded.room.grades(pupil.name)
-        # A question that a person grades has no points if the student wrote nothing. Otherwise it waits for a person.
+        # A question that needs manual grading gets no points at first, and needs none if the student wrote nothing.
         recorded = {name: (score, worth) for name, (score, worth, _) in grades.items() if name.startswith("grade-")}
         assert all(by_hand or not score for name, (score, _, by_hand) in grades.items() if name not in recorded)
         expected = {
@@ -125,7 +125,7 @@ def test_the_gradebook_has_the_points_that_the_grader_gave(graded: Graded, assig
         assert sum(worth for _, worth in recorded.values()) == pytest.approx(result.max_score)
 
 
-def test_two_gradings_at_once_give_the_same_results_as_one_after_the_other(graded: Graded) -> None:
+def test_parallel_gradings_give_the_same_results_as_serial_ones(graded: Graded) -> None:
     def marks(results: dict[str, Result]) -> dict[str, list[tuple[str, str, float]]]:
         return {
             student: [(check.id, check.outcome.value, check.points) for check in result.checks]

@@ -1,4 +1,4 @@
-"""Grading on a cluster: whatever is killed, the results are those of one machine, none lost and none twice."""
+"""A cluster gives the same results as one machine, each exactly once, whichever process is killed."""
 
 from __future__ import annotations
 
@@ -33,61 +33,62 @@ from tests.e2e.local_cluster import CLIENT, SCHEDULER, WORKERS, LocalCluster, lo
 from tests.e2e.results import without_times
 
 ASSIGNMENT = "01_package_structure"
-DEADLINE = 1500.0  # s
+DEADLINE = 1500.0  # seconds
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(3600)]
 
 
 def write_class(folder: Path, flawed: int) -> list[str]:
-    """Write a class: the reference, flawed answers, and two that are unclear: no package, and no archive."""
+    """Write a class: the reference, flawed answers, and two unclear submissions. Return the students."""
     sources = suites.hidden(ASSIGNMENT).sources
     write_reference(sources, folder / "reference")
     for mutant in [mutant for mutant in mutants(ASSIGNMENT) if not mutant.slow][:flawed]:
         write_mutant(mutant, sources, folder / mutant.id)
     (folder / "no package" / "src").mkdir(parents=True)
     (folder / "no package" / "src" / "notes.txt").write_text("later")
-    (folder / "Zoë Ünïcode.zip").write_bytes(b"no archive")
+    (folder / "Zoë Ünïcode.zip").write_bytes(b"not an archive")
     return sorted(path.stem for path in folder.iterdir())
 
 
-def grade(out: str, *options: str) -> list[str]:
+def grade_command(out: str, *options: str) -> list[str]:
     command = [sys.executable, "-m", "autograder", "grade", "class", "--assignment", ASSIGNMENT, "--out", out]
     return [*command, "--json", f"{out}.json", *options]
 
 
-def stored(out: Path) -> dict[str, tuple[Any, dict[str, bytes]]]:
-    """Return each student's result without times, and the pictures."""
-    found = {}
+def stored_results(out: Path) -> dict[str, tuple[Any, dict[str, bytes]]]:
+    """Return each student's result without times, and the files of its pictures."""
+    results = {}
     for path in sorted(out.glob("*/result.json")):
-        kept = [file for pattern in ("*.png", "*.run.json") for file in path.parent.glob(pattern)]
-        found[path.parent.name] = (
+        pictures = [file for pattern in ("*.png", "*.run.json") for file in path.parent.glob(pattern)]
+        results[path.parent.name] = (
             without_times(json.loads(path.read_text())),
-            {file.name: file.read_bytes() for file in kept},
+            {file.name: file.read_bytes() for file in pictures},
         )
-    return found
+    return results
 
 
 def grade_during_kills(cluster: LocalCluster, kills: int, draw: random.Random) -> Path:
-    """Grade the class while machines are killed; start over until as many were killed. Return the last results."""
+    """Grade the class, repeatedly if need be, until `kills` machines have been killed; return the last results."""
     victims = [CLIENT, SCHEDULER, *WORKERS]
-    until, run, killed = time.monotonic() + DEADLINE, 0, 0
+    deadline, run, killed = time.monotonic() + DEADLINE, 0, 0
     options = ("--scheduler", cluster.address, "--certificates", str(cluster.certificates), "--resume")
     cluster.restart_ended()
-    client = cluster.run(CLIENT, grade(f"out{run}", *options))
-    while time.monotonic() < until:
+    client = cluster.run(CLIENT, grade_command(f"out{run}", *options))
+    while time.monotonic() < deadline:
         try:
-            client.wait(draw.uniform(0.5, 8.0) if killed < kills else until - time.monotonic())
+            client.wait(draw.uniform(0.5, 8.0) if killed < kills else deadline - time.monotonic())
         except subprocess.TimeoutExpired:
             cluster.kill(draw.choice(victims) if killed >= 3 else (WORKERS[0], SCHEDULER, CLIENT)[killed])
             killed += 1
         cluster.restart_ended()
         if client.poll() is None:
             continue
-        if (cluster.place / f"out{run}.json").is_file():  # written at the end; the status is 1, for two are unclear
+        # The file is written at the end. The status is 1, because two submissions are unclear.
+        if (cluster.client_folder / f"out{run}.json").is_file():
             if killed >= kills:
-                return cluster.place / f"out{run}"
+                return cluster.client_folder / f"out{run}"
             run += 1
-        client = cluster.run(CLIENT, grade(f"out{run}", *options))
+        client = cluster.run(CLIENT, grade_command(f"out{run}", *options))
     raise AssertionError(f"not graded within {DEADLINE} s, after {killed} kills:\n{cluster.log(CLIENT)[-3000:]}")
 
 
@@ -108,32 +109,32 @@ def grade_during_kills(cluster: LocalCluster, kills: int, draw: random.Random) -
 )
 def test_a_class_survives_kills_of_workers_scheduler_and_client(tmp_path: Path, kills: int, flawed: int) -> None:
     with local_cluster(tmp_path) as cluster:
-        students = write_class(cluster.place / "class", flawed)
-        serial = subprocess.run(grade("serial", "-j", "1"), cwd=cluster.place, check=False)
+        students = write_class(cluster.client_folder / "class", flawed)
+        serial = subprocess.run(grade_command("serial", "-j", "1"), cwd=cluster.client_folder, check=False)
         assert serial.returncode == 1
         seed = int(os.environ.get("KILLS_SEED", 2026 if kills == 3 else time.time_ns() % 100_000))
-        print(f"KILLS_SEED={seed}")  # draws the same instants again
+        print(f"KILLS_SEED={seed}")  # repeats the kills at the same times
         out = grade_during_kills(cluster, kills, random.Random(seed))
-        told = [result["student"] for result in json.loads((cluster.place / f"{out.name}.json").read_text())]
-        assert sorted(told) == students
-        assert stored(out) == stored(cluster.place / "serial")
-        assert set(stored(out)) == set(students)
+        listed = [result["student"] for result in json.loads((cluster.client_folder / f"{out.name}.json").read_text())]
+        assert sorted(listed) == students
+        assert stored_results(out) == stored_results(cluster.client_folder / "serial")
+        assert set(stored_results(out)) == set(students)
 
 
 @pytest.fixture
-def todo(tmp_path: Path) -> list[Job]:
-    """Three different submissions."""
-    found = []
+def jobs(tmp_path: Path) -> list[Job]:
+    """Three different submissions to grade."""
+    jobs = []
     for student in ("alice", "bob", "carol"):
         package = tmp_path / student / "src" / "package"
         package.mkdir(parents=True)
         (package / "package.xml").write_text(student)
-        found.append(Job(tmp_path / student, ASSIGNMENT, student, 7, tmp_path / "out" / student, Isolation.PROCESS))
-    return found
+        jobs.append(Job(tmp_path / student, ASSIGNMENT, student, 7, tmp_path / "out" / student, Isolation.PROCESS))
+    return jobs
 
 
-def answered(data: bytes) -> bytes:
-    """Reply as a worker does, without a grading; on bob's submission the worker dies."""
+def reply_without_grading(data: bytes) -> bytes:
+    """Reply as a worker does, but without grading; at bob's submission, the worker dies."""
     task = Task.unpack(data)
     if task.files[0].data == b"bob":
         os.kill(os.getpid(), signal.SIGKILL)
@@ -146,21 +147,21 @@ def answered(data: bytes) -> bytes:
 
 
 @pytest.mark.promise("| Two workers die with the same submission. |")
-def test_a_submission_that_kills_two_workers_is_not_graded_and_the_others_are(todo: list[Job], tmp_path: Path) -> None:
+def test_a_submission_that_kills_two_workers_is_not_graded_and_the_others_are(jobs: list[Job], tmp_path: Path) -> None:
     with connected(LOCAL, 1, tmp_path) as client:
         results: list[Result] = []
-        grade_on(client, todo, results.append, report=pytest.fail, grade=answered)
+        grade_on(client, jobs, results.append, report=pytest.fail, grade=reply_without_grading)
         alice, bob, carol = sorted(results, key=lambda result: result.student)
     assert (alice.status, bob.status, carol.status) == (Status.GRADED, Status.NOT_GRADED, Status.GRADED)
     assert bob.diagnosis.sentence.startswith("2 workers died while they graded this submission. This is not a zero")
-    assert "KilledWorker" in (todo[1].out / "grader.log").read_text()
+    assert "KilledWorker" in (jobs[1].out / "grader.log").read_text()
 
 
 @pytest.mark.promise(
     "It gets no submissions, and the client says what differs.", "| No worker is suitable for two minutes. |"
 )
 def test_a_worker_with_another_suite_is_rejected_and_gets_no_submission(
-    todo: list[Job], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    jobs: list[Job], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     reports: list[str] = []
     other = resource(ASSIGNMENT, Isolation.PROCESS).replace(suites.hidden(ASSIGNMENT).files_digest, "another")
@@ -168,7 +169,7 @@ def test_a_worker_with_another_suite_is_rejected_and_gets_no_submission(
         monkeypatch.setattr(dispatch, "resource", lambda assignment, isolation: other)
         monkeypatch.setattr(dispatch, "NO_WORKER_TIMEOUT_SECONDS", 0.0)
         with pytest.raises(ClusterError, match="no suitable worker was available"):
-            grade_on(client, todo, pytest.fail, report=reports.append, grade=answered)
+            grade_on(client, jobs, pytest.fail, report=reports.append, grade=reply_without_grading)
     (sentence,) = reports
     assert f"is rejected: its suite of {ASSIGNMENT} is" in sentence
     assert sentence.endswith("but here it is another: install the same version of the course on both.")
@@ -178,11 +179,11 @@ def test_a_worker_with_another_suite_is_rejected_and_gets_no_submission(
     "`--scheduler local` starts such a cluster on this machine",
     "Nothing else changes: the verb, the results, `--resume` and Ctrl-C are the same.",
 )
-def test_ctrl_c_keeps_the_gradings_that_have_begun_and_resume_grades_the_rest(tmp_path: Path) -> None:
+def test_ctrl_c_keeps_the_gradings_that_have_started_and_resume_grades_the_rest(tmp_path: Path) -> None:
     for student in ("alice", "bob", "carol"):
         (tmp_path / "class" / student / "src").mkdir(parents=True)
         (tmp_path / "class" / student / "src" / "notes.txt").write_text(student)
-    command = grade("out", "--scheduler", "local", "-j", "1", "--resume")
+    command = grade_command("out", "--scheduler", "local", "-j", "1", "--resume")
     with subprocess.Popen(
         command,
         cwd=tmp_path,
@@ -199,9 +200,10 @@ def test_ctrl_c_keeps_the_gradings_that_have_begun_and_resume_grades_the_rest(tm
     assert process.returncode == 130, reports
     assert reports.endswith("\nStopped. Finished results are in out: the same command with --resume grades the rest.\n")
     done = {
-        student: (tmp_path / "out" / student / "result.json").stat().st_mtime_ns for student in stored(tmp_path / "out")
+        student: (tmp_path / "out" / student / "result.json").stat().st_mtime_ns
+        for student in stored_results(tmp_path / "out")
     }
     assert 1 <= len(done) < 3
     subprocess.run(command, cwd=tmp_path, check=True)
-    assert len(stored(tmp_path / "out")) == 3
+    assert len(stored_results(tmp_path / "out")) == 3
     assert all(json.loads(path.read_text())["status"] == "graded" for path in tmp_path.glob("out/*/result.json"))

@@ -1,4 +1,4 @@
-"""Interface packages that are built with the overlay are the same as without it."""
+"""The CMake overlay covers every generator of ROS, and interface packages that are built with it work."""
 
 from __future__ import annotations
 
@@ -22,16 +22,18 @@ def overlay(tmp_path: Path) -> Path:
 
 
 def test_every_generator_of_this_ros_has_its_config(overlay: Path) -> None:
-    there = {name for name in (*COMPILED, *LEFT_OUT) if any((p / "share" / name).is_dir() for p in activate().prefixes)}
-    assert there >= set(COMPILED)
-    assert {path.name for path in (overlay / "share").iterdir()} == there
+    present = {
+        name for name in (*COMPILED, *LEFT_OUT) if any((p / "share" / name).is_dir() for p in activate().prefixes)
+    }
+    assert present >= set(COMPILED)
+    assert {path.name for path in (overlay / "share").iterdir()} == present
 
 
 def test_the_overlay_has_no_config_for_a_generator_that_ros_lacks(tmp_path: Path) -> None:
     assert not list(write_overlay((tmp_path / "no_ros",), tmp_path / "overlay").glob("*/*"))
 
 
-# All kinds of fields, nested in each other: what is compiled together must not meet itself.
+# All kinds of fields, nested in each other: sources that are compiled as one must not define a name twice.
 FIELDS = ("bool", "byte", "char", "float32", "float64", "int8", "uint8", "int64", "uint64", "string", "wstring")
 DEFINITIONS = {
     "msg/Basics.msg": "{} f{}",
@@ -78,13 +80,13 @@ def test_a_package_of_all_kinds_of_fields_is_built_and_works(tmp_path: Path, mon
         lines = [text.format(kind, kind) for kind in FIELDS] if "{}" in text else [text]
         (package / path).write_text("\n".join(lines) + "\n")
     files = "\n".join(f'"{path}"' for path in DEFINITIONS)
-    given = (SOLUTIONS / name / "CMakeLists.txt").read_text()
-    before, _, after = given.partition("rosidl_generate_interfaces(${PROJECT_NAME}")
+    reference = (SOLUTIONS / name / "CMakeLists.txt").read_text()
+    before, _, after = reference.partition("rosidl_generate_interfaces(${PROJECT_NAME}")
     assert after
-    asked = f"rosidl_generate_interfaces(${{PROJECT_NAME}}\n{files}\n"
-    (package / "CMakeLists.txt").write_text(before + asked + after[after.index("DEPENDENCIES") :])
+    generate = f"rosidl_generate_interfaces(${{PROJECT_NAME}}\n{files}\n"
+    (package / "CMakeLists.txt").write_text(before + generate + after[after.index("DEPENDENCIES") :])
     workspace = Workspace(tmp_path / "ws", activate(), tmp_path / "ws" / "home")
     assert build(workspace, (name,)).ok
-    done = subprocess.run([sys.executable, "-c", USE], env=workspace.environment(), text=True, capture_output=True)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.split() == ["6", "10"]
+    process = subprocess.run([sys.executable, "-c", USE], env=workspace.environment(), text=True, capture_output=True)
+    assert process.returncode == 0, process.stderr
+    assert process.stdout.split() == ["6", "10"]

@@ -1,4 +1,4 @@
-"""A forked colcon builds the same as a started one, and a setup.py sees and prints the same in both."""
+"""A forked colcon builds the same files as a started one, and a setup.py sees and prints the same in both."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tests.e2e.sandbox_support import in_worker_sandbox, is_forked
 
 pytestmark = pytest.mark.usefixtures("forks")
 
-SPIES = """
+SPY = """
 import atexit, json, logging, os, signal, sys, sysconfig, warnings
 from pathlib import Path
 
@@ -42,15 +42,15 @@ with open(Path.home() / 'seen', 'a') as log:
     print(json.dumps(seen), file=log)
 atexit.register(lambda: open(Path.home() / 'ended', 'a').write('ended\\n'))
 if 'install' in sys.argv:
-    print('a word to stdout')
-    print('a word to stderr', file=sys.stderr)
+    print('a line on stdout')
+    print('a line on stderr', file=sys.stderr)
 """
 AT_INSTALL = "if 'install' in sys.argv:"
-FROM_RUN_TO_RUN = re.compile(r"\[-?[0-9.]+m?s[^]]*\]|<<<|>>>|0x[0-9a-f]+")
+DIFFERS_BETWEEN_RUNS = re.compile(r"\[-?[0-9.]+m?s[^]]*\]|<<<|>>>|0x[0-9a-f]+")
 
 
-def bring(workspace: Workspace, package: str, *lines: str) -> None:
-    """Put a reference package there, and lines at the beginning of its setup.py."""
+def add_package(workspace: Workspace, package: str, *lines: str) -> None:
+    """Copy a reference package to the workspace, and insert lines at the beginning of its setup.py."""
     folder = workspace.root / "src" / package
     shutil.copytree(course_paths.SOLUTIONS / package, folder, ignore=course_paths.NOT_COPIED)
     setup = folder / "setup.py"
@@ -58,7 +58,7 @@ def bring(workspace: Workspace, package: str, *lines: str) -> None:
 
 
 def build(workspace: Workspace, profile: str | None) -> tuple[int | None, str]:
-    """Build with colcon, started or forked; return its exit status and its output. The spaces are left."""
+    """Build by a colcon that is started or forked; return its exit status and output. Keep what was built."""
     for folder in (workspace.root / "build", workspace.install, workspace.scratch):
         shutil.rmtree(folder, ignore_errors=True)
     workspace.scratch.mkdir()
@@ -76,31 +76,31 @@ def builds(scratch: Path, packages: list[list[str]]) -> list[dict[str, Any]]:
     """Build packages, each with its lines, started and forked; return the outcome of each build."""
     workspace = Workspace(scratch / "ws", environment.find(), scratch / "home")
     for package, *lines in packages:
-        bring(workspace, package, *lines)
+        add_package(workspace, package, *lines)
     (workspace.root / "src/speed_guard/sitecustomize.py").write_text("raise SystemExit(3)\n")
-    found = []
+    outcomes = []
     for profile in (None, "colcon"):
         status, output = build(workspace, profile)
         notes = [workspace.scratch / name for name in ("seen", "ended")]
         seen, ended = (note.read_text().splitlines() if note.exists() else [] for note in notes)
-        installed = files(workspace.install)
-        found.append({"status": status, "output": output, "seen": seen, "ended": ended, "installed": installed})
-    return found
+        installed = digests(workspace.install)
+        outcomes.append({"status": status, "output": output, "seen": seen, "ended": ended, "installed": installed})
+    return outcomes
 
 
-def told(output: str) -> set[str]:
-    """What a build says of packages and errors; colcon mixes its children's streams in any order.
+def relevant_lines(output: str) -> set[str]:
+    """Return the lines about packages and errors, as a set: colcon mixes its children's streams in any order.
 
-    Its own threads also share stderr: one may log before another has ended its line. From Python 3.13 on, a
-    traceback shows the source of `python -c`, if the program was started.
+    Its own threads share stderr, so one may log before another has ended its line. Since Python 3.13, the traceback of
+    a started program also shows the source of `python -c`.
     """
-    text = re.sub(r" (ERROR|WARNING):", r"\n\1:", FROM_RUN_TO_RUN.sub("", output))
+    text = re.sub(r" (ERROR|WARNING):", r"\n\1:", DIFFERS_BETWEEN_RUNS.sub("", output))
     lines = (line.strip() for line in text.splitlines() if re.search(r"speed_guard|setup\.py|[Ee]rror|status", line))
     return {line for line in lines if not line.startswith("import sys;")}
 
 
-def files(folder: Path) -> dict[str, list[Any]]:
-    """Return mode and a digest of each file."""
+def digests(folder: Path) -> dict[str, list[Any]]:
+    """Return the mode and a digest of each file."""
     return {
         str(path.relative_to(folder)): [path.stat().st_mode, hashlib.sha256(path.read_bytes()).hexdigest()]
         for path in folder.rglob("*")
@@ -113,21 +113,21 @@ def test_reference_packages_are_installed_alike_by_a_forked_and_a_started_colcon
     assert (started["status"], forked["status"]) == (0, 0), forked["output"]
     assert len(started["installed"]) > 100
     assert forked["installed"] == started["installed"]
-    assert told(forked["output"]) ^ told(started["output"]) == set()
+    assert relevant_lines(forked["output"]) ^ relevant_lines(started["output"]) == set()
 
 
 def test_a_setup_py_sees_the_same_in_a_forked_and_a_started_colcon() -> None:
-    found = in_worker_sandbox(builds, [["speed_guard", SPIES]])
-    for built in found:
-        assert built["status"] == 0, built["output"]
-        assert "a word to stderr" in built["output"]
-        assert built["ended"] == ["ended"] * 3
-        built["seen"] = [json.loads(line) for line in built["seen"]]
-        for run in built["seen"]:
+    outcomes = in_worker_sandbox(builds, [["speed_guard", SPY]])
+    for outcome in outcomes:
+        assert outcome["status"] == 0, outcome["output"]
+        assert "a line on stderr" in outcome["output"]
+        assert outcome["ended"] == ["ended"] * 3
+        outcome["seen"] = [json.loads(line) for line in outcome["seen"]]
+        for run in outcome["seen"]:
             run["path"] = [path for path in run["path"] if Path(path).name != "_vendor"]  # setuptools adds it
             # The wheels' hook writes these folders in any order.
             run["environment"]["LD_LIBRARY_PATH"] = sorted(run["environment"]["LD_LIBRARY_PATH"].split(":"))
-    started, forked = found
+    started, forked = outcomes
     assert [run.pop("forked") for run in started["seen"] + forked["seen"]] == [False] * 3 + [True] * 3
     assert forked["seen"] == started["seen"]
 
@@ -135,7 +135,7 @@ def test_a_setup_py_sees_the_same_in_a_forked_and_a_started_colcon() -> None:
 @pytest.mark.parametrize(
     "line",
     [
-        "this is no Python",
+        "this is not valid Python",
         f"{AT_INSTALL} raise RuntimeError('no such thing')",
         f"{AT_INSTALL} os._exit(7)",
         *(
@@ -143,7 +143,7 @@ def test_a_setup_py_sees_the_same_in_a_forked_and_a_started_colcon() -> None:
             for line in (
                 "import no_such_module",
                 f"{AT_INSTALL} sys.exit(3)",
-                f"{AT_INSTALL} exit('so it ends')",
+                f"{AT_INSTALL} exit('stopped')",
                 f"{AT_INSTALL} os.kill(os.getpid(), 9)",
                 f"{AT_INSTALL} print(colcon_core)",
             )
@@ -154,4 +154,4 @@ def test_a_failing_setup_py_is_reported_alike_by_a_forked_and_a_started_colcon(l
     started, forked = in_worker_sandbox(builds, [["speed_guard", "import os, sys", line]])
     assert started["status"] != 0
     assert forked["status"] == started["status"]
-    assert told(forked["output"]) ^ told(started["output"]) == set()
+    assert relevant_lines(forked["output"]) ^ relevant_lines(started["output"]) == set()

@@ -1,7 +1,7 @@
-"""Packages that `ros2 pkg create` wrote, with a student's own work filled in, have every point of the course.
+"""Packages created by `ros2 pkg create` and completed with a student's work get full marks.
 
-The tool is the stand-in, or after `make real-launch` the real one. What both write is recorded in
-created_packages.yaml, by `python -m tests.e2e.created_packages` with the real ros2cli.
+The tool is the stand-in, or the real one after `make real-launch`. Both must write the same files, which
+`python -m tests.e2e.created_packages` recorded in created_packages.yaml with the real ros2cli.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.run.sandbox import Isolation
 from autograder.suite import suites
-from tests.e2e.created_packages import RECORD, create, facts, fill_in, written
+from tests.e2e.created_packages import RECORD, create, facts, fill_in, lines_of
 
-# The packages of a chapter that its student could make by the tool.
-MADE = {
+# The packages of each chapter that a student could create with the tool.
+PACKAGES = {
     "01_package_structure": ("square_dance",),
     "06_testing": ("speed_guard",),
     "08_capstone": ("robot_navigation_tutorial", "robot_navigation_interfaces"),
     "09_assessment": ("motor_guard", "motor_guard_interfaces"),
 }
-# The folders of these packages that a chapter gives: its student leaves them alone.
+# Folders in these packages that students get with the chapter and do not change.
 GIVEN = {"06_testing": ("speed_guard",)}
 
 
@@ -44,16 +44,16 @@ def test_pkg_create_writes_the_files_of_the_record(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
-@pytest.mark.parametrize("assignment", MADE)
+@pytest.mark.parametrize("assignment", PACKAGES)
 def test_no_check_deducts_a_point_for_a_file_that_pkg_create_wrote(
     assignment: str, workers: WorkerPool, tmp_path: Path
 ) -> None:
     def write(folder: Path) -> None:
         write_reference(suites.hidden(assignment).sources, folder)
-        for package in MADE[assignment]:
-            made = create(tmp_path / "made", package)
-            fill_in(made, folder / "src" / package, GIVEN.get(assignment, ()))
-            assert written(made) <= written(folder / "src" / package)
+        for package in PACKAGES[assignment]:
+            created = create(tmp_path / "created", package)
+            fill_in(created, folder / "src" / package, GIVEN.get(assignment, ()))
+            assert lines_of(created) <= lines_of(folder / "src" / package)
 
     case = Case(assignment, CaseKind.VARIANT, "created", write, verify_full_marks)
     (verdict,) = verify_cases([case], seed=2026, out=tmp_path / "verification", workers=workers)

@@ -1,4 +1,4 @@
-"""Real gradings of one right answer in several envelopes: each has all points, or is unclear and has no mark."""
+"""One correct answer is graded in several envelopes: each gets full marks, or is unclear and gets no mark."""
 
 from __future__ import annotations
 
@@ -18,15 +18,18 @@ def answer(tmp_path_factory: pytest.TempPathFactory) -> Answer:
 
 
 def grade(folder: Path, *options: str) -> tuple[subprocess.CompletedProcess[str], dict[str, dict[str, object]]]:
-    """Grade the submissions in `folder`; return the command's output, and the results by student."""
+    """Grade the submissions in `folder`; return the finished process, and the results by student."""
     out = folder.parent / "results"
     command = [sys.executable, "-m", "autograder", "grade", str(folder), "--assignment", CHAPTER, "--out", str(out)]
-    done = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
-    return done, {path.parent.name: json.loads(path.read_text()) for path in out.glob("*/result.json")}
+    process = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
+    return process, {path.parent.name: json.loads(path.read_text()) for path in out.glob("*/result.json")}
 
 
 def marks(results: dict[str, dict[str, object]]) -> dict[str, object]:
-    return {name: r["score"] if r["status"] == "graded" else r["status"] for name, r in results.items()}
+    return {
+        student: result["score"] if result["status"] == "graded" else result["status"]
+        for student, result in results.items()
+    }
 
 
 @pytest.fixture(scope="module")
@@ -59,19 +62,19 @@ def a_class(answer: Answer, tmp_path_factory: pytest.TempPathFactory) -> Path:
     "Archives inside folders or other archives are opened",
     "The notebook itself runs only if its other cells have to create files.",
 )
-def test_each_envelope_has_all_points_or_is_unclear(a_class: Path) -> None:
-    done, results = grade(a_class)
+def test_each_envelope_gets_full_marks_or_is_unclear(a_class: Path) -> None:
+    process, results = grade(a_class)
     full = results["draft"]["max_score"]
     clear = ("renamed", "moodle", "environment", "draft", "tar", "upper", "minor")
     assert marks(results) == {**dict.fromkeys(clear, full), "two": "unclear", "seven": "unclear"}
-    assert done.returncode == 1
-    assert "Unclear: two: The submission is unclear: it holds 2 notebooks with different answers" in done.stderr
-    assert "Unclear: seven: seven.7z is a 7z archive, which the grader does not open: unpack it" in done.stderr
-    assert "Not graded: notes.txt: it is not a folder, an archive or a notebook." in done.stderr
-    assert "moodle: Not used: readme.txt." in done.stdout
-    assert f"renamed: Not used: {BOOK}." in done.stdout
+    assert process.returncode == 1
+    assert "Unclear: two: The submission is unclear: it holds 2 notebooks with different answers" in process.stderr
+    assert "Unclear: seven: seven.7z is a 7z archive, which the grader does not open: unpack it" in process.stderr
+    assert "Not graded: notes.txt: it is not a folder, an archive or a notebook." in process.stderr
+    assert "moodle: Not used: readme.txt." in process.stdout
+    assert f"renamed: Not used: {BOOK}." in process.stdout
     notice = f"{TARGET} differs from the cell that writes it. The file counts"
-    assert f"draft: {notice}" in done.stdout
+    assert f"draft: {notice}" in process.stdout
     assert notice in (a_class.parent / "results" / "draft" / "feedback.html").read_text(encoding="utf-8")
     assert notice not in (a_class.parent / "results" / "tar" / "feedback.html").read_text(encoding="utf-8")
     assert "notebook" not in results["draft"]["phases"]  # type: ignore[operator]
@@ -79,22 +82,22 @@ def test_each_envelope_has_all_points_or_is_unclear(a_class: Path) -> None:
 
 @pytest.mark.promise("`--dry-run` grades nothing")
 def test_a_dry_run_lists_the_graded_and_the_unused_files(a_class: Path) -> None:
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-m", "autograder", "grade", str(a_class), "--assignment", CHAPTER, "--dry-run"],
         capture_output=True,
         text=True,
         check=False,
         cwd=a_class,
     )
-    assert done.returncode == 1
-    told = " ".join((done.stdout + done.stderr).split())
+    assert process.returncode == 1
+    output = " ".join((process.stdout + process.stderr).split())
     for words in (
         "Not used: readme.txt.",
         "unclear seven.7z is a 7z archive",
         "Not graded: notes.txt",
         "files are graded",
     ):
-        assert words in told
+        assert words in output
     assert not (a_class / "results").exists()
 
 
@@ -112,9 +115,9 @@ def test_all_files_of_a_canvas_attempt_and_all_members_of_a_gradescope_group_cou
     write(tmp_path / "canvas" / "down", canvas)
     roster = tmp_path / "canvas" / "roster.csv"
     roster.write_text("Student,ID,SIS User ID,SIS Login ID,Section\nTwo,340934,S1,two,A\n")
-    done, results = grade(tmp_path / "canvas" / "down", "--roster", str(roster))
-    assert (done.returncode, marks(results)) == (0, {"two": results["two"]["max_score"]}), done.stderr
-    assert "two: Not used: screenshot.png." in done.stdout
+    process, results = grade(tmp_path / "canvas" / "down", "--roster", str(roster))
+    assert (process.returncode, marks(results)) == (0, {"two": results["two"]["max_score"]}), process.stderr
+    assert "two: Not used: screenshot.png." in process.stdout
 
     write(tmp_path / "group" / "down" / "submission_1", answer.files)
     (tmp_path / "group" / "down" / "submission_metadata.yml").write_text(
@@ -123,7 +126,7 @@ def test_all_files_of_a_canvas_attempt_and_all_members_of_a_gradescope_group_cou
     )
     roster = tmp_path / "group" / "roster.csv"
     roster.write_text("Name,SID,Email\nPair One,200,one@example.edu\nPair Two,201,two@example.edu\n")
-    done, results = grade(tmp_path / "group" / "down", "--roster", str(roster))
-    assert done.returncode == 0, done.stderr
+    process, results = grade(tmp_path / "group" / "down", "--roster", str(roster))
+    assert process.returncode == 0, process.stderr
     assert marks(results) == dict.fromkeys(("200", "201"), results["200"]["max_score"])
-    assert "Not submitted" not in done.stdout
+    assert "Not submitted" not in process.stdout

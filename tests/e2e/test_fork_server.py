@@ -1,4 +1,4 @@
-"""A program that is forked into its sandbox has the same surroundings and rights as one that is started there."""
+"""A program that is forked into its sandbox has the same environment and rights as one that is started there."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from tests.e2e.sandbox_support import in_worker_sandbox, is_forked
 
 pytestmark = pytest.mark.usefixtures("forks")
 
-LONG = 120.0
+TIMEOUT = 120.0  # seconds
 
-# What a process can find out about its place and its rights.
+# Collects what a process can find out about its environment and its rights.
 REPORT = """
 import json, os, pathlib, signal, socket, stat, sys, threading
 
@@ -64,17 +64,19 @@ report = {
 """
 
 
-def workplace(scratch: Path, **options: Any) -> Sandbox:
-    """Describe a sandbox as a workspace does."""
+def program_sandbox(scratch: Path, **options: Any) -> Sandbox:
+    """Return the sandbox of a program in a workspace."""
     home = scratch / "home"
     home.mkdir(exist_ok=True)
     ros = {name: os.environ[name] for name in WHEEL_BOOTSTRAP_VARIABLES if name in os.environ}
-    own = {"PATH": "/usr/bin:/bin", "HOME": str(home), "PYTHONPATH": str(home / "modules")}
-    return Sandbox(home, mounts=(Mount(home, writable=True),), environment={**ros, **INTERPRETER, **own}, **options)
+    variables = {"PATH": "/usr/bin:/bin", "HOME": str(home), "PYTHONPATH": str(home / "modules")}
+    return Sandbox(
+        home, mounts=(Mount(home, writable=True),), environment={**ros, **INTERPRETER, **variables}, **options
+    )
 
 
 def start(spec: Sandbox, code: str, profile: str | None, *arguments: str, **options: Any) -> Process:
-    """Run code as a script, forked from a profile or, without it, started."""
+    """Run code as a script: forked from a profile, or started if there is none."""
     script = spec.workdir / "program.py"
     script.write_text(code)
     process = launch([sys.executable, str(script), *arguments], spec, profile=profile, **options)
@@ -83,30 +85,31 @@ def start(spec: Sandbox, code: str, profile: str | None, *arguments: str, **opti
 
 
 def reports(scratch: Path, network: bool) -> list[Any]:
-    """Return what a started and a forked program find out, and in which of the worker's namespaces they are."""
-    found = []
+    """Return the reports of a started and of a forked program, and the namespaces that each shares with the worker."""
+    outcomes = []
     for profile in (None, "lockstep"):
-        spec = workplace(scratch, network=network)
+        spec = program_sandbox(scratch, network=network)
         code = REPORT + "print(json.dumps(report), flush=True)\nsignal.pause()"
         with start(spec, code, profile, "one", "two") as process:
             while not process.output.endswith("\n") and not process.wait(0.05):
                 pass
             ours, theirs = (Path(f"/proc/{pid}/ns") for pid in ("self", process.innermost()))
             shared = [name.name for name in ours.iterdir() if name.readlink() == (theirs / name.name).readlink()]
-            found.append([json.loads(process.output), sorted(shared)])
-    return found
+            outcomes.append([json.loads(process.output), sorted(shared)])
+    return outcomes
 
 
 @pytest.mark.parametrize("network", [True, False])
-def test_a_forked_program_sees_the_same_surroundings_as_a_started_one(network: bool) -> None:
-    (started, apart), (forked, too) = in_worker_sandbox(reports, network)
-    assert apart == too
-    assert ("net" in too) is network
-    assert not {"mnt", "pid", "user", "ipc", "uts"} & set(too)
-    for one in (started, forked):
-        del one["rights"]["NSpid"]  # numbers differ, as bubblewrap's helpers have some of their own
-        caught = one["rights"].pop("SigCgt")[0]
-        assert int(caught, 16) & 0x7FFFFFFF == 1 << signal.SIGINT - 1  # above are those of the C library's threads
+def test_a_forked_program_sees_the_same_environment_as_a_started_one(network: bool) -> None:
+    (started, started_shared), (forked, shared) = in_worker_sandbox(reports, network)
+    assert shared == started_shared
+    assert ("net" in shared) is network
+    assert not {"mnt", "pid", "user", "ipc", "uts"} & set(shared)
+    for report in (started, forked):
+        del report["rights"]["NSpid"]  # differs, because bubblewrap's helper processes have numbers, too
+        caught = report["rights"].pop("SigCgt")[0]
+        # The higher signals are those of the C library's threads.
+        assert int(caught, 16) & 0x7FFFFFFF == 1 << signal.SIGINT - 1
     assert forked == started
     assert set(forked["rights"]["CapEff"] + forked["rights"]["CapBnd"]) == {"0" * 16}
 
@@ -122,27 +125,27 @@ else:
 """
 DESTROYED = """
 import json, sys, types
-class Thing:
+class Named:
     def __init__(self, name):
         self.name = name
     def __del__(self):
-        print(self.name, json and json.dumps([sys is not None, Thing is not None]), end="; ")
+        print(self.name, json and json.dumps([sys is not None, Named is not None]), end="; ")
 module = types.ModuleType("mine")
-module.held, sys.modules["mine"] = Thing("in my module"), module
-first, _last = Thing("global"), Thing("private")
-ring = Thing("in a ring")
-ring.ring, last = ring, Thing("last")
+module.held, sys.modules["mine"] = Named("in my module"), module
+first, _last = Named("global"), Named("private")
+ring = Named("in a ring")
+ring.ring, last = ring, Named("last")
 print("said", end="; ")
 """
-OPENED = """
+FINALIZER = """
 import rclpy, weakref
 rclpy.init()
 weakref.finalize(rclpy.utilities.get_default_context(), print, "closed").atexit = False
 """
-ENDS = {
+EXITS = {
     "plain": "print('done')",
     "status": "import sys\nprint('out', end='')\nsys.exit(7)",
-    "words": "import sys\nsys.exit('too bad')",
+    "message": "import sys\nsys.exit('too bad')",
     "error": "raise ValueError('nothing')",
     "killed": "import os, signal\nos.kill(os.getpid(), signal.SIGKILL)",
     "fault": "import ctypes\nctypes.string_at(0)",
@@ -154,11 +157,11 @@ ENDS = {
     "too large": "import sys\nsys.exit(2**70)",
     "true": "import sys\nsys.exit(True)",
     "child's": "import os, sys\nif os.fork() == 0:\n    sys.exit(5)\nsys.exit(os.waitstatus_to_exitcode(os.wait()[1]))",
-    "unwritten": "import os\nprint('lost')\nos.close(1)",
-    "a library's": "import ctypes\nctypes.CDLL(None).printf(b'from C')",
+    "closed output": "import os\nprint('lost')\nos.close(1)",
+    "from C": "import ctypes\nctypes.CDLL(None).printf(b'printed')",
     "left open": LEFT_OPEN,
     "destroyed": DESTROYED,
-    "opened": OPENED,
+    "finalizer": FINALIZER,
     "node": "import rclpy\nrclpy.init()\nnode = rclpy.create_node('left')\nnode.me = node\nprint(node.get_name())",
     "left behind": "import os, time\nif os.fork() == 0:\n    os.setsid()\n    time.sleep(600)\nprint('over')",
 }
@@ -170,39 +173,39 @@ def in_any_order(lines: list[str]) -> list[list[str]]:
 
 
 if sys.version_info >= (3, 13):
-    del ENDS["too large"]  # the status is the same, and the last line is that of another error of Python
+    del EXITS["too large"]  # the status is the same, but the last line is another error
 
 
 def exit_reasons(scratch: Path) -> dict[str, list[Any]]:
-    """Return how programs end, started and forked: how, with which status, and with which last line."""
-    found: dict[str, list[Any]] = {}
-    for name, code in ENDS.items():
-        found[name] = []
+    """Return the exit reason, the status and the last line of each program, started and forked."""
+    exits: dict[str, list[Any]] = {}
+    for name, code in EXITS.items():
+        exits[name] = []
         for profile in (None, "tests"):
-            with start(workplace(scratch), code, profile) as process:
-                assert process.wait(LONG), name
+            with start(program_sandbox(scratch), code, profile) as process:
+                assert process.wait(TIMEOUT), name
                 assert process.exit_reason is not None
                 last = in_any_order(process.output.splitlines()[-1:])
-                found[name].append([process.exit_reason.value, process.returncode, last])
-    return found
+                exits[name].append([process.exit_reason.value, process.returncode, last])
+    return exits
 
 
 def test_a_forked_program_ends_as_a_started_one_does() -> None:
-    found = in_worker_sandbox(exit_reasons)
-    assert {name: forked for name, (_, forked) in found.items()} == {name: s for name, (s, _) in found.items()}
-    assert found["status"][1] == ["exited", 7, [["out"]]]
-    assert len(found["destroyed"][1][2][0]) == 7
-    assert found["killed"][1][1] == 128 + 9
+    exits = in_worker_sandbox(exit_reasons)
+    assert {name: forked for name, (_, forked) in exits.items()} == {name: s for name, (s, _) in exits.items()}
+    assert exits["status"][1] == ["exited", 7, [["out"]]]
+    assert len(exits["destroyed"][1][2][0]) == 7
+    assert exits["killed"][1][1] == 128 + 9
 
 
-def imports(scratch: Path, profile: str, code: str) -> list[str]:
-    """Return what code prints in a started and in a forked program."""
-    said = []
-    for way in (None, profile):
-        with start(workplace(scratch), code, way) as process:
-            assert process.wait(LONG)
-            said.append(process.output)
-    return said
+def outputs(scratch: Path, profile: str, code: str) -> list[str]:
+    """Return the output of code in a started and in a forked program."""
+    printed = []
+    for chosen in (None, profile):
+        with start(program_sandbox(scratch), code, chosen) as process:
+            assert process.wait(TIMEOUT)
+            printed.append(process.output)
+    return printed
 
 
 @pytest.mark.parametrize(
@@ -222,33 +225,33 @@ def imports(scratch: Path, profile: str, code: str) -> list[str]:
     ],
 )
 def test_a_missing_import_is_also_missing_in_a_forked_program(profile: str, code: str) -> None:
-    started, forked = in_worker_sandbox(imports, profile, code)
+    started, forked = in_worker_sandbox(outputs, profile, code)
     assert forked.splitlines()[-1] == started.splitlines()[-1]
 
 
 def test_a_failing_forked_program_prints_the_same_as_a_started_one() -> None:
     code = "def drive(speed):\n    raise ValueError('too fast')\ntry:\n    drive(2)\nfinally:\n    print('over')"
-    started, forked = in_worker_sandbox(imports, "lockstep", code)
+    started, forked = in_worker_sandbox(outputs, "lockstep", code)
     assert forked == started
     assert "Traceback" in forked
-    started, forked = in_worker_sandbox(imports, "lockstep", "this is no Python")
+    started, forked = in_worker_sandbox(outputs, "lockstep", "this is not valid Python")
     assert forked == started
     assert "SyntaxError" in forked
 
 
 def shadows(scratch: Path, name: str) -> list[str]:
-    """Return what a started and a forked program print that has a module of its own of that name."""
-    own = workplace(scratch).workdir / "modules" / name
-    own.mkdir(parents=True)
-    (own / "__init__.py").write_text("import sys\nprint('my own', __name__)")
-    spec, said = workplace(scratch), []
+    """Return the outputs of a started and a forked program whose own module hides another one of this name."""
+    package = program_sandbox(scratch).workdir / "modules" / name
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text("import sys\nprint('my own', __name__)")
+    spec, printed = program_sandbox(scratch), []
     program = spec.workdir / "program.py"
     program.write_text(f"import os, sys\nimport {name}\nprint(sys.argv[1:], os.getcwd()[-4:], sorted(os.environ))")
     for profile in (None, "lockstep"):
         with launch([sys.executable, str(program), "one"], spec, profile=profile) as process:
-            assert process.wait(LONG)
-            said.append(process.output)
-    return said
+            assert process.wait(TIMEOUT)
+            printed.append(process.output)
+    return printed
 
 
 @pytest.mark.parametrize("name", ["rclpy", "numpy", "std_msgs", "yaml", "selectors", "mine"])
@@ -258,82 +261,83 @@ def test_a_students_module_comes_first_on_the_path_of_a_forked_program(name: str
     assert forked == started
 
 
-def draws(scratch: Path) -> list[str]:
+def random_numbers(scratch: Path) -> list[str]:
     """Return the random numbers of two forked programs."""
     code = "import random, numpy\nprint(random.random(), numpy.random.default_rng().random(), numpy.random.random())"
-    return [imports(scratch, "tests", code)[1] for _ in range(2)]
+    return [outputs(scratch, "tests", code)[1] for _ in range(2)]
 
 
 def test_forked_programs_draw_different_random_numbers() -> None:
-    one, other = in_worker_sandbox(draws)
+    one, other = in_worker_sandbox(random_numbers)
     assert not set(one.split()) & set(other.split())
 
 
 SEARCH = """
 import re, sys
-pattern, found = re.compile(sys.argv[1].encode()), 0
+pattern, count = re.compile(sys.argv[1].encode()), 0
 with open("/proc/self/maps") as maps, open("/proc/self/mem", "rb") as memory:
     for line in maps:
         span, rights, _, _, inode, *_ = line.split()
         if rights.startswith("rw") and inode == "0":
             start, end = (int(part, 16) for part in span.split("-"))
             memory.seek(start)
-            found += len(pattern.findall(memory.read(end - start)))
-print(found)
+            count += len(pattern.findall(memory.read(end - start)))
+print(count)
 """
 
 
-def remembered(scratch: Path) -> list[str]:
-    """Give a word to a program, and look for it in that one's memory and in that of the next."""
-    said = []
-    for words in (["[w]ord-of-mine", "word-of-mine " * 4000], ["[w]ord-of-mine"]):  # a pattern is not its own match
-        with start(workplace(scratch), SEARCH, "lockstep", *words) as process:
-            assert process.wait(LONG)
-            said.append(process.output)
-    return said
+def search_memory(scratch: Path) -> list[str]:
+    """Return how often an argument of one program is in its memory, and in the memory of the next program."""
+    counts = []
+    pattern = "[w]ord-of-mine"  # does not match itself
+    for arguments in ([pattern, "word-of-mine " * 4000], [pattern]):
+        with start(program_sandbox(scratch), SEARCH, "lockstep", *arguments) as process:
+            assert process.wait(TIMEOUT)
+            counts.append(process.output)
+    return counts
 
 
 def test_a_forked_program_has_nothing_of_an_earlier_one_in_its_memory() -> None:
-    own, other = (int(count) for count in in_worker_sandbox(remembered))
+    own, other = (int(count) for count in in_worker_sandbox(search_memory))
     assert own >= 1
     assert other == 0
 
 
-def late(scratch: Path) -> str:
-    """Fork from a server that takes longer than the program may; return how the program ended."""
+def fork_late(scratch: Path) -> str:
+    """Fork from a server that is stopped for longer than the program's time limit; return the exit reason."""
     warm_up("lockstep")
     server = launcher._servers["lockstep"]
     assert server is not None
     os.kill(server.pid, signal.SIGSTOP)
     threading.Timer(2.0, os.kill, [server.pid, signal.SIGCONT]).start()
-    spec = workplace(scratch, limits=Limits(wall_seconds=1.0))
+    spec = program_sandbox(scratch, limits=Limits(wall_seconds=1.0))
     with start(spec, "import signal; signal.pause()", "lockstep") as process:
-        process.wait(LONG)
+        process.wait(TIMEOUT)
     assert process.exit_reason is not None
     return process.exit_reason.value
 
 
-def test_the_imports_of_the_fork_server_do_not_count_as_time_of_the_program() -> None:
-    assert in_worker_sandbox(late) == "wall_time"
+def test_time_that_the_fork_server_needs_does_not_count_for_the_program() -> None:
+    assert in_worker_sandbox(fork_late) == "wall_time"
 
 
-def without(scratch: Path) -> list[Any]:
-    """Fork from a profile that cannot be loaded, twice; return what came of the programs, and what was said."""
-    said: list[str] = []
+def start_without_profile(scratch: Path) -> list[Any]:
+    """Launch twice with a profile that cannot be loaded; return each exit status and output, and the log messages."""
+    logged: list[str] = []
     handler = logging.Handler()
-    handler.emit = lambda record: said.append(record.getMessage())  # type: ignore[method-assign]
+    handler.emit = lambda record: logged.append(record.getMessage())  # type: ignore[method-assign]
     logging.getLogger("autograder").addHandler(handler)
-    spec, ends = workplace(scratch), []
+    spec, exits = program_sandbox(scratch), []
     (spec.workdir / "program.py").write_text("print('here')")
     for _ in range(2):
         with launch([sys.executable, str(spec.workdir / "program.py")], spec, profile="no such profile") as process:
-            assert process.wait(LONG)
-            ends.append([process.returncode, process.output])
-    return [ends, said]
+            assert process.wait(TIMEOUT)
+            exits.append([process.returncode, process.output])
+    return [exits, logged]
 
 
 def test_programs_are_started_if_they_cannot_be_forked() -> None:
-    ends, said = in_worker_sandbox(without)
-    assert ends == [[0, "here\n"]] * 2
-    assert len(said) == 1
-    assert said[0].startswith("programs are started one by one, which takes longer: ")
+    exits, logged = in_worker_sandbox(start_without_profile)
+    assert exits == [[0, "here\n"]] * 2
+    assert len(logged) == 1
+    assert logged[0].startswith("programs are started one by one, which takes longer: ")

@@ -1,4 +1,4 @@
-"""A Python program that a forked program starts is also forked, in the same environment as a started one."""
+"""Python programs that a forked program starts are also forked, with the environment of started ones."""
 
 from __future__ import annotations
 
@@ -17,65 +17,67 @@ from autograder.ros import environment
 from autograder.run.sandbox import Sandbox
 from autograder.run.sandbox.launcher import launch
 from tests.e2e.sandbox_support import in_worker_sandbox
-from tests.e2e.test_fork_server import ENDS, LONG, REPORT, in_any_order, workplace
+from tests.e2e.test_fork_server import EXITS, REPORT, TIMEOUT, in_any_order, program_sandbox
 
 pytestmark = pytest.mark.usefixtures("forks")
 
-# Runs the commands in `asked.json`, and prints their outcomes.
+# Runs the commands in `commands.json` and prints their outcomes.
 PARENT = """
 import json, os, subprocess, sys
 
 if "fork_children" in globals():
     fork_children()
-found = {}
-for name, command, options in json.load(open("asked.json")):
+outcomes = {}
+for name, command, options in json.load(open("commands.json")):
     try:
         done = subprocess.run(command, capture_output=True, text=True, **options)
     except OSError as error:
-        found[name] = [repr(error)]
+        outcomes[name] = [repr(error)]
     else:
-        found[name] = [done.returncode, done.stdout, done.stderr.splitlines()[-1:]]
-print(json.dumps(found))
+        outcomes[name] = [done.returncode, done.stdout, done.stderr.splitlines()[-1:]]
+print(json.dumps(outcomes))
 """
 FAMILY = """
 import json, os, pathlib, signal, sys
-words = pathlib.Path("/proc/self/cmdline").read_text().rstrip("\\0").split("\\0")
+arguments = pathlib.Path("/proc/self/cmdline").read_text().rstrip("\\0").split("\\0")
 print(json.dumps([
-    words, os.getsid(0) == os.getpid(), os.getpgid(0) == os.getpgid(os.getppid()),
+    arguments, os.getsid(0) == os.getpid(), os.getpgid(0) == os.getpgid(os.getppid()),
     pathlib.Path(f"/proc/{os.getppid()}/cmdline").read_text() != "", signal.getsignal(signal.SIGPIPE).name,
     sys.stdin.read(), os.environ.get("SPEED"), os.environ.get("PWD", "").split("/")[-1], os.getcwd().split("/")[-1],
 ]))
 """
 
 
-def program(folder: Path, name: str, code: str, first: str = f"#!{sys.executable}") -> str:
+def program(folder: Path, name: str, code: str, shebang: str = f"#!{sys.executable}") -> str:
     """Write an executable script; return its path."""
     path = folder / name
-    path.write_text(f"{first}\n{code}")
+    path.write_text(f"{shebang}\n{code}")
     path.chmod(0o755)
     return str(path)
 
 
-def both(scratch: Path, asked: list[tuple[str, list[str], dict[str, Any]]], spec: Sandbox) -> list[dict[str, Any]]:
-    """Return the outcome of commands that a started and a forked program start."""
+def run_both(
+    scratch: Path, commands: list[tuple[str, list[str], dict[str, Any]]], spec: Sandbox
+) -> list[dict[str, Any]]:
+    """Return the outcomes of commands that are run by a started and by a forked program."""
     parent = spec.workdir / "parent.py"
     parent.write_text(PARENT)
-    (spec.workdir / "asked.json").write_text(json.dumps(asked))
-    found = []
+    (spec.workdir / "commands.json").write_text(json.dumps(commands))
+    outcomes = []
     for profile in (None, "launch"):
         with launch([sys.executable, str(parent)], spec, profile=profile) as process:
-            assert process.wait(LONG)
+            assert process.wait(TIMEOUT)
             assert process.returncode == 0, process.output
-            found.append(json.loads(process.output))
-    return found
+            outcomes.append(json.loads(process.output))
+    return outcomes
 
 
 def reports(scratch: Path) -> list[dict[str, Any]]:
-    spec = workplace(scratch)
+    spec = program_sandbox(scratch)
     (spec.workdir / "below").mkdir()
     report = program(spec.workdir, "report", REPORT + "print(json.dumps(report))")
     family = program(spec.workdir, "family", FAMILY)
-    return both(
+    return run_both(
         scratch,
         [
             ("plain", [report, "one", "two"], {}),
@@ -90,36 +92,36 @@ def reports(scratch: Path) -> list[dict[str, Any]]:
     )
 
 
-def test_a_forked_child_program_sees_the_same_surroundings_as_a_started_one() -> None:
+def test_a_forked_child_program_sees_the_same_environment_as_a_started_one() -> None:
     started, forked = in_worker_sandbox(reports)
-    for found in (started, forked):
+    for outcomes in (started, forked):
         for name in ("plain", "environment"):
-            report = found[name] = json.loads(found[name][1])
+            report = outcomes[name] = json.loads(outcomes[name][1])
             del report["rights"]["NSpid"], report["rights"]["SigCgt"], report["oom"], report["leads"]
         for name in ("family", "session", "by the interpreter", "relative", "no environment"):
-            found[name] = json.loads(found[name][1])
-    shown = forked["family"][0]
-    assert shown[:2] == started["family"][0][:2]
-    assert len("\0".join(shown)) > 1000  # of the three thousand there is room for this many
-    assert started["family"][0].pop(2).startswith(shown.pop(2))
+            outcomes[name] = json.loads(outcomes[name][1])
+    arguments = forked["family"][0]
+    assert arguments[:2] == started["family"][0][:2]
+    assert len("\0".join(arguments)) > 1000  # a forked process has no room for all 3,000 characters
+    assert started["family"][0].pop(2).startswith(arguments.pop(2))
     assert forked == started
     assert forked["session"][1:3] == [True, False]
     assert forked["family"][5] == "typed"
 
 
 def exit_reasons(scratch: Path) -> list[dict[str, Any]]:
-    spec = workplace(scratch)
-    codes = {name: code for name, code in ENDS.items() if name != "left behind"}  # its output never ends
-    asked = [(name, [program(spec.workdir, name, code)], {}) for name, code in codes.items()]
+    spec = program_sandbox(scratch)
+    codes = {name: code for name, code in EXITS.items() if name != "left behind"}  # its output never ends
+    commands = [(name, [program(spec.workdir, name, code)], {}) for name, code in codes.items()]
     no_rights = spec.workdir / "no rights"
     no_rights.write_text(f"#!{sys.executable}")
-    return both(
+    return run_both(
         scratch,
         [
-            *((name, command, {}) for name, command, _ in asked),
+            *((name, command, {}) for name, command, _ in commands),
             ("is not there", [str(spec.workdir / "nothing")], {}),
             ("may not", [str(no_rights)], {}),
-            ("nowhere", [asked[0][1][0]], {"cwd": "no/such/folder"}),
+            ("nowhere", [commands[0][1][0]], {"cwd": "no/such/folder"}),
             ("another interpreter", [program(spec.workdir, "shell", "echo $0", "#!/bin/sh")], {}),
             ("an option", [program(spec.workdir, "option", "import sys\nprint(sys.flags.isolated)", _ISOLATED)], {}),
             ("a variable", [program(spec.workdir, "flags", "import sys\nprint(sys.flags.optimize)")], {"env": _PLAIN}),
@@ -137,8 +139,8 @@ _PLAIN = {"PATH": os.defpath, "PYTHONOPTIMIZE": "2"}
 
 def test_a_forked_child_program_ends_as_a_started_one_does() -> None:
     started, forked = in_worker_sandbox(exit_reasons)
-    for found in (started, forked):
-        found["destroyed"] = in_any_order(found["destroyed"][1:2])
+    for outcomes in (started, forked):
+        outcomes["destroyed"] = in_any_order(outcomes["destroyed"][1:2])
     assert forked == started
     assert forked["status"] == [7, "out", []]
     assert forked["killed"][0] == -signal.SIGKILL
@@ -166,7 +168,7 @@ def generate_launch_description():
 
 
 def launched(scratch: Path) -> list[Any]:
-    """Return what a launch says, which programs run, how it ends on Ctrl-C, and what it leaves."""
+    """Return a launch's output, its programs, the number killed, its status after Ctrl-C, and leftover processes."""
     prefix = scratch / "ws" / "install" / "pkg"
     for folder in ("share/ament_index/resource_index/packages", "share/pkg/launch", "lib/pkg"):
         (prefix / folder).mkdir(parents=True)
@@ -176,18 +178,18 @@ def launched(scratch: Path) -> list[Any]:
     workspace = Workspace(scratch / "ws", environment.find(), scratch / "home")
     workspace.scratch.mkdir()
     with LaunchHarness(workspace, "pkg", "both.launch.py") as harness:
-        harness.wait_for(lambda: harness.output.count("forked") == 2 and "shell" in harness.output, LONG)
-        running = [[found.package, found.name] for found in harness.programs()]
+        harness.wait_for(lambda: harness.output.count("forked") == 2 and "shell" in harness.output, TIMEOUT)
+        running = [[running_program.package, running_program.name] for running_program in harness.programs()]
         killed = harness.kill("waits", signal.SIGKILL)
-        harness.wait_for(lambda: harness.output.count("died") == 2, LONG)
-        stop = harness.interrupt(LONG)
+        harness.wait_for(lambda: harness.output.count("died") == 2, TIMEOUT)
+        stop = harness.interrupt(TIMEOUT)
         return [harness.output, running, killed, stop.status, list(stop.left)]
 
 
 def test_programs_of_a_launch_are_forked_and_listed_by_name() -> None:
-    output, running, killed, status, left = in_worker_sandbox(launched)
+    output, running, killed, status, leftovers = in_worker_sandbox(launched)
     assert output.count("forked False ['--ros-args']") == 2, output
     assert running == [["pkg", "waits"]] * 2
     assert killed == 2
     assert output.count("exit code -9") == 2
-    assert (status, left) == (0, [])
+    assert (status, leftovers) == (0, [])

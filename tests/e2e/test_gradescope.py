@@ -1,4 +1,4 @@
-"""The autograder for Gradescope, run in folders that are laid out as Gradescope lays them out."""
+"""The autograder for Gradescope, run in the folders that Gradescope creates."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ASSIGNMENT = "01_package_structure"
 
 @pytest.fixture(scope="module")
 def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """`/autograder` of an image that Gradescope has built; the packages are those of this environment."""
+    """The folder `/autograder` of an image that Gradescope has built, with the packages of this environment."""
     home = tmp_path_factory.mktemp("autograder")
     ran = CliRunner().invoke(group, ["gradescope", ASSIGNMENT, "--out", str(home / "upload.zip")])
     assert ran.exit_code == 0, ran.output
@@ -31,8 +31,8 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return home
 
 
-def graded(home: Path) -> dict[str, object]:
-    """Run the autograder as Gradescope does, and return what it reports."""
+def grade(home: Path) -> dict[str, object]:
+    """Run the autograder as Gradescope does; return its report."""
     script = home / "source" / "run_autograder"
     assert os.access(script, os.X_OK)
     subprocess.run([script], env={**os.environ, "GRADESCOPE_HOME": str(home)}, check=True, capture_output=True)
@@ -41,17 +41,17 @@ def graded(home: Path) -> dict[str, object]:
 
 
 @pytest.mark.promise("Gradescope builds an image from it and grades each submission when it arrives.")
-def test_the_reference_has_all_points_and_an_answer_without_packages_has_no_score(home: Path) -> None:
+def test_the_reference_gets_full_marks_and_an_answer_without_packages_no_score(home: Path) -> None:
     submission = home / "submission"
     write_reference(suites.hidden(ASSIGNMENT).sources, submission / "ws")
-    report = graded(home)
+    report = grade(home)
     assert report["score"] == suites.hidden(ASSIGNMENT).max_score
     assert {test["visibility"] for test in report["tests"]} == {"after_published"}  # type: ignore[attr-defined]
 
     for path in sorted(submission.rglob("*"), reverse=True):
         path.rmdir() if path.is_dir() else path.unlink()
     (submission / "notes.txt").write_text("later")
-    report = graded(home)
+    report = grade(home)
     assert "score" not in report
     assert "package" in str(report["output"])
 
@@ -92,9 +92,10 @@ def test_the_zip_contains_everything_for_setup_and_no_build_products(home: Path)
         (["00_welcome"], "there are no hidden checks for '00_welcome'; there are for: 01_package_structure"),
         ([ASSIGNMENT], "already exists: choose a new file name"),
     ],
-    ids=["no checks", "already exists"],  # one that names a chapter would be made a home for on another worker
+    # A test whose id contains a chapter's name runs on another worker, which would set up the fixture again.
+    ids=["no checks", "already exists"],
 )
-def test_a_wrong_call_of_the_gradescope_command_is_a_usage_error(
+def test_invalid_arguments_of_the_gradescope_command_are_a_usage_error(
     home: Path, arguments: list[str], message: str
 ) -> None:
     ran = subprocess.run(

@@ -56,9 +56,9 @@ def layouts(reference: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[s
 
 
 @pytest.fixture(scope="session")
-def together(layouts: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Result]:
-    """The layouts' results, two graded at once."""
-    results = grade_all(layouts, ASSIGNMENT, seed=SEED, out=tmp_path_factory.mktemp("together"), jobs=2)
+def parallel_results(layouts: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Result]:
+    """The results of both layouts, graded in parallel."""
+    results = grade_all(layouts, ASSIGNMENT, seed=SEED, out=tmp_path_factory.mktemp("parallel"), jobs=2)
     return {result.student: result for result in results}
 
 
@@ -70,8 +70,8 @@ def _grade(path: Path, out: Path) -> Result:
     "A submission is the student's folder, a zip or tar archive of it, the notebook alone, or a source tree."
 )
 @pytest.mark.parametrize("layout", ["zip", "notebook"])
-def test_the_reference_gets_everything_in_every_layout(together: dict[str, Result], layout: str) -> None:
-    result = together[layout]
+def test_the_reference_gets_full_marks_in_every_layout(parallel_results: dict[str, Result], layout: str) -> None:
+    result = parallel_results[layout]
     assert [check.id for check in result.checks if check.outcome is not Outcome.PASSED] == []
     assert (result.status, result.diagnosis.kind, result.score) == (Status.GRADED, Kind.OK, result.max_score)
     assert result.max_score == suites.hidden(ASSIGNMENT).max_score
@@ -85,18 +85,18 @@ def test_the_reference_gets_everything_in_every_layout(together: dict[str, Resul
 
 
 @pytest.mark.promise("Each student has a folder in `results` with `result.json`, pictures, and")
-def test_the_pictures_of_the_tracks_are_stored_beside_the_result(together: dict[str, Result]) -> None:
-    assert {artifact.check for artifact in together["zip"].artifacts} == {"room", "pillars", "corridor"}
+def test_the_pictures_of_the_tracks_are_stored_beside_the_result(parallel_results: dict[str, Result]) -> None:
+    assert {artifact.check for artifact in parallel_results["zip"].artifacts} == {"room", "pillars", "corridor"}
 
 
 @pytest.mark.promise("A minute of driving takes seconds, and a mark is the same every time.")
-def test_grading_one_at_a_time_gives_the_same_result_as_two_at_once(
-    together: dict[str, Result], layouts: dict[str, Path], tmp_path: Path
+def test_serial_and_parallel_grading_give_the_same_result(
+    parallel_results: dict[str, Result], layouts: dict[str, Path], tmp_path: Path
 ) -> None:
-    (alone,) = grade_all({"zip": layouts["zip"]}, ASSIGNMENT, seed=SEED, out=tmp_path, jobs=1)
-    assert without_times(alone.to_json()) == without_times(together["zip"].to_json())
-    tracks = [artifact.sha256 for artifact in alone.artifacts]
-    assert tracks == [artifact.sha256 for artifact in together["notebook"].artifacts]
+    (serial,) = grade_all({"zip": layouts["zip"]}, ASSIGNMENT, seed=SEED, out=tmp_path, jobs=1)
+    assert without_times(serial.to_json()) == without_times(parallel_results["zip"].to_json())
+    tracks = [artifact.sha256 for artifact in serial.artifacts]
+    assert tracks == [artifact.sha256 for artifact in parallel_results["notebook"].artifacts]
     assert len(set(tracks)) == 3
 
 
@@ -105,21 +105,21 @@ def test_grading_one_at_a_time_gives_the_same_result_as_two_at_once(
     "Each mark is stored with its seed, and the same seed gives the same inputs.",
 )
 def test_a_check_is_replayed_with_the_seed_of_its_result(
-    together: dict[str, Result], layouts: dict[str, Path], tmp_path: Path
+    parallel_results: dict[str, Result], layouts: dict[str, Path], tmp_path: Path
 ) -> None:
-    write_json(tmp_path / "result.json", together["zip"].to_json())
+    write_json(tmp_path / "result.json", parallel_results["zip"].to_json())
     submission = str(layouts["zip"])
     arguments = ["replay", str(tmp_path), "--check", "room", "--submission", submission, "--mcap", "--no-open"]
-    said = CliRunner().invoke(cli.group, arguments)
-    assert said.exit_code == 0, said.output
-    assert "differs from the graded submission" not in said.output
+    process = CliRunner().invoke(cli.group, arguments)
+    assert process.exit_code == 0, process.output
+    assert "differs from the graded submission" not in process.output
     folder = tmp_path / "replay" / "room"
     assert (folder / "room-track" / "room-track.mcap").is_file()
-    picture = next(artifact for artifact in together["zip"].artifacts if artifact.check == "room")
-    assert picture.caption in (folder / "feedback.html").read_text(encoding="utf-8")  # the metres are the same
+    picture = next(artifact for artifact in parallel_results["zip"].artifacts if artifact.check == "room")
+    assert picture.caption in (folder / "feedback.html").read_text(encoding="utf-8")  # the distances are the same
 
 
-# What is wrong is named.
+# Diagnoses of invalid submissions.
 
 
 def _remove(name: str) -> Callable[[Path], None]:
@@ -130,37 +130,37 @@ def _replace(name: str, text: str) -> Callable[[Path], None]:
     return lambda source: (source / PACKAGE / name).write_text(text) and None
 
 
-def _no_script(source: Path) -> None:
+def _rename_script(source: Path) -> None:
     setup = source / PACKAGE / "setup.py"
     setup.write_text(setup.read_text().replace("robot_controller =", "robot_control ="))
 
 
 @pytest.mark.parametrize(
-    ("spoil", "kind", "words"),
+    ("damage", "kind", "words"),
     [
         pytest.param(_remove("setup.py"), Kind.HALF_WRITTEN_PACKAGE, "has no setup.py", id="no setup.py"),
         pytest.param(
             _replace("setup.py", "setup(\n"), Kind.BUILD_FAILED, "The first error: setup.py, line ", id="setup.py"
         ),
-        pytest.param(_no_script, Kind.MISSING_EXECUTABLE, "it installs", id="no such script"),
+        pytest.param(_rename_script, Kind.MISSING_EXECUTABLE, "it installs", id="no such script"),
     ],
 )
 def test_a_package_that_cannot_be_checked_gets_a_diagnosis_with_the_remedy(
-    spoil: Callable[[Path], None], kind: Kind, words: str, reference: Path, tmp_path: Path
+    damage: Callable[[Path], None], kind: Kind, words: str, reference: Path, tmp_path: Path
 ) -> None:
     shutil.copytree(reference, tmp_path / "alice")
-    spoil(tmp_path / "alice" / "src")
+    damage(tmp_path / "alice" / "src")
     result = _grade(tmp_path / "alice", tmp_path / "out")
     assert (result.status, result.score, result.diagnosis.kind) == (Status.GRADED, 0.0, kind)
     assert words in result.diagnosis.sentence
     assert all(check.outcome is not Outcome.PASSED for check in result.checks)
 
 
-def _nothing(folder: Path) -> None:
+def _write_nothing(folder: Path) -> None:
     (folder / "src").mkdir()
 
 
-def _link(folder: Path) -> None:
+def _write_link(folder: Path) -> None:
     (folder / "src").mkdir()
     (folder / "src" / "link").symlink_to("/etc")
 
@@ -168,8 +168,8 @@ def _link(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("write", "kind", "words"),
     [
-        pytest.param(_nothing, Kind.NOTHING_SUBMITTED, "Hand in the assignment's whole folder", id="nothing"),
-        pytest.param(_link, Kind.UNSAFE_ARCHIVE, "is a symbolic link", id="link"),
+        pytest.param(_write_nothing, Kind.NOTHING_SUBMITTED, "Hand in the assignment's whole folder", id="nothing"),
+        pytest.param(_write_link, Kind.UNSAFE_ARCHIVE, "is a symbolic link", id="link"),
         pytest.param(
             lambda folder: (folder / f"{ASSIGNMENT}.ipynb").write_text('{"cells": ['),
             Kind.UNREADABLE,
@@ -197,33 +197,33 @@ def test_a_submitted_file_that_stops_the_kernel_from_starting_is_named(tmp_path:
     assert "a file beside the notebook" in result.diagnosis.sentence
 
 
-def test_a_notebook_whose_kernel_dies_still_counts_with_the_files_it_wrote(tmp_path: Path) -> None:
+def test_files_that_a_notebook_wrote_before_its_kernel_died_are_graded(tmp_path: Path) -> None:
     cells = [
         "%%writefile ws/src/my_robot_package/setup.py\nsyntax error",
         "import os\nos._exit(0)",
         "%%writefile never\n",
     ]
     (tmp_path / "alice").mkdir()
-    book = new_notebook(cells=[new_code_cell(cell) for cell in cells])
-    nbformat.write(book, tmp_path / "alice" / f"{ASSIGNMENT}.ipynb")
+    notebook = new_notebook(cells=[new_code_cell(cell) for cell in cells])
+    nbformat.write(notebook, tmp_path / "alice" / f"{ASSIGNMENT}.ipynb")
     result = _grade(tmp_path / "alice", tmp_path / "out")
     assert (result.status, result.diagnosis.kind) == (Status.GRADED, Kind.BUILD_FAILED)
 
 
-# The grader's own failure.
+# Failures of the grader.
 
 
 @pytest.fixture
 def worker(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
-    """Start other programs instead of the worker, one after another, with the same input."""
+    """Return a function that replaces the worker by other programs, one for each start, with the same arguments."""
 
-    def put(*codes: str) -> None:
-        left = itertools.cycle(codes)
+    def replace(*codes: str) -> None:
+        programs = itertools.cycle(codes)
         monkeypatch.setattr(
-            own_sandbox, "_worker", lambda job, line: [sys.executable, "-c", next(left), job.to_json(), str(line)]
+            own_sandbox, "_worker", lambda job, line: [sys.executable, "-c", next(programs), job.to_json(), str(line)]
         )
 
-    return put
+    return replace
 
 
 RUN = "\nfrom autograder.grade.worker import main\nmain()"
@@ -234,7 +234,7 @@ def run(files, plugin):
     return 3
 plugin.run = run
 """
-BROKEN_LAB = """
+BROKEN_HARNESS = """
 from autograder.ros import activate
 activate()
 from autograder.exceptions import GraderError
@@ -255,10 +255,10 @@ SteppedHarness.step = step
         pytest.param("import os\nos.kill(os.getpid(), 9)", "The worker ended", id="killed"),
         pytest.param("pass", "The worker ended: exited, 0.", id="no result"),
         pytest.param(BROKEN_SUITE + RUN, "def test_secret", id="broken suite"),
-        pytest.param(BROKEN_LAB + RUN, "messages were lost", id="broken harness"),
+        pytest.param(BROKEN_HARNESS + RUN, "messages were lost", id="broken harness"),
     ],
 )
-def test_a_failure_of_the_grader_gives_not_graded_and_never_zero(
+def test_a_failure_of_the_grader_is_reported_as_not_graded_and_never_as_zero(
     code: str, logged: str, worker: Callable[..., None], reference: Path, tmp_path: Path
 ) -> None:
     worker(code)
@@ -282,10 +282,10 @@ def test_a_failure_of_the_grader_that_happens_once_is_retried(
 
 
 def test_a_result_of_an_earlier_run_is_never_used_for_this_run(
-    worker: Callable[..., None], reference: Path, tmp_path: Path, together: dict[str, Result]
+    worker: Callable[..., None], reference: Path, tmp_path: Path, parallel_results: dict[str, Result]
 ) -> None:
     (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "result.json").write_text(json.dumps(together["zip"].to_json()))
+    (tmp_path / "out" / "result.json").write_text(json.dumps(parallel_results["zip"].to_json()))
     worker("pass")
     assert _grade(reference, tmp_path / "out").status is Status.NOT_GRADED
 
@@ -310,6 +310,6 @@ def test_a_machine_without_namespaces_refuses_to_grade_at_the_weak_isolation_lev
 def test_the_weaker_isolation_level_is_named_in_the_result(reference: Path, tmp_path: Path) -> None:
     shutil.copytree(reference, tmp_path / "alice")
     (tmp_path / "alice" / "src" / PACKAGE / "setup.py").unlink()
-    graded = grade_submission(Job(tmp_path / "alice", ASSIGNMENT, "a", 1, tmp_path / "out", Isolation.PROCESS))
-    assert graded.isolation == "process"
-    assert graded.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
+    result = grade_submission(Job(tmp_path / "alice", ASSIGNMENT, "a", 1, tmp_path / "out", Isolation.PROCESS))
+    assert result.isolation == "process"
+    assert result.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE

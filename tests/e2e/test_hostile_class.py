@@ -24,8 +24,8 @@ from tests.e2e.leak_monitor import grade_monitored
 from tests.e2e.results import without_times
 
 Writers = list[tuple[str, Callable[[Path], None]]]
-FEW = ("threshold", "ten_hertz")  # of the checks, for the small class
-# What a student reads first. A payload that changes nothing leaves the sentence of the error that the program has.
+FEW_CHECKS = ("threshold", "ten_hertz")  # the checks that grade the small class
+# The first sentence of the feedback. If an attack has no effect, it describes the flaw of the attacker's program.
 SENTENCES = {
     **dict.fromkeys(
         ("thief", "tricks", "forged protocol", "build thief", "notebook tricks"), "It published a command every 0.20 s"
@@ -38,12 +38,12 @@ SENTENCES = {
     "fork bomb": "started far too many threads or processes",
     "notebook link": "there is no folder ws/src",
 }
-# Of root without control groups, a fork bomb stops the machine.
+# A fork bomb by root, without control groups, would stop the machine.
 ATTACKS = {attack.id: attack for attack in attacks() if attack.id != "fork bomb" or "pids" in cgroup.bounds()}
 
 
 def write_notebook(folder: Path) -> None:
-    """Hand in the reference as a notebook."""
+    """Submit the reference as a notebook."""
     package_writer(None)(folder / "answer")
     text = (folder / "answer" / "src" / PACKAGE / CONTROLLER).read_text()
     (folder / "submission").mkdir()
@@ -55,10 +55,10 @@ def write_notebook(folder: Path) -> None:
 
 def honest(number: int) -> Writers:
     """Return `number` honest submissions: a notebook, a slow node, a failing build, then those of the verification."""
-    broken = package_writer(None, files={"setup.py": "print('it begins')\nraise ValueError('no version')\n"})
-    own: Writers = [("notebook", write_notebook), ("slow", package_writer("five_hertz")), ("no build", broken)]
+    broken = package_writer(None, files={"setup.py": "print('started')\nraise ValueError('no version')\n"})
+    writers: Writers = [("notebook", write_notebook), ("slow", package_writer("five_hertz")), ("no build", broken)]
     kinds = (CaseKind.REFERENCE, CaseKind.VARIANT, CaseKind.MUTANT)
-    return [*own, *((case.name, case.write) for case in cases(CHAPTER.assignment) if case.kind in kinds)][:number]
+    return [*writers, *((case.name, case.write) for case in cases(CHAPTER.assignment) if case.kind in kinds)][:number]
 
 
 def hostile(names: Iterable[str]) -> Writers:
@@ -66,18 +66,18 @@ def hostile(names: Iterable[str]) -> Writers:
     return [(name, ATTACKS[name].write) for name in names if name in ATTACKS]
 
 
-def graded(place: Path, writers: Writers, only: tuple[str, ...]) -> dict[str, Result]:
-    """Grade submissions below a leak monitor; return their results."""
+def grade(folder: Path, writers: Writers, only: tuple[str, ...]) -> dict[str, Result]:
+    """Grade submissions under a leak monitor; return their results."""
     submissions = {}
     for student, write in writers:
-        write(folder := place / "submitted" / student)
-        submissions[student] = folder / "submission" if (folder / "submission").is_dir() else folder
-    grade_monitored(place, CHAPTER.assignment, submissions, only)
-    stored = {student: place / "results" / student / RESULT for student, _ in writers}
+        write(path := folder / "submitted" / student)
+        submissions[student] = path / "submission" if (path / "submission").is_dir() else path
+    grade_monitored(folder, CHAPTER.assignment, submissions, only)
+    stored = {student: folder / "results" / student / RESULT for student, _ in writers}
     return {student: from_json(json.loads(path.read_text())) for student, path in stored.items()}
 
 
-def untimed(folder: Path) -> dict[str, Any]:
+def files_without_times(folder: Path) -> dict[str, Any]:
     """Return the files of a result by name, without the times in them."""
     files: dict[str, Any] = {path.name: path.read_bytes() for path in folder.iterdir()}
     files[RESULT] = without_times(json.loads(files[RESULT]))
@@ -88,8 +88,8 @@ def untimed(folder: Path) -> dict[str, Any]:
     return files
 
 
-def require_held(results: dict[str, Result], only: tuple[str, ...]) -> None:
-    """Require of each attack that it gained nothing, and that its page says what is wrong."""
+def require_no_gain(results: dict[str, Result], only: tuple[str, ...]) -> None:
+    """Require that no attack gained anything, and that its feedback says what is wrong."""
     for student, result in results.items():
         attack = ATTACKS[student.partition(", ")[0]]
         assert attack.verify(result, frozenset(only)) == "", student
@@ -99,7 +99,7 @@ def require_held(results: dict[str, Result], only: tuple[str, ...]) -> None:
 @pytest.mark.parametrize(
     ("size", "names", "checks"),
     [
-        pytest.param(4, ("thief", "fork bomb"), FEW, id="6"),
+        pytest.param(4, ("thief", "fork bomb"), FEW_CHECKS, id="6"),
         pytest.param(
             15,
             ("thief", "fork bomb", "notebook tricks", "build link", "spoofed ROS"),
@@ -114,17 +114,18 @@ def test_attackers_do_not_change_the_results_of_other_students(
 ) -> None:
     only = suites.hidden(CHAPTER.assignment).with_dependencies(*checks)
     good, bad = honest(size), hostile(names)
-    mixed = [*(one for pair in zip(bad, good, strict=False) for one in pair), *good[len(bad) :]]  # at the same time
-    graded(tmp_path / "without", good, only)
-    results = graded(tmp_path / "with", mixed, only)
-    require_held({student: results[student] for student, _ in bad}, only)
+    # Each attack is graded at the same time as an honest submission.
+    mixed = [*(submission for pair in zip(bad, good, strict=False) for submission in pair), *good[len(bad) :]]
+    grade(tmp_path / "without", good, only)
+    results = grade(tmp_path / "with", mixed, only)
+    require_no_gain({student: results[student] for student, _ in bad}, only)
     for student, _ in good:
-        alone, beside = (untimed(tmp_path / place / "results" / student) for place in ("without", "with"))
+        alone, beside = (files_without_times(tmp_path / name / "results" / student) for name in ("without", "with"))
         assert beside == alone, student
 
 
 def write_one_of_many(attack: Attack, number: int, folder: Path) -> None:
-    """Write an attack with a file of its own: equal submissions are graded once."""
+    """Write an attack with a unique file, because equal submissions are graded only once."""
     attack.write(folder)
     path = folder / "submission"
     (path if path.is_dir() else folder / "src" / PACKAGE).joinpath("number.txt").write_text(f"{number}")
@@ -135,9 +136,9 @@ def write_one_of_many(attack: Attack, number: int, folder: Path) -> None:
 @pytest.mark.timeout(7200)
 @pytest.mark.parametrize("size", [200])
 def test_many_attacks_in_a_row_leave_nothing_on_the_machine(tmp_path: Path, size: int) -> None:
-    only = suites.hidden(CHAPTER.assignment).with_dependencies(*FEW)
-    row = [
+    only = suites.hidden(CHAPTER.assignment).with_dependencies(*FEW_CHECKS)
+    submissions = [
         (f"{attack.id}, {number}", partial(write_one_of_many, attack, number))
         for number, attack in enumerate(islice(cycle(ATTACKS.values()), size))
     ]
-    require_held(graded(tmp_path, row, only), only)
+    require_no_gain(grade(tmp_path, submissions, only), only)

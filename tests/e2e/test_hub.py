@@ -23,9 +23,9 @@ from tests.e2e.hub_client import User
 ASSIGNMENT = "02_nodes"
 COURSE = {"course_id": "ros2-python", "assignment_id": ASSIGNMENT}
 SOLUTION = "robot-controller"
-FLAW, LOST = ("HALF_SECTOR = math.radians(30.0)", "HALF_SECTOR = math.radians(33.0)"), "only_forward_counts"
-# What a student's kernel says of itself: its folder, its domain, and whether the installation can be written to.
-ABOUT = (
+FLAW, FAILED_CHECK = ("HALF_SECTOR = math.radians(30.0)", "HALF_SECTOR = math.radians(33.0)"), "only_forward_counts"
+# Prints the kernel's folder and domain, and whether it can write to the installation.
+REPORT = (
     "import os, sys; print(os.path.basename(os.getcwd()), os.environ['ROS_DOMAIN_ID'], os.access(sys.prefix, os.W_OK))"
 )
 
@@ -38,30 +38,32 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(1800), *ON_A_HUB]
 
 
 @pytest.fixture
-def place() -> Iterator[Path]:
-    """A folder that other users can enter; pytest's own are closed to them."""
+def shared_folder() -> Iterator[Path]:
+    """A folder that other users can enter, unlike pytest's."""
     folder = Path(tempfile.mkdtemp(dir="/tmp"))
     folder.chmod(0o755)
     yield folder
     shutil.rmtree(folder)
 
 
-def hand_in(student: User, *, flawed: bool) -> list[str]:
-    """Fetch, solve, run and submit the assignment; return what the student's kernel says of itself."""
+def submit(student: User, *, flawed: bool) -> list[str]:
+    """Fetch, solve, run and submit the assignment; return what `REPORT` prints, as words."""
     student.nbgrader("assignments/fetch", data=COURSE)
     path = f"{ASSIGNMENT}/{ASSIGNMENT}.ipynb"
-    notebook = nbformat.from_dict(student.ask("GET", f"api/contents/{path}")["content"])
+    notebook = nbformat.from_dict(student.request("GET", f"api/contents/{path}")["content"])
     fill_in(notebook, ASSIGNMENT)
     answer = next(cell for cell in notebook.cells if cell.id == SOLUTION)
     if flawed:
         assert answer.source.count(FLAW[0]) == 1
         answer.source = answer.source.replace(*FLAW)
-    student.ask("PUT", f"api/contents/{path}", json={"type": "notebook", "content": notebook})
-    first = next(cell for cell in notebook.cells if "ros()" in cell.source)
-    *_, about, listed = student.run(path, first.source, answer.source, ABOUT, "import rclpy; print(rclpy.__name__)")
-    assert listed == "rclpy\n"
+    student.request("PUT", f"api/contents/{path}", json={"type": "notebook", "content": notebook})
+    setup_cell = next(cell for cell in notebook.cells if "ros()" in cell.source)
+    *_, report, imported = student.run(
+        path, setup_cell.source, answer.source, REPORT, "import rclpy; print(rclpy.__name__)"
+    )
+    assert imported == "rclpy\n"
     student.nbgrader("assignments/submit", data=COURSE)
-    return about.split()
+    return report.split()
 
 
 def outside_the_hub(student: User, *arguments: str) -> str:
@@ -72,42 +74,47 @@ def outside_the_hub(student: User, *arguments: str) -> str:
 
 
 def check_a_class(hub: Hub, *, with_reference: bool) -> None:
-    """Let students of a running hub hand in, and the teacher grade by formgrader and release the feedback.
+    """Let students submit, and the teacher grade with formgrader and release the feedback.
 
     Args:
-        hub: in which nobody has logged in yet.
-        with_reference: whether the student whose answer is right hands it in, besides the one whose answer is flawed.
+        hub: a running hub, to which nobody has logged in yet.
+        with_reference: whether a student submits the reference, in addition to one with a flawed answer.
     """
     teacher = User(hub, hub.teacher).log_in()
     for step in ("assign", "release"):
         teacher.nbgrader(f"formgrader/api/assignment/{ASSIGNMENT}/{step}")
     ada, ben = (User(hub, name).log_in() for name in hub.students[:2])
-    folder, domain, can_write = hand_in(ben, flawed=True)
+    folder, domain, can_write = submit(ben, flawed=True)
     assert (folder, can_write) == (ASSIGNMENT, "False")
     assert ben.in_terminal("printenv ROS_DOMAIN_ID") == domain
     assert outside_the_hub(ben, "ros", "printenv", "ROS_DOMAIN_ID") == domain
     assert ben.in_terminal("type -t autograder ros2 colcon | sort -u") == "file"
     assert ada.in_terminal("printenv ROS_DOMAIN_ID") != domain
     if with_reference:
-        hand_in(ada, flawed=False)
+        submit(ada, flawed=False)
 
     teacher.nbgrader(f"formgrader/api/assignment/{ASSIGNMENT}/collect")
     marks = {}
     for student in (ada, ben) if with_reference else (ben,):
         teacher.nbgrader(f"formgrader/api/submission/{ASSIGNMENT}/{student.name}/autograde")
-        booked = teacher.ask("GET", f"formgrader/api/submission/{ASSIGNMENT}/{student.name}")
-        assert booked["max_score"] == suites.hidden(ASSIGNMENT).max_score
-        marks[student.name] = booked["score"]
+        recorded = teacher.request("GET", f"formgrader/api/submission/{ASSIGNMENT}/{student.name}")
+        assert recorded["max_score"] == suites.hidden(ASSIGNMENT).max_score
+        marks[student.name] = recorded["score"]
     suite = suites.hidden(ASSIGNMENT)
-    assert marks[ben.name] == suite.max_score - sum(check.points for check in suite.checks if check.id == LOST)
+    assert marks[ben.name] == suite.max_score - sum(check.points for check in suite.checks if check.id == FAILED_CHECK)
     if with_reference:
         assert marks[ada.name] == suite.max_score
 
     for step in ("generate_feedback", "release_feedback"):
         teacher.nbgrader(f"formgrader/api/assignment/{ASSIGNMENT}/{step}")
     ben.nbgrader("assignments/fetch_feedback", data=COURSE)
-    listed = ben.ask("GET", f"assignments?course_id={COURSE['course_id']}")["value"]
-    (submission,) = (each for one in listed if one["status"] == "submitted" for each in one["submissions"])
+    assignments = ben.request("GET", f"assignments?course_id={COURSE['course_id']}")["value"]
+    (submission,) = (
+        submission
+        for assignment in assignments
+        if assignment["status"] == "submitted"
+        for submission in assignment["submissions"]
+    )
     page = ben.read(f"{submission['local_feedback_path']}/{ASSIGNMENT}.html")
     assert f"(Score: {marks[ben.name]:.1f} / {suite.max_score:.1f})" in page
 
@@ -118,8 +125,8 @@ def check_a_class(hub: Hub, *, with_reference: bool) -> None:
     "`autograder`, `ros2` and `colcon` work in each terminal.",
     "A login by SSH is in the same domain",
 )
-def test_students_log_in_and_hand_in_and_the_teacher_grades_on_a_hub(place: Path) -> None:
-    with serving(place, course_paths.ROOT) as hub:
+def test_students_submit_and_the_teacher_grades_on_a_hub(shared_folder: Path) -> None:
+    with serving(shared_folder, course_paths.ROOT) as hub:
         check_a_class(hub, with_reference=False)
     users = Path("/etc/passwd").read_text()
     assert not any(name in users for name in (*hub.students, hub.teacher))

@@ -1,4 +1,4 @@
-"""What a build installs is bounded before anything of it is copied or kept: apparent size, names, kinds of files."""
+"""Installed files are checked before they are copied or cached: their apparent size, their number and their types."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ project({name} NONE)
 install(FILES package.xml DESTINATION share)
 install(CODE "execute_process(COMMAND {python} ${{CMAKE_CURRENT_SOURCE_DIR}}/fill.py ${{CMAKE_INSTALL_PREFIX}})")
 """
-FILLS = {
+FORBIDDEN = {
     "sparse files": (
         "import sys\nfor n in range(50): open(f'{sys.argv[1]}/{n}', 'w').truncate(60 << 20)",
         "files of more than 64 MiB in all, holes in them counted",
@@ -41,12 +41,12 @@ FILLS = {
 }
 
 
-@pytest.mark.parametrize(("fill", "kind"), [*((fill, "messages") for fill in FILLS), ("sparse files", "program")])
+@pytest.mark.parametrize(("case", "kind"), [*((case, "messages") for case in FORBIDDEN), ("sparse files", "program")])
 def test_forbidden_installed_files_fail_the_build_with_a_sentence_and_are_not_copied(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fill: str, kind: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, case: str, kind: str
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    code, told = FILLS[fill]
+    code, sentence = FORBIDDEN[case]
     package = tmp_path / "ws" / "src" / "filler"
     package.mkdir(parents=True)
     (package / "package.xml").write_text(MANIFEST.format(name="filler", group=GROUP if kind == "messages" else ""))
@@ -56,7 +56,7 @@ def test_forbidden_installed_files_fail_the_build_with_a_sentence_and_are_not_co
     with pytest.raises(StudentError) as caught:
         build(Workspace(tmp_path / "ws", activate(), tmp_path / "home"), ("filler",))
     assert caught.value.diagnosis.kind is Kind.BUILD_FAILED
-    assert told in caught.value.diagnosis.sentence
+    assert sentence in caught.value.diagnosis.sentence
     assert "setup.py and CMakeLists.txt must install plain files" in caught.value.diagnosis.sentence
     assert not any((tmp_path / "cache").rglob("install"))
     copied = sum(path.lstat().st_blocks * 512 for path in tmp_path.rglob("*"))

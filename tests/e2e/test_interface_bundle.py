@@ -1,4 +1,4 @@
-"""A student's interface packages are built by colcon once, and serve every workspace that brings the same ones."""
+"""colcon builds a student's interface packages once for all workspaces with the same packages."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "cache" / "autograder" / "bundles"
 
 
-def workspace(root: Path) -> Workspace:
+def make_workspace(root: Path) -> Workspace:
     for name in (INTERFACES, NODES):
         shutil.copytree(SOLUTIONS / name, root / "src" / name)
     (root / "home").mkdir()
@@ -41,20 +41,20 @@ def workspace(root: Path) -> Workspace:
 
 
 def test_an_interface_bundle_is_built_once_and_works_in_each_workspace(tmp_path: Path, own_cache: Path) -> None:
-    first, second = workspace(tmp_path / "first"), workspace(tmp_path / "second")
+    first, second = make_workspace(tmp_path / "first"), make_workspace(tmp_path / "second")
     assert build(first, (NODES,)).ok
-    (kept,) = own_cache.glob("*/install")
-    shutil.rmtree(first.root)  # whatever still named the first place would fail now
+    (bundle,) = own_cache.glob("*/install")
+    shutil.rmtree(first.root)  # a file that still refers to this folder would fail now
     assert build(second, (NODES,)).ok
-    assert [path for path in own_cache.glob("*/install")] == [kept]
-    used = subprocess.run([sys.executable, "-c", USE], env=second.environment(), text=True, capture_output=True)
-    assert used.returncode == 0, used.stderr
+    assert [path for path in own_cache.glob("*/install")] == [bundle]
+    process = subprocess.run([sys.executable, "-c", USE], env=second.environment(), text=True, capture_output=True)
+    assert process.returncode == 0, process.stderr
 
 
-def test_an_interface_bundle_that_does_not_build_is_a_student_error_and_is_not_kept(
+def test_an_interface_bundle_that_does_not_build_is_a_student_error_and_is_not_cached(
     tmp_path: Path, own_cache: Path
 ) -> None:
-    broken = workspace(tmp_path / "broken")
+    broken = make_workspace(tmp_path / "broken")
     cmake = broken.root / "src" / INTERFACES / "CMakeLists.txt"
     cmake.write_text(cmake.read_text().replace("find_package(rosidl_default_generators", "find_package(no_such_thing"))
     with pytest.raises(StudentError) as caught:

@@ -1,4 +1,4 @@
-"""Code in the library of a student's messages runs in sandboxes alone, however it got there."""
+"""Code that a student adds to the library of a message package runs only in sandboxes."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from tests.e2e.sandbox_support import in_worker_sandbox
 from tests.e2e.trigraph import trigraph_text
 
 PACKAGES = ("my_robot_interfaces", "my_robot_package")
-# Each process that loads the library says what of the grader's it can read and write.
+# Each process that loads the library prints which of the grader's files it can read and write.
 PAYLOAD = """
 #include <stdio.h>
 __attribute__((constructor)) static void run(void) {
     FILE * file = fopen("%s", "r");
     printf("PAYLOAD ran%%s", file ? ", and can read a hidden CHECK" : "");
-    file = fopen("%s", "r+");  // one that is there: a new one would be in the sandbox's own /tmp
+    file = fopen("%s", "r+");  // an existing file: a new one would be in the sandbox's own /tmp
     printf("%%s\\n", file ? ", and can write a RESULT" : "");
     fflush(stdout);
 }
@@ -23,8 +23,8 @@ __attribute__((constructor)) static void run(void) {
 LINK = "target_sources(${PROJECT_NAME}__rosidl_generator_c PRIVATE payload.c)\n"
 
 
-def talk(scratch: Path) -> dict[str, Any]:
-    """Build messages with code in their library, and talk to a node that uses them; return what ran where."""
+def exchange_messages(scratch: Path) -> dict[str, Any]:
+    """Build messages with a payload in their library, exchange some with a node, and return what the payload did."""
     from autograder import course_paths
     from autograder.author.verification.mutants import write_reference
     from autograder.building.build import build
@@ -53,12 +53,12 @@ def talk(scratch: Path) -> dict[str, Any]:
     return {
         "level": level,
         "trip": trip.possible,
-        "said": sorted({line for line in output.splitlines() if "PAYLOAD" in line}),
+        "printed": sorted({line for line in output.splitlines() if "PAYLOAD" in line}),
         "outside": (scratch / "outside").exists(),
         "loaded": [line for line in maps.splitlines() if PACKAGES[0] in line or "payload" in line],
     }
 
 
 def test_code_in_a_message_library_runs_only_in_the_sandbox() -> None:
-    answer = in_worker_sandbox(talk)
-    assert answer == {"level": 50, "trip": True, "said": ["PAYLOAD ran"], "outside": False, "loaded": []}
+    answer = in_worker_sandbox(exchange_messages)
+    assert answer == {"level": 50, "trip": True, "printed": ["PAYLOAD ran"], "outside": False, "loaded": []}

@@ -1,4 +1,4 @@
-"""Strings of a definition stay strings in rosidl's generated files: nothing runs them as code."""
+"""Strings of a definition stay strings in rosidl's generated files, and are never run as code."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from autograder.building.interfaces.prefix import build
 from autograder.ros.environment import site_packages
 from tests.e2e.trigraph import trigraph_text
 
-# Printed by whoever runs the text of a constant as C, C++ or Python.
+# Creates `file` if the text of a constant runs as C or C++.
 PAYLOAD = '__attribute__((constructor)) static void f(void) {{ FILE * f = fopen("{file}", "w"); fclose(f); }}'
 TEXTS = {
     "QUOTE": '"; {payload} //',
@@ -31,7 +31,7 @@ print(json.dumps([constants, message().say, list(message().words)]))
 """
 
 
-def test_a_text_is_a_text_in_c_cpp_and_python(tmp_path: Path) -> None:
+def test_a_string_stays_a_string_in_c_cpp_and_python(tmp_path: Path) -> None:
     file = tmp_path / "ran"
     payload = PAYLOAD.format(file=file)
     texts = {name: text.replace("{payload}", payload).replace("{file}", str(file)) for name, text in TEXTS.items()}
@@ -43,8 +43,8 @@ def test_a_text_is_a_text_in_c_cpp_and_python(tmp_path: Path) -> None:
     prefix = build("texts_msgs", {"msg/A.msg": "\n".join(lines) + "\n"}, cache=Cache(tmp_path / "cache"))
     environment = {**os.environ, "PYTHONPATH": str(site_packages(prefix))}
     command = [sys.executable, "-c", READ]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    assert json.loads(done.stdout) == [
+    process = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert json.loads(process.stdout) == [
         {**texts, "WIDE": evil, "SAY__DEFAULT": say, "WORDS__DEFAULT": words},
         say,
         words,

@@ -1,4 +1,4 @@
-"""Plain classes made of a package's texts exchange messages with a node whose package colcon built from them."""
+"""Plain classes, made from a package's definitions, exchange messages with a node that uses the built package."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from autograder.exceptions import StudentError
 from tests.e2e.sandbox_support import in_worker_sandbox
 
 PACKAGE, OUTER = "my_robot_interfaces", "fleet_interfaces"
-SECONDS = 20.0
+TIMEOUT = 20.0  # seconds
 
 NODE = """
 import rclpy
@@ -44,8 +44,8 @@ def _workspace(scratch: Path) -> Any:
     return workspace
 
 
-def talk(scratch: Path) -> dict[str, Any]:
-    """Build the package with colcon, and let a sandboxed node answer a message of the plain class."""
+def exchange_messages(scratch: Path) -> dict[str, Any]:
+    """Build the package with colcon, and exchange messages of the plain class with a sandboxed node."""
     import sys
 
     import rclpy
@@ -63,21 +63,21 @@ def talk(scratch: Path) -> dict[str, Any]:
     (outer / "msg" / "Fleet.msg").write_text(f"{PACKAGE}/RobotStatus[] robots\n")
     fleet = load_interfaces(workspace, OUTER).msg.Fleet
     module = load_interfaces(workspace, PACKAGE)
-    kind, heard = module.msg.RobotStatus, []
+    kind, received = module.msg.RobotStatus, []
     rclpy.init()
     node = rclpy.create_node("grader")
     out = node.create_publisher(kind, "in", 10)
-    node.create_subscription(kind, "out", heard.append, 10)
+    node.create_subscription(kind, "out", received.append, 10)
     with launch([sys.executable, str(program)], workspace.sandbox()) as process:
-        deadline = time.monotonic() + SECONDS
-        while not heard and time.monotonic() < deadline:
+        deadline = time.monotonic() + TIMEOUT
+        while not received and time.monotonic() < deadline:
             if out.get_subscription_count() and node.count_publishers("out"):
                 out.publish(kind(robot_name="R2", battery_level=41))
             rclpy.spin_once(node, timeout_sec=0.1)
         hashes = {str(end.topic_type_hash) for end in node.get_publishers_info_by_topic("out")}
         hashes |= {str(end.topic_type_hash) for end in node.get_publishers_info_by_topic("in")}
         output = process.output
-    levels = [message.battery_level for message in fleet(robots=heard[:1]).robots]
+    levels = [message.battery_level for message in fleet(robots=received[:1]).robots]
     node.destroy_node()
     rclpy.shutdown()
     return {"levels": levels, "hashes": sorted(hashes), "output": output}
@@ -85,7 +85,7 @@ def talk(scratch: Path) -> dict[str, Any]:
 
 @pytest.mark.promise("It uses the real ROS 2 Jazzy: rclpy, DDS, rosidl and colcon, installed by pip.")
 def test_both_ends_have_the_same_type_hash_and_exchange_messages() -> None:
-    answer = in_worker_sandbox(talk)
+    answer = in_worker_sandbox(exchange_messages)
     assert answer["levels"] == [42], answer
     assert len(answer["hashes"]) == 1, answer
 
@@ -98,7 +98,7 @@ def test_both_ends_have_the_same_type_hash_and_exchange_messages() -> None:
         ("std_msgs/Headr header", ["std_msgs has no message Headr"]),
     ],
 )
-def test_a_wrong_definition_is_a_student_error(tmp_path: Path, line: str, words: list[str]) -> None:
+def test_an_invalid_definition_is_a_student_error(tmp_path: Path, line: str, words: list[str]) -> None:
     workspace = _workspace(tmp_path)
     (workspace.root / "src" / PACKAGE / "msg" / "RobotStatus.msg").write_text(f"{line}\n")
     with pytest.raises(StudentError) as caught:
@@ -112,7 +112,7 @@ def test_a_missing_package_is_named(tmp_path: Path) -> None:
         load_interfaces(_workspace(tmp_path), "ghost_msgs")
 
 
-def test_an_unwritten_definition_is_reported_as_unwritten(tmp_path: Path) -> None:
+def test_the_stub_of_a_definition_is_reported_as_still_to_be_written(tmp_path: Path) -> None:
     workspace = _workspace(tmp_path)
     (workspace.root / "src" / PACKAGE / "msg" / "RobotStatus.msg").write_text(CODE_STUB)
     with pytest.raises(StudentError, match=r"msg/RobotStatus\.msg is still to be written"):

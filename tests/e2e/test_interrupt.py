@@ -1,4 +1,4 @@
-"""Ctrl-C or a kill while a class is graded: the rest is left for `--resume`, and no mark changes unseen."""
+"""After Ctrl-C or a kill, `--resume` grades the rest of a class and reports each changed mark."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ def resume(folder: Path) -> Iterator[subprocess.Popen[str]]:
         text=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
-        # Whoever runs the tests in the background has it ignored.
+        # SIGINT is ignored if the tests run as a background job.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     ) as process:
         try:
             yield process
         finally:
-            process.kill()  # a test that fails must not wait for it
+            process.kill()  # a failed test must not wait for it
 
 
 @pytest.mark.promise("Ctrl-C loses nothing")
@@ -48,7 +48,7 @@ def test_ctrl_c_ends_a_class_and_resume_continues_it(tmp_path: Path) -> None:
         package.mkdir(parents=True)
         (package / "package.xml").write_text(f"<package>{student}</package>")
     alice, bob, carol = (tmp_path / "results" / student / "result.json" for student in STUDENTS)
-    # Bob's build has begun, and does not end before Ctrl-C.
+    # Bob's build is running at the time of Ctrl-C.
     package = tmp_path / "class" / "bob" / "src" / "my_robot_package"
     shutil.copytree(SOLUTIONS / "my_robot_package", package, dirs_exist_ok=True)
     (package / "setup.py").write_text(SLEEPS)
@@ -57,25 +57,25 @@ def test_ctrl_c_ends_a_class_and_resume_continues_it(tmp_path: Path) -> None:
         assert process.stdout is not None
         assert process.stdout.readline().startswith("[1/3] alice")
         process.send_signal(signal.SIGINT)
-        said = process.stdout.read()
+        output = process.stdout.read()
     assert process.returncode == 130
-    assert said.endswith(
+    assert output.endswith(
         "\nStopped. Finished results are in results: the same command with --resume grades the rest.\n"
     )
     assert (alice.is_file(), bob.is_file(), carol.exists()) == (True, True, False)
     before = alice.stat().st_mtime_ns, bob.stat().st_mtime_ns
 
     with resume(tmp_path) as process:
-        said = process.communicate()[0]
+        output = process.communicate()[0]
     assert process.returncode == 0
-    assert "[3/3]" in said
+    assert "[3/3]" in output
     assert carol.is_file()
     assert (alice.stat().st_mtime_ns, bob.stat().st_mtime_ns) == before
 
 
 @pytest.fixture(scope="module")
 def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A class that an earlier version of the suite graded, by which everybody has a point more."""
+    """A class that an earlier version of the suite graded, with one more point for everybody."""
     folder = tmp_path_factory.mktemp("graded")
     for student in STUDENTS[:2]:
         package = folder / "class" / student / "src" / "my_robot_package"
@@ -85,14 +85,14 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
         process.communicate()
     for path in (folder / "results").glob("*/result.json"):
         result = json.loads(path.read_text())
-        lost = next(check for check in result["checks"] if not check["points"])
-        lost["points"], result["score"] = 1.0, result["score"] + 1.0
+        failed = next(check for check in result["checks"] if not check["points"])
+        failed["points"], result["score"] = 1.0, result["score"] + 1.0
         path.write_text(json.dumps({**result, "suite_version": "0-0123456789ab"}))
     return folder
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_a_grading_that_a_signal_ends_forgets_no_mark_that_it_changed(
+def test_resume_also_reports_marks_that_changed_before_a_signal(
     graded: Path, tmp_path: Path, number: signal.Signals
 ) -> None:
     folder = Path(shutil.copytree(graded, tmp_path / "graded"))
@@ -108,5 +108,5 @@ def test_a_grading_that_a_signal_ends_forgets_no_mark_that_it_changed(
     assert marks[alice] < before[alice]
 
     with resume(folder) as process:
-        printed = process.communicate()[0]
-    assert re.findall(r"^(\w+) \(02_nodes\): 1 -> 0$", printed, re.MULTILINE) == ["alice", "bob"]
+        output = process.communicate()[0]
+    assert re.findall(r"^(\w+) \(02_nodes\): 1 -> 0$", output, re.MULTILINE) == ["alice", "bob"]

@@ -16,22 +16,22 @@ from autograder.ros.domains import Domain
 
 
 @pytest.fixture
-def board() -> Iterator[Node]:
+def node() -> Iterator[Node]:
     """A node in a separate domain."""
     with Domain() as domain:
         context = Context()
         rclpy.init(args=[], context=context, domain_id=domain.number)
-        node = Node("board", context=context)
+        node = Node("publisher", context=context)
         yield node
         node.destroy_node()
         context.try_shutdown()
 
 
 @pytest.mark.parametrize("depth", [1, 3])
-def test_a_late_joiner_counts_the_messages_that_a_publisher_keeps(board: Node, depth: int) -> None:
-    publisher = board.create_publisher(
+def test_a_late_joiner_counts_the_messages_that_a_publisher_keeps(node: Node, depth: int) -> None:
+    publisher = node.create_publisher(
         String, "/status", QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     )
     for number in range(5):
         publisher.publish(String(data=str(number)))
-    assert kept_messages(board, "/status", String) == depth
+    assert kept_messages(node, "/status", String) == depth

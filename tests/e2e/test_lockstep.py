@@ -1,4 +1,4 @@
-"""Lockstep with small real nodes: every kind of spin, the same run every time."""
+"""Small real nodes run in lockstep: each kind of spin gives the same run every time."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
 from std_msgs.msg import String
 
 class Echo(Node):
-    '''Says on `said` what it heard on `heard`, and how often its timer has fired.'''
+    '''Publishes on `said` what it received on `heard`, and how often its timer has fired.'''
 
     def __init__(self, name='echo', qos=10, heard='heard', said='said', period=0.1):
         super().__init__(name)
@@ -83,7 +83,7 @@ def program():
         rclpy.spin_once(node, timeout_sec=0)
 run(program)
 """,
-    "two nodes by turns": """
+    "two nodes in turn": """
 def program():
     first, second = Echo('first'), Echo('second')
     while rclpy.ok():
@@ -131,8 +131,8 @@ def trace(scratch: Path, program: str, runs: int) -> list[Any]:
                 harness.publish("/also", String(data=f"also {number}"))
                 harness.publish("/heard", String(data=f"message {number}"))
                 harness.step(STEP_NS)
-        said = [(round(stamped.seconds, 3), stamped.message.data) for stamped in harness.messages("/said")]
-        traces.append({"said": said})
+        messages = [(round(stamped.seconds, 3), stamped.message.data) for stamped in harness.messages("/said")]
+        traces.append({"said": messages})
     return traces
 
 
@@ -144,20 +144,20 @@ def two_runs(name: str) -> Any:
 
 @pytest.mark.promise("Robot time is stepped.")
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_a_program_prints_the_same_in_every_run_and_receives_every_message(name: str) -> None:
+def test_a_program_publishes_the_same_in_every_run_and_receives_every_message(name: str) -> None:
     first, again = two_runs(name)
     assert again == first
-    heard = {text.split(" heard ")[1].split()[1] for _, text in first["said"] if " heard message" in text}
-    assert heard == {str(number) for number in range(STEPS)}
+    numbers = {text.split(" heard ")[1].split()[1] for _, text in first["said"] if " heard message" in text}
+    assert numbers == {str(number) for number in range(STEPS)}
 
 
 def test_messages_are_handled_before_timers_and_timers_fire_at_their_time() -> None:
     run, _ = two_runs("rclpy.spin")
     for step in range(STEPS):
         time = round((step + 1) * STEP_NS / 1e9, 3)
-        at = [text for seconds, text in run["said"] if seconds == time]
+        texts = [text for seconds, text in run["said"] if seconds == time]
         now = 100 * 10**9 + (step + 1) * STEP_NS
-        assert at == [
+        assert texts == [
             f"echo heard message {step} {step} {now - 1}",
             f"echo tick message {step} {step + 1} {now}",
         ]
@@ -168,8 +168,8 @@ def test_a_message_published_before_discovery_is_not_waited_for() -> None:
     assert not [text for _, text in run["said"] if " early " in text]
 
 
-def impatient(scratch: Path, program: str) -> list[Any]:
-    """Run a program once, with little patience for messages that do not come."""
+def trace_with_short_timeout(scratch: Path, program: str) -> list[Any]:
+    """Run a program once, with a short time-out for messages that do not arrive."""
     from autograder.harness import stepped
 
     stepped.DELIVERY_SECONDS = 1.0
@@ -197,12 +197,12 @@ run(lambda: rclpy.spin(Forger()))
 
 
 def test_a_forged_message_count_delays_the_grader_and_is_not_believed() -> None:
-    (run,) = in_worker_sandbox(impatient, FORGER)
+    (run,) = in_worker_sandbox(trace_with_short_timeout, FORGER)
     assert 0 < len(run["said"]) <= 2 * STEPS
 
 
-def wild(scratch: Path, program: str) -> list[str]:
-    """Run a program that does not keep to the rules; return the kind and sentence of its diagnosis."""
+def diagnose(scratch: Path, program: str) -> list[str]:
+    """Run a faulty program; return the kind and sentence of its diagnosis."""
     from autograder.exceptions import StudentError
 
     try:
@@ -235,7 +235,7 @@ def wild(scratch: Path, program: str) -> list[str]:
         ),
     ],
 )
-def test_a_failing_program_gets_the_reason(program: str, kind: str, words: str) -> None:
-    found, sentence = in_worker_sandbox(wild, program)
-    assert found == kind, sentence
+def test_a_failing_program_is_diagnosed(program: str, kind: str, words: str) -> None:
+    actual_kind, sentence = in_worker_sandbox(diagnose, program)
+    assert actual_kind == kind, sentence
     assert words in sentence

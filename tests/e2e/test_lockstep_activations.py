@@ -1,4 +1,4 @@
-"""A program in lockstep runs when it has something to do, and in each step where the host cannot see whether it has."""
+"""A program in lockstep runs only when it has something to do, or in each step if the host cannot know that."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from tests.e2e.sandbox_support import in_worker_sandbox
-from tests.e2e.test_lockstep_features import open_lab, said, twice, write_workspace
+from tests.e2e.test_lockstep_features import open_harness, received, twice, write_workspace
 
-STEPS = 10  # of 0.1 s
+STEPS = 10  # of 0.1 s each
 
 LISTENER = """
 class Listener(Speaker):
@@ -25,12 +25,12 @@ SPIN = "spin(Listener)"
 
 
 def listener(more: str, spin: str = SPIN) -> str:
-    """Return a program whose node listens, and does something more."""
+    """Return a program whose node has a subscription and runs `more` in its constructor."""
     return LISTENER.format(more=more.replace("\n", "\n        "), spin=spin)
 
 
-QUIET = {  # each with how often it runs in `STEPS` steps after its first run, and what it says
-    "nothing but a subscription": (listener("pass"), 0, []),
+PREDICTABLE = {  # each with the number of runs in `STEPS` steps after the first one, and the published words
+    "only a subscription": (listener("pass"), 0, []),
     "a slow timer": (listener("self.create_timer(0.4, lambda: self.say('tick'))"), 2, ["tick", "tick"]),
     "a cancelled timer": (
         listener("self.once = self.create_timer(0.1, lambda: (self.once.cancel(), self.say('once')))"),
@@ -52,7 +52,7 @@ run(program)
         2,
         ["woke", "woke"],
     ),
-    "two executors by turns": (
+    "two executors in turn": (
         listener(
             "pass",
             """
@@ -83,7 +83,7 @@ Listener.work = work
 """
     + SPIN,
 )
-UNSEEN = {
+UNPREDICTABLE = {
     "polling": listener(
         "pass",
         """
@@ -111,15 +111,15 @@ run(lambda: asyncio.run(spin_in_a_loop()))
         "self.guard = self.create_guard_condition(lambda: self.say('guarded'))\n"
         "self.create_timer(0.4, self.guard.trigger)"
     ),
-    "a timer of the machine's time": listener(
+    "a timer of the steady clock": listener(
         "self.create_timer(0.001, lambda: None, clock=Clock(clock_type=ClockType.STEADY_TIME))"
     ),
-    "a timer of a clock that nobody steps": listener(
+    "a timer of a clock that is not stepped": listener(
         "from rclpy.clock import ROSClock\nself.create_timer(0.001, lambda: None, clock=ROSClock())"
     ),
     "a child process": listener("import subprocess\nself.child = subprocess.Popen(['sleep', '60'])"),
     "an alarm": listener("import signal\nsignal.setitimer(signal.ITIMER_REAL, 600.0)"),
-    "a coroutine that waits for the clock": listener(
+    "a coroutine that yields": listener(
         "self.once = self.create_timer(0.0001, self.work, callback_group=ReentrantCallbackGroup())",
         """
 class Pause:
@@ -133,15 +133,15 @@ Listener.work = work
 """
         + SPIN,
     ),
-    "jumps of the time": listener(
+    "a callback for time jumps": listener(
         "from rclpy.clock import JumpThreshold\n"
         "limit = JumpThreshold(min_forward=Duration(nanoseconds=1), min_backward=None, on_clock_change=False)\n"
         "self.jumps = self.get_clock().create_jump_callback(limit, post_callback=lambda jump: None)"
     ),
-    "the log's topic": listener(
+    "a subscription to /rosout": listener(
         "from rcl_interfaces.msg import Log\nself.create_subscription(Log, '/rosout', lambda _: None, 10)"
     ),
-    "an event of its publisher": listener(
+    "an event of a publisher": listener(
         "from rclpy.event_handler import PublisherEventCallbacks\n"
         "events = PublisherEventCallbacks(matched=lambda _: None)\n"
         "self.watched = self.create_publisher(String, 'watched', 10, event_callbacks=events)"
@@ -149,39 +149,39 @@ Listener.work = work
 }
 
 
-def runs(scratch: Path, text: str) -> Any:
-    """Return how often a program ran in each of `STEPS` steps, what it said in them, and what once it heard a word."""
+def activations(scratch: Path, text: str) -> Any:
+    """Return how often a program ran in each of `STEPS` steps, its words in them, and its words after a message."""
     from std_msgs.msg import String
 
     workspace = write_workspace(scratch, node=text)
-    with open_lab(workspace, "node", publishes={"/word": String}) as harness:
+    with open_harness(workspace, "node", publishes={"/word": String}) as harness:
         harness.step(1_000_000)
         harness.until(lambda: True, 0.0)
-        before, found = harness.activations["node"], []
+        before, counts = harness.activations["node"], []
         for _ in range(STEPS):
             harness.step(100_000_000)
-            found.append(harness.activations["node"] - before)
+            counts.append(harness.activations["node"] - before)
             before = harness.activations["node"]
-        first = [text.split()[1] for _, text in said(harness)]
+        first = [text.split()[1] for _, text in received(harness)]
         harness.publish("/word", String(data="late"))
         harness.step(100_000_000)
-        return [found, first, [text.split()[1] for _, text in said(harness)][len(first) :]]
+        return [counts, first, [text.split()[1] for _, text in received(harness)][len(first) :]]
 
 
-@pytest.mark.parametrize("name", QUIET)
-def test_a_program_runs_when_it_has_something_to_do_and_not_otherwise(name: str) -> None:
-    text, times, words = QUIET[name]
-    found, first, then = in_worker_sandbox(runs, text)
+@pytest.mark.parametrize("name", PREDICTABLE)
+def test_a_program_runs_only_when_it_has_something_to_do(name: str) -> None:
+    text, runs, words = PREDICTABLE[name]
+    counts, first, after_message = in_worker_sandbox(activations, text)
     assert first == words
-    assert "heard" in then
-    assert times is None or sum(found) == times, found
+    assert "heard" in after_message
+    assert runs is None or sum(counts) == runs, counts
 
 
-@pytest.mark.parametrize("name", UNSEEN)
-def test_a_program_that_may_be_moved_by_what_nobody_announces_runs_in_each_step(name: str) -> None:
-    found, _, then = in_worker_sandbox(runs, UNSEEN[name])
-    assert min(found) >= 1, found
-    assert "heard" in then
+@pytest.mark.parametrize("name", UNPREDICTABLE)
+def test_a_program_with_unpredictable_events_runs_in_each_step(name: str) -> None:
+    counts, _, after_message = in_worker_sandbox(activations, UNPREDICTABLE[name])
+    assert min(counts) >= 1, counts
+    assert "heard" in after_message
 
 
 TALKER = """
@@ -217,32 +217,32 @@ spin(Recorder)
 """
 
 
-def order(scratch: Path) -> Any:
-    """Return what a recorder said of two steps, with a talker named before it and after it, and each one's runs."""
+def record_in_both_orders(scratch: Path) -> Any:
+    """Return a recorder's messages in two steps and each program's runs, with the recorder listed last and first."""
     from std_msgs.msg import String
 
     workspace = write_workspace(scratch, talker=TALKER, recorder=RECORDER)
 
     def run(*names: str) -> Any:
         subscribes = {"/also": String}
-        with open_lab(workspace, *names, publishes={"/word": String}, subscribes=subscribes) as harness:
+        with open_harness(workspace, *names, publishes={"/word": String}, subscribes=subscribes) as harness:
             harness.step(100_000_000)
             before = harness.activations.copy()
             for word in ("first", "second"):
                 harness.publish("/word", String(data=word))
                 harness.step(100_000_000)
-            texts = [[text for _, text in said(harness, topic)] for topic in ("/said", "/also")]
+            texts = [[text for _, text in received(harness, topic)] for topic in ("/said", "/also")]
             return [*texts, dict(harness.activations - before)]
 
     return [twice(lambda: run("talker", "recorder")), twice(lambda: run("recorder", "talker"))]
 
 
-def test_messages_come_in_the_order_of_their_instants_and_of_the_programs_although_a_program_runs_once_a_step() -> None:
-    after, before = in_worker_sandbox(order)
-    assert after[0][2:] == [
+def test_messages_have_the_same_order_whichever_program_is_listed_first() -> None:
+    listed_last, listed_first = in_worker_sandbox(record_in_both_orders)
+    assert listed_last[0][2:] == [
         *("first 199999999", "timer 200000000", "tick 200000000"),
         *("second 299999999", "timer 300000000", "tick 300000000"),
     ]
-    assert after[2]["talker"] == 2
-    assert after[1] == after[0][3:], "a publisher that is made in a step is matched before it is used"
-    assert before[0] == after[0]
+    assert listed_last[2]["talker"] == 2
+    assert listed_last[1] == listed_last[0][3:], "a publisher that is created in a step is matched before it is used"
+    assert listed_first[0] == listed_last[0]

@@ -1,4 +1,4 @@
-"""A program that cannot be stepped runs in real time: its checks have the same results, and the result says so."""
+"""A program that cannot be stepped runs in real time with the same verdicts, and its result says so."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ THREADED = """thread = threading.Thread(target=rclpy.spin, args=(node,), daemon=
 
 
 def grade(folder: Path, assignment: str = "02_nodes", checks: tuple[str, ...] = CHECKS) -> Result:
-    """Grade a source tree by a few of its assignment's checks."""
+    """Grade a source tree by some of its assignment's checks."""
     return grade_submission(Job(folder, assignment, "s", 11, folder / "out", options=Options(only=checks)))
 
 
@@ -63,7 +63,7 @@ def test_the_verdicts_are_the_same_in_lockstep_and_in_real_time(
 
 @pytest.mark.slow
 @pytest.mark.nightly
-def test_a_controller_with_a_wall_clock_timer_gets_its_marks_in_real_time(tmp_path: Path) -> None:
+def test_a_controller_with_a_wall_clock_timer_keeps_its_marks_in_real_time(tmp_path: Path) -> None:
     write_reference((PACKAGE,), tmp_path)
     text = (tmp_path / NODE).read_text()
     assert "self.create_timer(CONTROL_PERIOD, self.control_loop)" in text
@@ -104,7 +104,7 @@ def test_a_controller_with_a_wall_clock_timer_gets_its_marks_in_real_time(tmp_pa
         ),
     ],
 )
-def test_a_node_that_spins_in_a_thread_gets_its_marks_in_real_time(
+def test_a_node_that_spins_in_a_thread_keeps_its_marks_in_real_time(
     assignment: str, file: str, checks: tuple[str, ...], tmp_path: Path
 ) -> None:
     write_reference(suites.hidden(assignment).sources, tmp_path)
@@ -142,8 +142,8 @@ def spin_in_a_thread(path: Path) -> None:
     path.write_text(text.replace("import rclpy\n", "import threading\n\nimport rclpy\n", 1))
 
 
-def workspace_of(scratch: Path, text: str) -> Any:
-    """Write a built workspace with one program."""
+def write_workspace(scratch: Path, text: str) -> Any:
+    """Write a built workspace with one program; return it."""
     from autograder.harness import Workspace
     from autograder.ros import activate
 
@@ -154,20 +154,20 @@ def workspace_of(scratch: Path, text: str) -> Any:
     return Workspace(scratch / "ws", activate(), scratch / "home")
 
 
-def met(scratch: Path, text: str) -> Any:
-    """Open a harness on a program twice; return how it was met, what it said, and the sentence about it."""
+def run_twice(scratch: Path, text: str) -> Any:
+    """Run a program twice; return the kind of time of each run, if its messages arrived, and the explanation."""
     from std_msgs.msg import String
 
     from autograder.harness import AutoHarness
 
-    workspace = workspace_of(scratch, text)
-    ways = []
+    workspace = write_workspace(scratch, text)
+    runs = []
     for _ in range(2):
         with AutoHarness(workspace, "pkg", "node", subscribes={"/said": String}) as harness:
-            began = harness.seconds
+            start = harness.seconds
             harness.run(1.0)
-            ways.append([harness.time, 8 <= len(harness.messages("/said", since=began)) <= 12])
-    return ways, workspace.time_record.explain()
+            runs.append([harness.time, 8 <= len(harness.messages("/said", since=start)) <= 12])
+    return runs, workspace.time_record.explain()
 
 
 @pytest.mark.promise(
@@ -184,33 +184,33 @@ def met(scratch: Path, text: str) -> Any:
     ],
 )
 def test_a_program_that_cannot_be_stepped_is_detected_and_runs_in_real_time(reason: str, words: str) -> None:
-    ways, sentence = in_worker_sandbox(met, programs.UNSTEPPABLE[reason])
-    assert ways == [["real", True]] * 2
+    runs, sentence = in_worker_sandbox(run_twice, programs.UNSTEPPABLE[reason])
+    assert runs == [["real", True]] * 2
     assert sentence == words
 
 
 def test_a_program_that_can_be_stepped_is_stepped() -> None:
-    ticking = "class Tick(Speaker):\n    def __init__(self):\n        super().__init__()\n"
-    ticking += "        self.create_timer(0.1, lambda: self.say('tick'))\nspin(Tick)\n"
-    assert in_worker_sandbox(met, ticking) == [[["lockstep", True]] * 2, ""]
+    program = "class Tick(Speaker):\n    def __init__(self):\n        super().__init__()\n"
+    program += "        self.create_timer(0.1, lambda: self.say('tick'))\nspin(Tick)\n"
+    assert in_worker_sandbox(run_twice, program) == [[["lockstep", True]] * 2, ""]
 
 
-def chosen(scratch: Path) -> str:
-    """Return how a program is met whose thread has nothing to do yet."""
+def time_with_idle_thread(scratch: Path) -> str:
+    """Return the kind of time that is chosen for a program whose thread is idle."""
     from autograder.harness import AutoHarness
 
     text = "class Waits(Speaker):\n    def __init__(self):\n        super().__init__()\n"
     text += "        threading.Thread(target=threading.Semaphore(0).acquire, daemon=True).start()\nspin(Waits)\n"
-    with AutoHarness(workspace_of(scratch, text), "pkg", "node") as harness:
+    with AutoHarness(write_workspace(scratch, text), "pkg", "node") as harness:
         return harness.time
 
 
 def test_a_program_with_its_own_thread_runs_in_real_time_before_the_thread_sends_anything() -> None:
-    assert in_worker_sandbox(chosen) == "real"
+    assert in_worker_sandbox(time_with_idle_thread) == "real"
 
 
-def unheard(scratch: Path) -> int:
-    """Let a program in real time say ten things while nobody listens; return how many are stamped with that time."""
+def receive_late(scratch: Path) -> int:
+    """Let a program publish ten messages before the grader reads them; return how many have their time of arrival."""
     import time
 
     from std_msgs.msg import String
@@ -219,33 +219,33 @@ def unheard(scratch: Path) -> int:
 
     text = "class Tick(Speaker):\n    def __init__(self):\n        super().__init__()\n"
     text += "        self.create_timer(0.05, lambda: (self.say('tick'), print('tick', flush=True)))\nspin(Tick)\n"
-    with RealTimeHarness(workspace_of(scratch, text), "pkg", "node", subscribes={"/said": String}) as harness:
+    with RealTimeHarness(write_workspace(scratch, text), "pkg", "node", subscribes={"/said": String}) as harness:
         assert harness.until(lambda: bool(harness.messages("/said")), 10.0)
-        began, ticks, deadline = harness.seconds, harness.output.count("tick"), time.monotonic() + 30.0
+        start, ticks, deadline = harness.seconds, harness.output.count("tick"), time.monotonic() + 30.0
         while harness.output.count("tick") < ticks + 10 and time.monotonic() < deadline:
             time.sleep(0.01)
-        ended = harness.seconds
+        end = harness.seconds
         harness.run(0.2)
-        return len(harness.messages("/said", since=began, until=ended))
+        return len(harness.messages("/said", since=start, until=end))
 
 
 def test_a_message_that_the_grader_reads_late_keeps_its_time_of_arrival() -> None:
-    assert in_worker_sandbox(unheard) >= 8  # one may have been taken before, one be on its way
+    assert in_worker_sandbox(receive_late) >= 8  # one may have been read before, and one may be on its way
 
 
-def refused(scratch: Path, text: str) -> list[str]:
-    """Step a program that cannot be stepped; return the message to the student."""
+def step(scratch: Path, text: str) -> list[str]:
+    """Step a program that cannot be stepped; return the kind and sentence of the diagnosis."""
     from autograder.exceptions import StudentError
     from autograder.harness import SteppedHarness
 
     try:
-        with SteppedHarness(workspace_of(scratch, text), "pkg", "node"):
+        with SteppedHarness(write_workspace(scratch, text), "pkg", "node"):
             return ["", ""]
     except StudentError as error:
         return [error.diagnosis.kind.value, error.diagnosis.sentence]
 
 
-def test_a_program_that_must_be_stepped_and_cannot_be_gets_the_reason() -> None:
-    kind, sentence = in_worker_sandbox(refused, programs.UNSTEPPABLE["thread"])
+def test_stepping_a_program_that_cannot_be_stepped_reports_the_reason() -> None:
+    kind, sentence = in_worker_sandbox(step, programs.UNSTEPPABLE["thread"])
     assert kind == "never_started"
     assert "cannot be stepped: it uses rclpy in threads of its own. Let a timer of the node do the work" in sentence

@@ -1,6 +1,7 @@
 """The verification for each change: `autograder verify --quick`, rewritten answers, and some generated mutants.
 
-It has every reference, release and variant, and one mutant for each check. `make nightly` has the whole verification.
+It grades every reference, release and variant, and one mutant for each check. `make nightly` runs the complete
+verification.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ VERIFICATION = {
 }
 # Chapters whose generated mutants were all graded, with a reason for every survivor.
 SURVEYED = [name for name in suites.graded_assignments() if (suites.hidden(name).folder / "survivors.yaml").is_file()]
-PART = 4  # generated mutants of a chapter
+SAMPLE_SIZE = 4  # generated mutants of a chapter
 
 
 @pytest.fixture(scope="session")
@@ -54,21 +55,21 @@ def test_a_submission_gets_its_expected_result(case: Case, workers: WorkerPool, 
 @pytest.mark.slow
 @pytest.mark.parametrize("assignment", SURVEYED)
 def test_generated_mutants_of_each_chapter_are_killed_or_have_a_reason(assignment: str, workers: WorkerPool) -> None:
-    found = generated_mutants(assignment)
-    mutants = {mutant.id: mutant for mutant in found.mutants}
-    asked = sorted(mutants.keys() - reasons(assignment, found).keys())
-    chosen = asked[:: -(-len(asked) // PART)]
+    generated = generated_mutants(assignment)
+    mutants = {mutant.id: mutant for mutant in generated.mutants}
+    names = sorted(mutants.keys() - reasons(assignment, generated).keys())
+    sample = names[:: -(-len(names) // SAMPLE_SIZE)]
     with prepared_run(assignment, workers, 2026) as run:
-        results = [run.run_mutant(mutants[name]) for name in chosen]
+        results = [run.run_mutant(mutants[name]) for name in sample]
     print(*results, sep="\n")
     assert not [mutants[result.id].diff() for result in results if not result.killed]
 
 
 @pytest.mark.slow
 def test_a_patched_build_of_the_reference_is_graded_like_a_real_build(workers: WorkerPool) -> None:
-    found = [mutant for mutant in generated_mutants("02_nodes").mutants if mutant.operator == "no publish"]
+    mutants = [mutant for mutant in generated_mutants("02_nodes").mutants if mutant.operator == "no publish"]
     with prepared_run("02_nodes", workers, 2026) as run:
         assert run.shortcuts["patched"] == {check.id for check in suites.hidden("02_nodes").checks}
-        patched = [run.run_mutant(mutant).killer for mutant in found]
+        patched = [run.run_mutant(mutant).killer for mutant in mutants]
         run.shortcuts = {"patched": frozenset(), "unbuilt": frozenset()}
-        assert [run.run_mutant(mutant).killer for mutant in found] == patched
+        assert [run.run_mutant(mutant).killer for mutant in mutants] == patched

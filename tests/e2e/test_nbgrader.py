@@ -1,4 +1,4 @@
-"""The whole way of nbgrader by its real commands, from release to fetched feedback, for a class of four."""
+"""nbgrader's own commands take a class of four from the release to the fetched feedback."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.e2e.classroom import Classroom, fill_in
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.timeout(1800),
-    # What nbgrader does with SQLAlchemy.
+    # nbgrader's use of SQLAlchemy.
     pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning"),
 ]
 ASSIGNMENT = "02_nodes"
@@ -30,9 +30,9 @@ FLAW = ("HALF_SECTOR = math.radians(30.0)", "HALF_SECTOR = math.radians(180.0)")
 CLASS = ("reference", "flawed", "empty", "odd")
 
 
-def folder_of(student: str, room: Classroom) -> Path:
-    """Make a student's folder, with the configuration that a class is given."""
-    folder = room.place / student
+def make_folder(student: str, room: Classroom) -> Path:
+    """Create a student's folder, with the configuration for the class."""
+    folder = room.root / student
     folder.mkdir()
     (folder / "nbgrader_config.py").write_text(
         f"c = get_config()\nc.CourseDirectory.course_id = 'ros2-python'\nc.Exchange.root = {str(room.exchange)!r}\n"
@@ -40,13 +40,14 @@ def folder_of(student: str, room: Classroom) -> Path:
     return folder
 
 
-def work_of(student: str, released: NotebookNode) -> NotebookNode:
-    """Return the notebook that a student hands in."""
+def solve(student: str, released: NotebookNode) -> NotebookNode:
+    """Return the notebook that a student submits."""
     if student != "empty":
         fill_in(released, ASSIGNMENT)
     if student == "reference":
-        released.cells.append(new_code_cell("print('mine')"))  # its effect is unknown, so the notebook is run
-    if student == "odd":  # JupyterLab opens it, and nbformat's schema refuses it
+        # The grader cannot know what this cell does, so it runs the notebook.
+        released.cells.append(new_code_cell("print('mine')"))
+    if student == "odd":  # JupyterLab opens such a notebook, but nbformat's schema rejects it
         released.nbformat_minor = 4
         released.cells[1].outputs = [NotebookNode(output_type="stream", text="hi")]
         del released.cells[3]["outputs"]
@@ -59,16 +60,16 @@ def work_of(student: str, released: NotebookNode) -> NotebookNode:
 
 @pytest.fixture(scope="module")
 def graded(tmp_path_factory: pytest.TempPathFactory) -> Classroom:
-    """The class after its instructor ran every command, up to the feedback."""
+    """The class after its instructor has run all commands up to `generate_feedback`."""
     room = Classroom(tmp_path_factory.mktemp("class"), ASSIGNMENT)
     room.nbgrader("generate_assignment")
     room.nbgrader("release_assignment")
     for name in CLASS:
-        folder = folder_of(name, room)
+        folder = make_folder(name, room)
         room.nbgrader("fetch_assignment", folder=folder)
         notebook = folder / ASSIGNMENT / f"{ASSIGNMENT}.ipynb"
-        work = work_of(name, nbformat.read(notebook, as_version=4))
-        notebook.write_text(json.dumps(work), encoding="utf-8")  # nbformat would mend it
+        solved = solve(name, nbformat.read(notebook, as_version=4))
+        notebook.write_text(json.dumps(solved), encoding="utf-8")  # nbformat would repair it
         room.nbgrader("submit", f"--student={name}", folder=folder)
     room.nbgrader("collect")
     room.nbgrader("autograde")
@@ -78,10 +79,10 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Classroom:
 
 @pytest.fixture(scope="module")
 def results(graded: Classroom) -> dict[str, Result]:
-    """What `autograder grade` says about the same submissions: the flawed one graded again, the others resumed."""
+    """The results of `autograder grade --resume`, which grades the flawed submission and reuses the other results."""
     for name in ("reference", "empty", "odd"):
         stored = graded.course / ".build" / "nbgrader" / ASSIGNMENT / name
-        shutil.copytree(stored, graded.place / "results" / ASSIGNMENT / name)
+        shutil.copytree(stored, graded.root / "results" / ASSIGNMENT / name)
     return {result.student: result for result in load(graded.grade("--resume"))}
 
 
@@ -101,14 +102,14 @@ def test_the_gradebook_has_the_points_that_the_grader_gave(
     assert sum(maximum for _, maximum, _ in graded.grades(student).values()) == result.max_score
 
 
-def test_the_reference_gets_all_points_flawed_answers_some_and_empty_ones_none(results: dict[str, Result]) -> None:
+def test_the_reference_gets_full_marks_flawed_answers_some_and_empty_ones_none(results: dict[str, Result]) -> None:
     assert results["reference"].percent == results["odd"].percent == 100.0
     assert 0.0 < results["flawed"].percent < 100.0
     assert results["empty"].score == 0.0
 
 
 def code_lines(path: Path) -> list[str]:
-    """Return a file's lines that are code for sure: calls, without a text that a student may read elsewhere."""
+    """Return a file's lines that are certainly code: calls without strings or comments, which may occur elsewhere."""
     lines = {line.strip() for line in path.read_text(encoding="utf-8").splitlines()}
     return sorted(line for line in lines if len(line) > 24 and "(" in line and not set("\"'#") & set(line))
 
@@ -120,10 +121,10 @@ def test_the_release_holds_no_solution_and_nothing_of_the_hidden_suite(graded: C
     text += "\n".join(cell.source for cell in notebook.cells)
     source = nbformat.read(course_paths.source_notebook(ASSIGNMENT), as_version=4)
     solution = next(cell.source for cell in source.cells if cell.id == SOLUTION)
-    taught = "\n".join(cell.source for cell in source.cells if cell.id != SOLUTION)  # the chapter's own idioms
+    visible = "\n".join(cell.source for cell in source.cells if cell.id != SOLUTION)  # the chapter uses the same idioms
     hidden = [part.split("# END SOLUTION")[0] for part in solution.split("# BEGIN SOLUTION")[1:]]
     lines = {line.strip() for part in hidden for line in part.splitlines()}
-    secret = sorted(line for line in lines if len(line) > 24 and line not in taught)
+    secret = sorted(line for line in lines if len(line) > 24 and line not in visible)
     assert len(secret) > 10
     assert "YOUR CODE HERE" in text
     assert [line for line in secret if line in text] == []
@@ -133,7 +134,7 @@ def test_the_release_holds_no_solution_and_nothing_of_the_hidden_suite(graded: C
 
 
 @pytest.mark.parametrize("student", CLASS)
-def test_the_feedback_explains_and_shows_no_source_of_the_suite(student: str, graded: Classroom) -> None:
+def test_the_feedback_explains_failures_and_contains_no_source_of_the_suite(student: str, graded: Classroom) -> None:
     path = graded.course / "feedback" / student / ASSIGNMENT / f"{ASSIGNMENT}.html"
     html = unescape(path.read_text(encoding="utf-8"))
     suite = suites.hidden(ASSIGNMENT)
@@ -157,19 +158,19 @@ def test_outputs_of_the_sandboxed_kernel_are_in_the_autograded_notebook(graded: 
 @pytest.mark.promise("`release_assignment`, `collect`, `autograde` and `generate_feedback` work as usual.")
 def test_students_fetch_their_feedback(graded: Classroom) -> None:
     graded.nbgrader("release_feedback")
-    folder = graded.place / "flawed"
+    folder = graded.root / "flawed"
     graded.nbgrader("fetch_feedback", folder=folder)
     (page,) = (folder / ASSIGNMENT / "feedback").rglob("*.html")
-    made = graded.course / "feedback" / "flawed" / ASSIGNMENT / f"{ASSIGNMENT}.html"
-    assert page.read_bytes() == made.read_bytes()
+    generated = graded.course / "feedback" / "flawed" / ASSIGNMENT / f"{ASSIGNMENT}.html"
+    assert page.read_bytes() == generated.read_bytes()
 
 
 @pytest.mark.promise(
     "nbgrader autograde 02_nodes",
     "`autograde` records that result instead of grading again.",
 )
-def test_results_graded_before_in_parallel_are_recorded(graded: Classroom, results: dict[str, Result]) -> None:
-    stored = graded.place / "results"
+def test_autograde_records_results_of_an_earlier_grading(graded: Classroom, results: dict[str, Result]) -> None:
+    stored = graded.root / "results"
     before = (stored / ASSIGNMENT / "flawed" / "result.json").stat().st_mtime_ns
     recorded_before = graded.grades("flawed")
     options = (f"--SandboxedGrade.results={stored}", "--student=flawed", "--force")

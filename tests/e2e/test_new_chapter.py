@@ -30,13 +30,13 @@ def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("new")
     new = "autograder --course mine new chapter"
     script = f"autograder new course mine\n{new} 10_mapping\n{new} 18_launch --package launch_lab --node watcher"
-    done = shell(script, folder)
-    assert done.returncode == 0, done.stderr
+    process = shell(script, folder)
+    assert process.returncode == 0, process.stderr
     return folder / "mine"
 
 
-def on(course: Path, words: str) -> subprocess.CompletedProcess[str]:
-    return shell(f"autograder --course {course} {words}", course.parent)
+def autograder(course: Path, arguments: str) -> subprocess.CompletedProcess[str]:
+    return shell(f"autograder --course {course} {arguments}", course.parent)
 
 
 @pytest.mark.promise(
@@ -44,10 +44,10 @@ def on(course: Path, words: str) -> subprocess.CompletedProcess[str]:
     "`autograder --course FOLDER VERB` selects the course for any verb.",
     "The new chapter is small but complete.",
 )
-def test_a_new_chapter_keeps_every_rule(course: Path) -> None:
-    checked = on(course, "course check")
-    assert (checked.returncode, checked.stdout) == (0, "")
-    tables = on(course, "course tables")
+def test_a_new_chapter_passes_every_check_of_the_course(course: Path) -> None:
+    check = autograder(course, "course check")
+    assert (check.returncode, check.stdout) == (0, "")
+    tables = autograder(course, "course tables")
     assert (tables.returncode, tables.stdout) == (0, "")
     page = (course / "chapters" / "README.md").read_text()
     assert "| Mapping | 10_mapping | Exercise | `nearest`, `counts`, `silent` |" in page
@@ -65,20 +65,25 @@ def test_the_commands_of_a_new_courses_readme_and_workflow_exist(course: Path) -
     readme, workflow = (course / "README.md").read_text(), course / ".github" / "workflows" / "ci.yml"
     steps = yaml.safe_load(workflow.read_text())["jobs"]["course"]["steps"]
     inline = re.findall(r"`(autograder [^`]+)`", readme)
-    proven = [step["run"] for step in steps if step.get("run", "").startswith("autograder ")]
-    assert len(proven) == 3
-    assert {*proven} <= {*inline}
-    done = shell("\n".join(f"{command} --help" for command in inline), course)
-    assert done.returncode == 0, done.stderr
+    workflow_commands = [step["run"] for step in steps if step.get("run", "").startswith("autograder ")]
+    assert len(workflow_commands) == 3
+    assert {*workflow_commands} <= {*inline}
+    process = shell("\n".join(f"{command} --help" for command in inline), course)
+    assert process.returncode == 0, process.stderr
 
 
 def test_git_ignores_what_is_built_in_a_new_course(course: Path, tmp_path: Path) -> None:
     copy = shutil.copytree(course, tmp_path / "copy")
-    made = [".build/verify.json", "chapters/10_mapping/ws/install/setup.sh", "checks/__pycache__/x.pyc", "gradebook.db"]
-    ignored = shell(f"git init -q\ngit check-ignore {' '.join(made)}", copy)
-    assert ignored.stdout.split() == made
-    shown = shell("git ls-files --others --exclude-standard", copy).stdout.split()
-    assert {".gitignore", ".github/workflows/ci.yml", "README.md", "course.yaml", "syllabus.yaml"} <= {*shown}
+    built = [
+        ".build/verify.json",
+        "chapters/10_mapping/ws/install/setup.sh",
+        "checks/__pycache__/x.pyc",
+        "gradebook.db",
+    ]
+    ignored = shell(f"git init -q\ngit check-ignore {' '.join(built)}", copy)
+    assert ignored.stdout.split() == built
+    not_ignored = shell("git ls-files --others --exclude-standard", copy).stdout.split()
+    assert {".gitignore", ".github/workflows/ci.yml", "README.md", "course.yaml", "syllabus.yaml"} <= {*not_ignored}
 
 
 @pytest.mark.promise(
@@ -87,21 +92,21 @@ def test_git_ignores_what_is_built_in_a_new_course(course: Path, tmp_path: Path)
 )
 @pytest.mark.nightly
 def test_every_mutant_of_new_chapters_is_killed(course: Path) -> None:
-    done = on(course, "verify -j 2")
-    assert done.returncode == 0, done.stdout + done.stderr
+    process = autograder(course, "verify -j 2")
+    assert process.returncode == 0, process.stdout + process.stderr
     for chapter in ("10_mapping", "18_launch"):
         for name in ("reference", "release", "variant loop", "mutant farthest"):
-            assert re.search(f"^{chapter} {name} .* as expected$", done.stdout, re.MULTILINE), done.stdout
-    assert "0 without a reason" in done.stdout
+            assert re.search(f"^{chapter} {name} .* as expected$", process.stdout, re.MULTILINE), process.stdout
+    assert "0 without a reason" in process.stdout
 
 
 def test_the_notebook_of_a_new_chapter_runs_as_source_and_as_released(course: Path) -> None:
-    done = on(course, "notebooks --source --released -j 2 18_launch")
-    assert done.returncode == 0, done.stdout + done.stderr
+    process = autograder(course, "notebooks --source --released -j 2 18_launch")
+    assert process.returncode == 0, process.stdout + process.stderr
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("arguments", "message"),
     [
         ("chapter mapping", "'mapping' is not a chapter name: use two digits and a name, such as 10_mapping"),
         ("chapter 11_import", "'11_import' is not a chapter name"),
@@ -113,16 +118,16 @@ def test_the_notebook_of_a_new_chapter_runs_as_source_and_as_released(course: Pa
         ),
         ("course mine", "mine already exists: choose another name"),
     ],
-    # One that names a chapter would be made a course for on another worker.
+    # A test whose id contains a chapter's name runs on another worker, which would create the course again.
     ids=["no number", "a keyword", "the package exists", "a package of ROS", "the course exists"],
 )
 def test_an_invalid_name_of_a_new_chapter_is_refused_and_nothing_is_written(
-    course: Path, words: str, said: str
+    course: Path, arguments: str, message: str
 ) -> None:
     before = {*course.rglob("*")}
-    done = on(course, f"new {words}")
-    assert done.returncode == 2
-    assert said in done.stderr
+    process = autograder(course, f"new {arguments}")
+    assert process.returncode == 2
+    assert message in process.stderr
     assert {*course.rglob("*")} == before
 
 
@@ -148,7 +153,7 @@ def test_the_package_and_the_node_of_a_new_chapter_have_the_given_names(course: 
     "This command creates the student release, which has no hidden checks and no answers:",
 )
 def test_every_command_of_the_tutorial_prints_what_the_page_says(tmp_path: Path) -> None:
-    compare(DOCS / "first_check.md", tmp_path, 9)
+    compare_with_page(DOCS / "first_check.md", tmp_path, 9)
     assert "The node is called nearest." in (tmp_path / "graded" / "ada" / "feedback.html").read_text()
     assert not [*(tmp_path / "students").rglob("hidden")]
 
@@ -161,22 +166,22 @@ def test_every_command_of_the_tutorial_prints_what_the_page_says(tmp_path: Path)
 )
 @pytest.mark.nightly
 def test_every_command_of_the_tutorial_about_launch_prints_what_the_page_says(tmp_path: Path) -> None:
-    compare(DOCS / "first_launch_check.md", tmp_path, 7)
+    compare_with_page(DOCS / "first_launch_check.md", tmp_path, 7)
 
 
-def compare(page: Path, folder: Path, lines: int) -> None:
-    """Run the commands of a page in an empty folder, and compare what they print with the lines on the page."""
+def compare_with_page(page: Path, folder: Path, lines: int) -> None:
+    """Run a page's commands in an empty folder; require that they print the page's output, which has `lines` lines."""
     blocks = BLOCKS.findall(page.read_text(encoding="utf-8"))
     script = "".join(f"{text}\necho =====\n" for kind, text in blocks if kind == "sh")
-    done = shell(script, folder)
-    assert done.returncode == 0, done.stdout + done.stderr
-    outputs = iter(done.stdout.split("=====\n"))
-    shown, compared = "", 0
+    process = shell(script, folder)
+    assert process.returncode == 0, process.stdout + process.stderr
+    outputs = iter(process.stdout.split("=====\n"))
+    output, compared = "", 0
     for kind, text in blocks:
         if kind == "sh":
-            shown = " ".join(next(outputs).split())
+            output = " ".join(next(outputs).split())
             continue
         for line in text.splitlines():
-            assert line in shown, f"the page says {line!r}, and the command said {shown}"
+            assert line in output, f"the page says {line!r}, but the command printed {output}"
             compared += 1
     assert compared == lines

@@ -1,4 +1,4 @@
-"""`drive` and `check`, as a student calls them in the notebook."""
+"""`drive` and `check`, as students call them in a notebook."""
 
 from __future__ import annotations
 
@@ -34,19 +34,19 @@ from sim import Pose, RobotSpec, Simulation, World
 from sim.codec import to_json
 
 PACKAGE = "my_robot_package"
-ARGUMENT = 128 * 1024  # bytes that one argument of a program may have on Linux: MAX_ARG_STRLEN in limits of execve(2)
+MAX_ARGUMENT = 128 * 1024  # bytes of a program's argument on Linux: MAX_ARG_STRLEN, see execve(2)
 
 
 @pytest.fixture(scope="session")
-def right(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("right")
+def reference_workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("reference")
     write_reference((PACKAGE,), folder)
     return folder
 
 
 @pytest.fixture(autouse=True)
-def _kept_for_one_test(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kept_results, "CACHE", str(tmp_path / "kept"))
+def _own_result_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kept_results, "CACHE", str(tmp_path / "cache"))
 
 
 def _mutant(name: str, folder: Path) -> Path:
@@ -55,30 +55,32 @@ def _mutant(name: str, folder: Path) -> Path:
 
 
 @pytest.mark.promise("If nothing has changed since the last check, it shows that result again and says so.")
-def test_the_reference_passes_every_visible_check_and_leaves_nothing_in_the_workspace(right: Path) -> None:
-    report = check("02_nodes", right)
+def test_the_reference_passes_every_visible_check_and_leaves_nothing_in_the_workspace(
+    reference_workspace: Path,
+) -> None:
+    report = check("02_nodes", reference_workspace)
     assert isinstance(report, CheckReport)
     assert report.passed, repr(report)
-    assert [path.name for path in right.iterdir()] == ["src"]
-    again = check("02_nodes", right)
+    assert [path.name for path in reference_workspace.iterdir()] == ["src"]
+    again = check("02_nodes", reference_workspace)
     assert isinstance(again, CheckReport)
     assert replace(again, since="") == report
     assert re.search(r"16 of 16 visible checks passed. Unchanged since \d\d:\d\d, so nothing was run.", repr(again))
 
 
-def test_message_packages_that_were_built_once_are_not_built_again_by_a_check(tmp_path: Path) -> None:
+def test_check_reuses_message_packages_that_were_built_before(tmp_path: Path) -> None:
     write_reference(("my_robot_interfaces", PACKAGE), tmp_path)
     source = tmp_path / "src/my_robot_interfaces"
     tree = {Entry(source.name, "folder"): b""}
     tree |= {
         replace(entry, path=f"{source.name}/{entry.path}"): data for entry, data in read_tree(source, SOURCES).items()
     }
-    with Cache.default(keeper.CACHE).use(keeper.key(tree), partial(keeper._make, tree, best_isolation())) as kept:
-        os.utime(kept, (0, 0))  # whoever takes it sets the time
+    with Cache.default(keeper.CACHE).use(keeper.key(tree), partial(keeper._make, tree, best_isolation())) as cached:
+        os.utime(cached, (0, 0))  # using the entry updates its time
         report = check("03_interfaces", tmp_path)
         assert isinstance(report, CheckReport)
         assert report.passed, repr(report)
-        assert kept.stat().st_mtime > 0
+        assert cached.stat().st_mtime > 0
 
 
 @pytest.mark.promise(
@@ -95,14 +97,15 @@ def test_a_failed_check_shows_hints_and_the_other_checks_still_run(tmp_path: Pat
 
 
 @pytest.mark.promise("`check('03_interfaces', exercise=1)` checks exercise 1 alone")
-def test_an_exercise_is_checked_alone_with_what_it_needs_and_has_not(tmp_path: Path) -> None:
+def test_an_exercise_is_checked_with_the_failed_check_that_it_depends_on(tmp_path: Path) -> None:
     write_reference((PACKAGE,), tmp_path)
     path = tmp_path / "src" / PACKAGE / PACKAGE / "configuration.py"
     path.write_text(path.read_text().replace("node.declare_parameter(", "node.declare_parameters(", 1))
     report = check("05_parameters", tmp_path, exercise=2)
     assert isinstance(report, CheckReport)
     failed, *others = report.lines
-    assert (failed.id, failed.outcome) == ("starts", Outcome.FAILED)  # of exercise 1; the others cannot be run
+    # "starts" is a check of exercise 1, without which the others cannot run.
+    assert (failed.id, failed.outcome) == ("starts", Outcome.FAILED)
     assert {line.outcome for line in others} == {Outcome.NOT_CHECKED}
     assert [line.id for line in others] == ["contradiction", "together", "rate", "refused_whole", "lets_pass"]
     assert report.summary == "05_parameters, exercise 2: 0 of 6 visible checks passed."
@@ -119,8 +122,8 @@ def test_a_syntax_error_is_reported_in_a_sentence_without_a_traceback(tmp_path: 
     assert notice.sentence == report.trouble.sentence
 
 
-def test_a_drive_is_the_same_every_time_and_shows_its_track(right: Path) -> None:
-    runs = [drive(PACKAGE, "robot_controller", seconds=12, seed=3, workspace=right) for _ in range(2)]
+def test_a_drive_is_the_same_every_time_and_shows_its_track(reference_workspace: Path) -> None:
+    runs = [drive(PACKAGE, "robot_controller", seconds=12, seed=3, workspace=reference_workspace) for _ in range(2)]
     first, second = (run for run in runs if isinstance(run, DriveReport))
     assert first.recording.sha256() == second.recording.sha256()
     assert first.commands == second.commands
@@ -129,23 +132,23 @@ def test_a_drive_is_the_same_every_time_and_shows_its_track(right: Path) -> None
     assert "image/png" in str(first._repr_mimebundle_()) or "image/svg" in str(first._repr_mimebundle_())
 
 
-def test_a_drive_through_a_map_of_ros(right: Path) -> None:
-    report = drive(PACKAGE, "robot_controller", world="office", seconds=2, workspace=right)
+def test_drive_runs_in_a_map_of_ros(reference_workspace: Path) -> None:
+    report = drive(PACKAGE, "robot_controller", world="office", seconds=2, workspace=reference_workspace)
     assert isinstance(report, DriveReport), repr(report)
     assert "office" in repr(report)
 
 
-def test_a_world_of_thousands_of_walls(right: Path) -> None:
+def test_drive_runs_in_a_world_of_thousands_of_walls(reference_workspace: Path) -> None:
     angles = np.linspace(-np.pi, np.pi, 5001)
     ends = 3.0 * np.column_stack([np.cos(angles), np.sin(angles)])
     world = World.from_segments(np.hstack([ends[:-1], ends[1:]]), name="round", starts=(Pose(0.0, 0.0, 0.0),))
-    assert len(to_json(Simulation(world, (RobotSpec(),)))) > ARGUMENT
-    report = drive(PACKAGE, "robot_controller", world=world, seconds=2, workspace=right)
+    assert len(to_json(Simulation(world, (RobotSpec(),)))) > MAX_ARGUMENT
+    report = drive(PACKAGE, "robot_controller", world=world, seconds=2, workspace=reference_workspace)
     assert isinstance(report, DriveReport), repr(report)
 
 
-def test_a_failed_lidar_stops_the_reference_and_not_the_mutant(right: Path, tmp_path: Path) -> None:
-    good = drive(PACKAGE, "robot_controller", seconds=14, faults="dead", workspace=right)
+def test_a_failed_lidar_stops_the_reference_and_not_the_mutant(reference_workspace: Path, tmp_path: Path) -> None:
+    good = drive(PACKAGE, "robot_controller", seconds=14, faults="dead", workspace=reference_workspace)
     bad = drive(
         PACKAGE, "robot_controller", seconds=14, faults=FAULTS["dead"], workspace=_mutant("drives_blind", tmp_path)
     )
@@ -155,25 +158,25 @@ def test_a_failed_lidar_stops_the_reference_and_not_the_mutant(right: Path, tmp_
     assert (0.0, 0.0) not in {(v, w) for t, v, w in bad.commands if t > 11}
 
 
-def test_a_missing_package_is_reported_in_a_sentence_without_a_traceback(right: Path) -> None:
-    notice = drive("no_such_package", "robot_controller", seconds=1, workspace=right)
+def test_a_missing_package_is_reported_in_a_sentence_without_a_traceback(reference_workspace: Path) -> None:
+    notice = drive("no_such_package", "robot_controller", seconds=1, workspace=reference_workspace)
     assert isinstance(notice, Notice)
     assert "The package no_such_package is missing: src holds my_robot_package" in notice.sentence
 
 
-def test_colcon_shows_no_stderr_for_a_build_without_a_fault(
+def test_colcon_shows_no_stderr_for_a_successful_build(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")  # as some machines have it
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")  # as on some machines
     ros()
     shutil.copytree(SOLUTIONS / "square_dance", tmp_path / "src/square_dance")
     shell(f"cd {tmp_path} && colcon --log-level error build", workspace=tmp_path)
-    said = capsys.readouterr().out
-    assert "1 package finished" in said
-    assert "stderr" not in said
+    output = capsys.readouterr().out
+    assert "1 package finished" in output
+    assert "stderr" not in output
 
 
-def test_a_crash_is_shown_by_the_students_own_files(tmp_path: Path) -> None:
+def test_the_traceback_of_a_crash_shows_only_the_students_files(tmp_path: Path) -> None:
     _mutant("drives_blind", tmp_path)
     path = next(tmp_path.rglob("robot_controller.py"))
     text = path.read_text()
@@ -181,8 +184,8 @@ def test_a_crash_is_shown_by_the_students_own_files(tmp_path: Path) -> None:
     line = text[: text.index("rclpy.spin(node)")].count("\n") + 1
     notice = drive(PACKAGE, "robot_controller", seconds=1, workspace=tmp_path)
     assert isinstance(notice, Notice)
-    shown = f'  File "ws/src/{path.relative_to(tmp_path / "src")}", line {line}, in main'
-    assert notice.detail.splitlines()[1] == shown
+    frame = f'  File "ws/src/{path.relative_to(tmp_path / "src")}", line {line}, in main'
+    assert notice.detail.splitlines()[1] == frame
     assert "autograder" not in notice.detail
 
 
@@ -192,6 +195,6 @@ def test_nbgraders_validate_fails_on_an_unsolved_notebook(tmp_path: Path) -> Non
     graded = [cell for cell in released.cells if cell.metadata.get("nbgrader", {}).get("grade")]
     released.cells = [new_code_cell("from autograder.notebook import grade"), *graded]
     nbformat.write(released, tmp_path / chapter.notebook_path.name)
-    found = Validator(ignore_checksums=True).validate(str(tmp_path / chapter.notebook_path.name))
+    validation = Validator(ignore_checksums=True).validate(str(tmp_path / chapter.notebook_path.name))
     assert graded
-    assert [cell["source"] for cell in found["failed"]] == [cell.source for cell in graded]
+    assert [cell["source"] for cell in validation["failed"]] == [cell.source for cell in graded]

@@ -1,4 +1,4 @@
-"""`drive` with parameters, and `side_by_side`, as a student calls them in the notebook."""
+"""`drive` with parameters, and `side_by_side`, as students call them in a notebook."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ WALL = 3.0  # m: the east wall of the empty room, straight ahead of the start
 
 
 @pytest.fixture(scope="session")
-def right(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("right")
+def reference_workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("reference")
     write_reference((PROGRAM[0],), folder)
     return folder
 
 
-def stop(report: DriveReport | Notice) -> float:
-    """Return the robot's final distance from the wall."""
+def final_distance(report: DriveReport | Notice) -> float:
+    """Return the robot's final distance from the wall, in metres."""
     assert isinstance(report, DriveReport)
     return WALL - float(report.recording.poses[-1, 0, 0])
 
 
-def test_a_parameter_moves_the_place_where_the_robot_stops(right: Path) -> None:
+def test_a_parameter_changes_where_the_robot_stops(reference_workspace: Path) -> None:
     drives = {
         f"{distance} m": drive(
             *PROGRAM,
             seconds=20,
             parameters={"safety_distance": distance, "slow_distance": distance + 0.5},
-            workspace=right,
+            workspace=reference_workspace,
         )
         for distance in (0.5, 1.5)
     }
-    assert [stop(report) for report in drives.values()] == pytest.approx([0.5, 1.5], abs=0.02)
+    assert [final_distance(report) for report in drives.values()] == pytest.approx([0.5, 1.5], abs=0.02)
     lines = [report.recording.said[0] for report in drives.values() if isinstance(report, DriveReport)]
     assert len(lines) == 2
     assert {text for _, text in lines} == {"[INFO] [configured_node]: DefaultRobot is ready"}
@@ -51,16 +51,16 @@ def test_a_parameter_moves_the_place_where_the_robot_stops(right: Path) -> None:
     assert "1.5 m: " in picture.alt
 
 
-def test_a_parameter_file_gives_a_robot_the_parameters_of_its_name(right: Path) -> None:
-    fleet = right / "src/my_robot_package/config/fleet_params.yaml"
-    porter = drive(*PROGRAM, seconds=20, name="porter", parameters=fleet, workspace=right)
+def test_a_parameter_file_gives_a_robot_the_parameters_of_its_name(reference_workspace: Path) -> None:
+    fleet = reference_workspace / "src/my_robot_package/config/fleet_params.yaml"
+    porter = drive(*PROGRAM, seconds=20, name="porter", parameters=fleet, workspace=reference_workspace)
     assert isinstance(porter, DriveReport)
     assert "Porter is ready" in porter.output
-    assert stop(porter) == pytest.approx(1.0, abs=0.02)
+    assert final_distance(porter) == pytest.approx(1.0, abs=0.02)
 
 
-def test_a_start_that_the_node_rejects_is_reported_in_a_sentence_also_side_by_side(right: Path) -> None:
-    refused = drive(*PROGRAM, seconds=1, parameters={"safety_distance": 2.0}, workspace=right)
+def test_parameters_that_the_node_rejects_are_reported_in_a_sentence(reference_workspace: Path) -> None:
+    refused = drive(*PROGRAM, seconds=1, parameters={"safety_distance": 2.0}, workspace=reference_workspace)
     assert isinstance(refused, Notice)
     assert "safety_distance (2 m) must be below slow_distance (1 m)" in refused.sentence
     assert side_by_side({"refused": refused}) is refused
@@ -71,7 +71,7 @@ def test_a_missing_parameter_file_is_named(tmp_path: Path) -> None:
         drive(*PROGRAM, parameters=tmp_path / "nowhere.yaml")
 
 
-def test_a_value_that_no_parameter_can_have_is_named() -> None:
+def test_a_parameter_value_of_an_unsupported_type_is_named() -> None:
     with pytest.raises(UsageError, match="a parameter must be a bool, int, float, str or a list of these, not complex"):
         drive(*PROGRAM, parameters={"speed": 1j})
 
@@ -102,8 +102,8 @@ def main():
 '''
 
 
-def test_each_step_publishes_what_the_notebook_returns_at_its_instant(right: Path) -> None:
-    package = right / "src" / PROGRAM[0] / PROGRAM[0]
+def test_each_step_publishes_the_messages_that_the_notebook_returns(reference_workspace: Path) -> None:
+    package = reference_workspace / "src" / PROGRAM[0] / PROGRAM[0]
     (package / "listener.py").write_text(LISTENER)
     setup = package.parent / "setup.py"
     text = setup.read_text()
@@ -115,6 +115,6 @@ def test_each_step_publishes_what_the_notebook_returns_at_its_instant(right: Pat
     def limit(t: float) -> dict[str, Float32] | None:
         return {"/limit": Float32(data=0.25)} if 1.0 <= t < 2.0 else None
 
-    report = drive(PROGRAM[0], "listener", seconds=3, each_step=limit, workspace=right)
+    report = drive(PROGRAM[0], "listener", seconds=3, each_step=limit, workspace=reference_workspace)
     assert isinstance(report, DriveReport), report
     assert [(round(t, 1), v) for t, v, _ in report.commands] == [(round(1 + n / 10, 1), 0.25) for n in range(10)]

@@ -40,7 +40,7 @@ rclpy.spin(node)
 """
 
 
-def asked(scratch: Path) -> Any:
+def read_parameters(scratch: Path) -> Any:
     from autograder.exceptions import StudentError
     from autograder.harness import RealTimeHarness, SteppedHarness, Workspace
     from autograder.probes.parameters import NodeParameters
@@ -54,34 +54,36 @@ def asked(scratch: Path) -> Any:
         (folder / name).write_text(NODE.replace("SERVICES", services))
     (folder / "forged").write_text(FORGED)
     workspace = Workspace(scratch / "ws", activate(), scratch / "home")
-    told: list[Any] = []
-    said: list[Any] = []
+    answers: list[Any] = []
+    exchanges: list[Any] = []
     for kind in (SteppedHarness, RealTimeHarness):
         with kind(workspace, "pkg", "open") as harness:
             parameters = NodeParameters(harness, "/tuned")
             answer = parameters.change({"speed": "fast"})
-            told.append(
+            answers.append(
                 [sorted(parameters.names()), parameters.values("speed", "mass"), answer.accepted, answer.reason]
             )
-            said.append([[row.what, row.name, row.text] for row in workspace.exchanges.take()])
+            exchanges.append([[row.what, row.name, row.text] for row in workspace.exchanges.take()])
     with SteppedHarness(workspace, "pkg", "closed") as harness:
         parameters = NodeParameters(harness, "/tuned")
-        for ask in (lambda: parameters.values("speed"), parameters.names):
+        for read in (lambda: parameters.values("speed"), parameters.names):
             try:
-                ask()
+                read()
             except CheckFailed as failed:
-                told.append(str(failed))
-    said.append([[row.what, row.text] for row in workspace.exchanges.take()])
+                answers.append(str(failed))
+    exchanges.append([[row.what, row.text] for row in workspace.exchanges.take()])
     with SteppedHarness(workspace, "pkg", "forged") as harness:
         try:
-            told.append(NodeParameters(harness, "/tuned").values("speed"))
+            answers.append(NodeParameters(harness, "/tuned").values("speed"))
         except StudentError as error:
-            told.append(error.diagnosis.sentence)
-    return told, said
+            answers.append(error.diagnosis.sentence)
+    return answers, exchanges
 
 
-def test_parameters_are_read_in_lockstep_and_in_real_time_and_a_missing_or_false_response_is_reported() -> None:
-    (stepped, real, without, silent, forged), (talk, real_talk, silent_talk) = in_worker_sandbox(asked)
+def test_parameters_are_read_and_missing_or_invalid_responses_are_reported() -> None:
+    (stepped, real, without, silent, forged), (exchanges, real_exchanges, silent_exchanges) = in_worker_sandbox(
+        read_parameters
+    )
     assert stepped == real
     names, values, accepted, reason = stepped
     assert (names, values, accepted) == (["speed"], {"speed": 0.5}, False)
@@ -91,9 +93,9 @@ def test_parameters_are_read_in_lockstep_and_in_real_time_and_a_missing_or_false
     assert forged == (
         "What your node answered about its parameter speed cannot be read: 200 is not a type of a parameter."
     )
-    assert talk == real_talk
-    assert talk[:2] == [
+    assert exchanges == real_exchanges
+    assert exchanges[:2] == [
         ["asked", "/tuned/set_parameters_atomically", "parameters: [{name: 'speed', value: 'fast'}]"],
         ["answered", "/tuned/set_parameters_atomically", f"result: {{successful: False, reason: {stepped[3]!r}}}"],
     ]
-    assert silent_talk == [["no answer", "within 5 s"], ["asked", "depth: 0"], ["no answer", "within 5 s"]]
+    assert silent_exchanges == [["no answer", "within 5 s"], ["asked", "depth: 0"], ["no answer", "within 5 s"]]

@@ -38,7 +38,7 @@ HEADER = bytes([0, 1, 0, 0])  # of little-endian CDR
 
 
 def _value(kind: Any, draw: random.Random, new: Callable[[Any], Any]) -> Any:
-    """Draw a value of a field, as a list where it has elements."""
+    """Draw a value for a field: a list for an array or a sequence."""
     from rosidl_parser import definition as rosidl
 
     if isinstance(kind, rosidl.AbstractNestedType):
@@ -63,8 +63,8 @@ def _fill(plain: Any, draw: random.Random) -> Any:
     """Set each field of a new message."""
 
     def new(kind: Any) -> Any:
-        made = plain._known.make(kind)
-        return _fill(made, draw) if hasattr(made, "_known") else made
+        message = plain._known.make(kind)
+        return _fill(message, draw) if hasattr(message, "_known") else message
 
     for name in plain._defaults:
         setattr(plain, name, _value(plain._members[name], draw, new))
@@ -72,7 +72,7 @@ def _fill(plain: Any, draw: random.Random) -> Any:
 
 
 def _real(plain: Any) -> Any:
-    """Return a message of rosidl's with the values of a plain one."""
+    """Return a generated message with the values of a plain one."""
     if isinstance(plain, list):
         return [_real(each) for each in plain]
     if not hasattr(plain, "_known"):
@@ -85,7 +85,7 @@ def _real(plain: Any) -> Any:
 
 
 def compare(scratch: Path) -> dict[str, Any]:
-    """Let each kind of messages read the bytes of the other; return what differs, and the types of fields."""
+    """Read the bytes of plain messages as generated ones, and the reverse; return differences and the fields' types."""
     from rclpy.serialization import deserialize_message, serialize_message
     from rosidl_parser.definition import NamespacedType
 
@@ -95,7 +95,7 @@ def compare(scratch: Path) -> dict[str, Any]:
     prefix = build(PACKAGE, TEXTS, cache=Cache(scratch / "cache"))
     sys.path.insert(0, str(site_packages(prefix)))
     package = classes(((PACKAGE, tuple(TEXTS.items())),))
-    draw, wrong = random.Random(7), []
+    draw, differences = random.Random(7), []
     kinds = [*vars(package.msg).values(), package.srv.Ask.Request, package.srv.Ask.Response]
     kinds += [package.action.Go.Goal, package.action.Go.Result, package.action.Go.Feedback]
     kinds = [kind for kind in kinds if isinstance(kind, type)]
@@ -104,24 +104,26 @@ def compare(scratch: Path) -> dict[str, Any]:
             data = messages.to_bytes(message)
             real = _real(messages.from_bytes(kind, data))
             if deserialize_message(HEADER + data, type(real)) != real:
-                wrong.append([repr(message), "is not what rosidl reads", data.hex()])
+                differences.append([repr(message), "is read differently by rosidl", data.hex()])
             if messages.to_bytes(messages.from_bytes(kind, serialize_message(real)[len(HEADER) :])) != data:
-                wrong.append([repr(message), "is not what is read of rosidl's bytes", serialize_message(real).hex()])
+                differences.append(
+                    [repr(message), "is read differently from rosidl's bytes", serialize_message(real).hex()]
+                )
     generated = import_module(f"{PACKAGE}.msg")
     fields = [generated.All.get_fields_and_field_types(), package.msg.All.get_fields_and_field_types()]
     described = [json.loads(path.read_text()) for path in prefix.glob(f"share/{PACKAGE}/*/*.json")]
-    hashes = {each["type_name"]: each["hash_string"] for one in described for each in one["type_hashes"]}
+    hashes = {entry["type_name"]: entry["hash_string"] for file in described for entry in file["type_hashes"]}
     for name, expected in hashes.items():
         if name.startswith(PACKAGE):
-            *namespaces, own = name.split("/")
-            found = package.msg.Inner._known.hash(NamespacedType(namespaces, own))
-            wrong += [] if found == expected else [[name, found, expected]]
-    return {"hashes": len(hashes), "wrong": wrong[:3], "messages": len(kinds), "fields": fields}
+            *namespaces, type_name = name.split("/")
+            actual = package.msg.Inner._known.hash(NamespacedType(namespaces, type_name))
+            differences += [] if actual == expected else [[name, actual, expected]]
+    return {"hashes": len(hashes), "differences": differences[:3], "messages": len(kinds), "fields": fields}
 
 
 def test_the_bytes_of_plain_messages_are_those_of_generated_ones() -> None:
     answer = in_worker_sandbox(compare)
-    assert answer["wrong"] == []
+    assert answer["differences"] == []
     assert answer["messages"] == 9
     assert answer["hashes"] > 20
     assert answer["fields"][0] == answer["fields"][1]

@@ -1,6 +1,6 @@
 """Unmodified public ROS packages build here, their tests run, and their programs communicate.
 
-Each variable names a clone of a repository, branch jazzy: ROS2_EXAMPLES_SOURCE of github.com/ros2/examples,
+Two variables are the paths of clones with the branch jazzy: ROS2_EXAMPLES_SOURCE of github.com/ros2/examples, and
 ROS2_DEMOS_SOURCE of github.com/ros2/demos. `make public-packages` clones them.
 """
 
@@ -21,7 +21,7 @@ SOURCES = {
     "ROS2_DEMOS_SOURCE": ("demo_nodes_py", "action_tutorials/action_tutorials_py"),
 }
 PATIENCE = 600.0
-# A program that goes on, what it says when it is ready, a program that meets it, and what that one says.
+# A first program, its output when it is ready, a second program, and the expected output of that one.
 PAIRS = (
     ("examples_rclpy_minimal_service service", None, "examples_rclpy_minimal_client client", "for 41 + 1 = 42"),
     ("examples_rclpy_minimal_service service", None, "examples_rclpy_minimal_client client_async", "for 41 + 1 = 42"),
@@ -51,13 +51,13 @@ pytestmark = [
     pytest.mark.nightly,
     pytest.mark.timeout(2 * PATIENCE),
     pytest.mark.skipif(
-        not all(os.environ.get(name) for name in SOURCES), reason=f"{' and '.join(SOURCES)} name no clones"
+        not all(os.environ.get(name) for name in SOURCES), reason=f"{' and '.join(SOURCES)} are not set"
     ),
 ]
 
 
 def ros(workspace: Path, command: str) -> list[str]:
-    """Return the call of a shell's command with ROS switched on and, where there is one, the workspace sourced."""
+    """Return the arguments that run a shell command with ROS, and with the workspace sourced if it is built."""
     source = "test ! -f install/setup.bash || source install/setup.bash;"
     return [sys.executable, "-m", "autograder", "ros", "bash", "-c", f"cd '{workspace}'; {source} exec {command}"]
 
@@ -93,9 +93,9 @@ def test_colcon_runs_the_tests_of_each_package(workspace: Path) -> None:
 
 
 @pytest.mark.promise("lets their servers and clients, publishers and subscribers communicate")
-@pytest.mark.parametrize(("first", "ready", "second", "said"), PAIRS)
+@pytest.mark.parametrize(("first", "ready", "second", "expected"), PAIRS)
 def test_two_public_programs_exchange_messages(
-    workspace: Path, ros_domain: int, first: str, ready: str | None, second: str, said: str
+    workspace: Path, ros_domain: int, first: str, ready: str | None, second: str, expected: str
 ) -> None:
     environment = {**os.environ, "ROS_DOMAIN_ID": str(ros_domain), "PYTHONUNBUFFERED": "1"}
     pipes: dict[str, object] = {
@@ -104,7 +104,7 @@ def test_two_public_programs_exchange_messages(
         "text": True,
         "env": environment,
     }
-    pipes["start_new_session"] = True  # Ctrl-C of a terminal reaches `ros2 run` and its program
+    pipes["start_new_session"] = True  # SIGINT reaches `ros2 run` and its program, as from a terminal
     with (
         subprocess.Popen(ros(workspace, f"ros2 run {first}"), **pipes) as server,  # type: ignore[call-overload]
         subprocess.Popen(ros(workspace, f"ros2 run {second}"), **pipes) as client,  # type: ignore[call-overload]
@@ -112,7 +112,7 @@ def test_two_public_programs_exchange_messages(
         try:
             if ready is not None:
                 assert any(ready in line for line in server.stdout)
-            assert any(said in line for line in client.stdout)
+            assert any(expected in line for line in client.stdout)
         finally:
             for process in (client, server):
                 with suppress(ProcessLookupError):

@@ -44,8 +44,8 @@ def test_the_release_contains_every_chapter_as_nbgrader_releases_it(release: Pat
 
 
 def test_the_release_contains_no_caches_or_build_folders(release: Path) -> None:
-    left = [path for name in ("__pycache__", ".mypy_cache", ".pytest_cache") for path in release.rglob(name)]
-    assert left == []
+    caches = [path for name in ("__pycache__", ".mypy_cache", ".pytest_cache") for path in release.rglob(name)]
+    assert caches == []
     names = ["src", "build", "__pycache__", ".mypy_cache", ".ruff_cache", ".devcontainer"]
     assert course_paths.NOT_COPIED(str(release), names) == {"build", "__pycache__", ".mypy_cache", ".ruff_cache"}
 
@@ -60,7 +60,7 @@ def test_each_make_target_that_the_release_names_is_in_its_makefile(release: Pat
 
 @pytest.mark.promise("It contains no hidden checks and no solutions.", "autograder release --out course")
 def test_the_release_contains_no_line_of_a_hidden_suite(release: Path) -> None:
-    shown = text_of(release)
+    released_text = text_of(release)
     hidden = {
         line.strip()
         for path in course_paths.CHECKS.glob("ch*/**/*")
@@ -69,30 +69,29 @@ def test_the_release_contains_no_line_of_a_hidden_suite(release: Path) -> None:
         if line.startswith(("def test_", "    expect(", "  - id: ")) and len(line.strip()) > 30
     }
     public = "".join(text_of(path) for path in course_paths.CHECKS.glob("ch*/*") if path.name in ("support", "visible"))
-    public += text_of(
-        course_paths.SOLUTIONS
-    )  # given tests are in the reference, and in a variant made from the notebook
+    # The reference contains the given tests, and so does a variant that is made from the notebook.
+    public += text_of(course_paths.SOLUTIONS)
     assert len(hidden) > 300
-    assert [line for line in sorted(hidden) if line in shown and line not in public] == []
+    assert [line for line in sorted(hidden) if line in released_text and line not in public] == []
     assert not (release / "solutions").exists()
-    kept = {path.name for path in (release / "autograder" / "checks").glob("ch*/*")}
-    assert kept == {"__init__.py", "conftest.py", "support", "visible"}
+    names = {path.name for path in (release / "autograder" / "checks").glob("ch*/*")}
+    assert names == {"__init__.py", "conftest.py", "support", "visible"}
 
 
 @pytest.mark.promise("autograder check 02_nodes` does the same", "`autograder check 02_nodes` runs the same checks")
 def test_check_of_the_release_runs_without_the_instructors_modules(release: Path) -> None:
-    """A copy of Python's environment is not needed for it: the code of the release comes first on the path."""
+    """The release needs no environment of its own, because its code comes first on the path."""
     check = [sys.executable, "-m", "autograder", "check", "00_welcome"]
     environment = {**os.environ, "PYTHONPATH": str(release)}
-    done = subprocess.run(
+    process = subprocess.run(
         check, cwd=release / "chapters" / "00_welcome", env=environment, text=True, capture_output=True
     )
-    assert done.returncode == 1, done.stderr
-    assert "square" in done.stdout or "hint 1" in done.stdout
-    listed = subprocess.run(
+    assert process.returncode == 1, process.stderr
+    assert "square" in process.stdout or "hint 1" in process.stdout
+    help_process = subprocess.run(
         [sys.executable, "-m", "autograder", "--help"], cwd=release, env=environment, text=True, capture_output=True
     )
-    assert re.findall(r"^  ([a-z]+)  ", listed.stdout, re.MULTILINE) == ["check", "doctor", "ros", "update"]
+    assert re.findall(r"^  ([a-z]+)  ", help_process.stdout, re.MULTILINE) == ["check", "doctor", "ros", "update"]
 
 
 @pytest.mark.promise(
@@ -104,37 +103,39 @@ def test_check_of_the_release_runs_without_the_instructors_modules(release: Path
     "A later release, of one chapter or all, updates the folders that students already have:",
 )
 def test_a_release_of_one_chapter_updates_a_release_of_all_chapters(release: Path, tmp_path: Path) -> None:
-    mine = shutil.copytree(release, tmp_path / "mine")
+    installed = shutil.copytree(release, tmp_path / "mine")
     later = tmp_path / "later"
     assert run("02_nodes", "--out", str(later), "--newest", str(later)).exit_code == 0
-    answer = mine / "chapters" / "02_nodes" / "ws" / "src" / "mine.py"
+    answer = installed / "chapters" / "02_nodes" / "ws" / "src" / "mine.py"
     answer.write_text("a student's")
-    gone = mine / "sim" / "world.py"
-    gone.write_text("spoilt")
+    changed = installed / "sim" / "world.py"
+    changed.write_text("changed")
     update = [sys.executable, "-m", "autograder", "update", str(later)]
-    environment = {**os.environ, "PYTHONPATH": str(mine)}
-    done = subprocess.run(update, cwd=mine, env=environment, text=True, capture_output=True)
-    assert done.returncode == 0, done.stderr
-    assert "files updated. This is now the release 20" in done.stdout
-    assert "You had changed sim/world.py: your version is now sim/world.py.yours." in done.stdout
+    environment = {**os.environ, "PYTHONPATH": str(installed)}
+    process = subprocess.run(update, cwd=installed, env=environment, text=True, capture_output=True)
+    assert process.returncode == 0, process.stderr
+    assert "files updated. This is now the release 20" in process.stdout
+    assert "You had changed sim/world.py: your version is now sim/world.py.yours." in process.stdout
     assert answer.read_text() == "a student's"
-    assert gone.read_bytes() == (later / "sim" / "world.py").read_bytes()
-    assert {path.name for path in (mine / "chapters").iterdir()} == {p.name for p in (release / "chapters").iterdir()}
+    assert changed.read_bytes() == (later / "sim" / "world.py").read_bytes()
+    assert {path.name for path in (installed / "chapters").iterdir()} == {
+        p.name for p in (release / "chapters").iterdir()
+    }
 
 
 def test_a_students_pytest_does_not_use_the_options_of_the_courses_tests(release: Path) -> None:
     """The students' lock has no pytest-timeout, and a warning in a student's test is not an error."""
     folder = release / "chapters" / "06_testing" / "ws"
     test = folder / "test_warns.py"
-    test.write_text("import warnings\n\n\ndef test_warns():\n    warnings.warn('an old way', DeprecationWarning)\n")
-    pytest_here = [sys.executable, "-m", "pytest", "-p", "no:timeout", "-p", "no:cacheprovider", test.name]
-    done = subprocess.run(pytest_here, cwd=folder, text=True, capture_output=True)
+    test.write_text("import warnings\n\n\ndef test_warns():\n    warnings.warn('deprecated', DeprecationWarning)\n")
+    command = [sys.executable, "-m", "pytest", "-p", "no:timeout", "-p", "no:cacheprovider", test.name]
+    process = subprocess.run(command, cwd=folder, text=True, capture_output=True)
     test.unlink()
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "1 passed, 1 warning" in done.stdout
+    assert process.returncode == 0, process.stdout + process.stderr
+    assert "1 passed, 1 warning" in process.stdout
 
 
-def test_a_folder_that_exists_is_not_written_to(tmp_path: Path) -> None:
+def test_an_existing_folder_is_not_written_to(tmp_path: Path) -> None:
     result = run("--out", str(tmp_path))
     assert "already exists: choose a new folder" in str(result.exception)
     assert list(tmp_path.iterdir()) == []

@@ -1,6 +1,6 @@
-"""The `ros2` command with signals, measurements and two commands at once, which the records do not show.
+"""Tests of `ros2` with signals, measurements and simultaneous commands.
 
-What each verb prints is in `tests/e2e/ros2_records`.
+The output of each verb is recorded in `tests/e2e/ros2_records`.
 """
 
 from __future__ import annotations
@@ -19,13 +19,12 @@ from tests.e2e.ros2_records.runner import is_stand_in
 
 NODES = Path(__file__).parent / "ros2_records" / "sample_nodes.py"
 ROS2 = [sys.executable, "-m", "autograder.ros.ros2"]
-# Far above what a loaded machine needs: a command that hangs must end the test.
-PATIENCE = 120.0
-# For verbs that wait for something that exists.
+PATIENCE = 120.0  # seconds: more than a loaded machine needs, so that only a command that hangs fails the test
+# Gives discovery enough time on a loaded machine.
 WAIT = ("--spin-time", "60")
 
-# The real one has other options, and writes what it is given into setup.py as it is; its records are in ros2_records.
-pytestmark = pytest.mark.skipif(not is_stand_in(), reason="it is about the stand-in for ros2, and the real one is here")
+# The real ros2 has other options; its output is recorded in ros2_records.
+pytestmark = pytest.mark.skipif(not is_stand_in(), reason="tests the stand-in for ros2, but the real one is installed")
 
 
 @pytest.fixture(autouse=True)
@@ -43,18 +42,18 @@ def nodes(ros_domain: int) -> Iterator[None]:
     assert process.returncode == 0
 
 
-def start(*words: str) -> subprocess.Popen[str]:
-    return subprocess.Popen([*ROS2, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+def start(*arguments: str) -> subprocess.Popen[str]:
+    return subprocess.Popen([*ROS2, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def until(*words: str, seen: Callable[[str], bool], number: int = signal.SIGINT) -> tuple[int, str]:
-    """Run a command until a line of its output is `seen`, then signal it; return its exit code and all it printed."""
-    with start(*words) as process:
+def signal_at_line(*arguments: str, matches: Callable[[str], bool], number: int = signal.SIGINT) -> tuple[int, str]:
+    """Run a command and signal it at the first line that `matches`; return its exit code and its output."""
+    with start(*arguments) as process:
         assert process.stdout is not None
         lines = []
         for line in process.stdout:
             lines.append(line)
-            if seen(line):
+            if matches(line):
                 process.send_signal(number)
                 break
         try:
@@ -64,10 +63,10 @@ def until(*words: str, seen: Callable[[str], bool], number: int = signal.SIGINT)
     return process.returncode, "".join(lines) + rest
 
 
-def test_topic_echo_ends_on_sigterm_and_filters() -> None:
+def test_topic_echo_filters_messages_and_ends_on_sigterm() -> None:
     expression = "int(m.data.split()[1]) % 7 == 0"
-    words = ("topic", "echo", "/chatter", *WAIT, "--filter", expression)
-    code, printed = until(*words, seen=lambda line: line == "---\n", number=signal.SIGTERM)
+    arguments = ("topic", "echo", "/chatter", *WAIT, "--filter", expression)
+    code, printed = signal_at_line(*arguments, matches=lambda line: line == "---\n", number=signal.SIGTERM)
     assert code == 15
     number = re.match(r"data: hello (\d+)\n---\n", printed)
     assert number is not None
@@ -75,37 +74,36 @@ def test_topic_echo_ends_on_sigterm_and_filters() -> None:
 
 
 def test_topic_pub_once_waits_for_the_listener() -> None:
-    # The publisher may see the listener before the listener sees it; a reliable message is then sent again, as long as
-    # the publisher lives.
+    # The publisher may discover the listener first. It then sends a reliable message again, for as long as it lives.
     reliable = ("--qos-reliability", "reliable")
-    with start("topic", "echo", "--once", *reliable, "/told", "geometry_msgs/msg/TwistStamped") as listener:
+    with start("topic", "echo", "--once", *reliable, "/commands", "geometry_msgs/msg/TwistStamped") as listener:
         values = "{header: {stamp: now, frame_id: base}, twist: {linear: {x: 0.5}}}"
-        pub = ("topic", "pub", "--once", "--keep-alive", "10", "/told", "geometry_msgs/msg/TwistStamped", values)
-        with start(*pub) as told:
-            told.communicate(timeout=PATIENCE)
-        heard, _ = listener.communicate(timeout=PATIENCE)
-    assert told.returncode == 0
-    message = yaml.safe_load(heard.removesuffix("---\n"))
+        pub = ("topic", "pub", "--once", "--keep-alive", "10", "/commands", "geometry_msgs/msg/TwistStamped", values)
+        with start(*pub) as publisher:
+            publisher.communicate(timeout=PATIENCE)
+        output, _ = listener.communicate(timeout=PATIENCE)
+    assert publisher.returncode == 0
+    message = yaml.safe_load(output.removesuffix("---\n"))
     assert message["twist"]["linear"] == {"x": 0.5, "y": 0.0, "z": 0.0}
     assert message["header"]["frame_id"] == "base"
     assert message["header"]["stamp"]["sec"] > 0
 
 
 def test_topic_hz_measures_the_talker() -> None:
-    _, printed = until("topic", "hz", "/chatter", seen=lambda line: "std dev" in line)
-    found = re.search(r"average rate: ([\d.]+)\n\tmin: [\d.]+s max: [\d.]+s std dev: [\d.]+s window: (\d+)\n", printed)
-    assert found is not None
+    _, printed = signal_at_line("topic", "hz", "/chatter", matches=lambda line: "std dev" in line)
+    match = re.search(r"average rate: ([\d.]+)\n\tmin: [\d.]+s max: [\d.]+s std dev: [\d.]+s window: (\d+)\n", printed)
+    assert match is not None
     # 20 Hz; a loaded machine may make it slower, never much faster.
-    assert 1 < float(found[1]) < 30
-    assert int(found[2]) > 1
+    assert 1 < float(match[1]) < 30
+    assert int(match[2]) > 1
 
 
-def test_doctor_passes_here_and_reports() -> None:
-    together = [
-        start(*words.split(), "--spin-time", "8") for words in ("doctor", "wtf --include-warnings", "doctor -r")
+def test_doctor_passes_and_prints_a_report() -> None:
+    processes = [
+        start(*arguments.split(), "--spin-time", "8") for arguments in ("doctor", "wtf --include-warnings", "doctor -r")
     ]
-    (healthy, warned), (strict, _), (report, _) = (process.communicate(timeout=PATIENCE) for process in together)
-    assert [process.returncode for process in together] == [0, 1, 0]
+    (healthy, warned), (strict, _), (report, _) = (process.communicate(timeout=PATIENCE) for process in processes)
+    assert [process.returncode for process in processes] == [0, 1, 0]
     assert healthy.endswith("\nAll 6 checks passed\n\n")
     assert ": UserWarning: Publisher without subscriber detected on /chatter.\n" in warned
     assert "Failed modules:" in strict

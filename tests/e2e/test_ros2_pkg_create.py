@@ -1,4 +1,4 @@
-"""Packages of `ros2 pkg create` are built, tested, linted, run and launched, as a user would do it."""
+"""Packages created by `ros2 pkg create` build, pass their tests and linters, run and launch."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from tests.e2e.ros2_records.runner import is_stand_in
 DESCRIPTION = 'Says "hello" & it\'s <polite>'
 
 ROS2 = [sys.executable, "-m", "autograder.ros.ros2"]
-PATIENCE = 120.0
+PATIENCE = 120.0  # seconds: a deadline, not an expectation
 
-# The real one has other options, and writes what it is given into setup.py as it is; its records are in ros2_records.
-pytestmark = pytest.mark.skipif(not is_stand_in(), reason="it is about the stand-in for ros2, and the real one is here")
+# The real ros2 has other options and does not quote texts in setup.py; its output is recorded in ros2_records.
+pytestmark = pytest.mark.skipif(not is_stand_in(), reason="tests the stand-in for ros2, but the real one is installed")
 
 LAUNCH = """from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, LogInfo
@@ -36,7 +36,7 @@ def generate_launch_description():
         Node(package='py_pkg', executable='hello', output='screen'),
     ])
 """
-# Ends only on request, with its own exit code.
+# Ends only on SIGINT, with exit code 7.
 STUBBORN = """import signal
 import sys
 import threading
@@ -63,11 +63,11 @@ class Workspace:
             command, cwd=cwd or self.folder, env=self.env, capture_output=True, text=True, timeout=2 * PATIENCE
         )
 
-    def ros2(self, *words: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-        return self.run(*ROS2, *words, cwd=cwd)
+    def ros2(self, *arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+        return self.run(*ROS2, *arguments, cwd=cwd)
 
-    def colcon(self, *words: str) -> subprocess.CompletedProcess[str]:
-        return self.run(sys.executable, "-m", "colcon", *words)
+    def colcon(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        return self.run(sys.executable, "-m", "colcon", *arguments)
 
 
 @pytest.fixture(scope="module")
@@ -81,12 +81,12 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Workspace:
     env["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{env['PATH']}"
     env["PYTHONPATH"] = str(install / f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages")
     env["LD_LIBRARY_PATH"] = os.pathsep.join([str(install / "lib"), env.get("LD_LIBRARY_PATH", "")])
-    space = Workspace(folder, env)
-    who = ("--license", "Apache-2.0", "--maintainer-name", "Ada O'Neil", "--maintainer-email", "ada@example.com")
+    created = Workspace(folder, env)
+    maintainer = ("--license", "Apache-2.0", "--maintainer-name", "Ada O'Neil", "--maintainer-email", "ada@example.com")
     python = ("--build-type", "ament_python", "--node-name", "hello", "--dependencies", "rclpy", "std_msgs")
-    about = ("--description", DESCRIPTION)
-    assert space.ros2("pkg", "create", "py_pkg", *who, *python, *about, cwd=source).returncode == 0
-    assert space.ros2("pkg", "create", "cmake_pkg", *who, cwd=source).returncode == 0
+    description = ("--description", DESCRIPTION)
+    assert created.ros2("pkg", "create", "py_pkg", *maintainer, *python, *description, cwd=source).returncode == 0
+    assert created.ros2("pkg", "create", "cmake_pkg", *maintainer, cwd=source).returncode == 0
     package = source / "py_pkg"
     (package / "launch").mkdir()
     (package / "launch" / "hello.launch.py").write_text(LAUNCH)
@@ -95,9 +95,9 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Workspace:
     setup = setup.replace("['package.xml']),", "['package.xml', 'launch/hello.launch.py']),")
     setup = setup.replace("hello:main',", "hello:main',\n            'stubborn = py_pkg.stubborn:main',")
     (package / "setup.py").write_text(setup)
-    built = space.colcon("build", "--merge-install")
+    built = created.colcon("build", "--merge-install")
     assert built.returncode == 0, built.stdout + built.stderr
-    return space
+    return created
 
 
 def test_created_packages_pass_colcon_test_and_the_linters(workspace: Workspace) -> None:
@@ -105,11 +105,11 @@ def test_created_packages_pass_colcon_test_and_the_linters(workspace: Workspace)
     assert tested.returncode == 0, tested.stdout + tested.stderr
     result = workspace.colcon("test-result", "--all", "--verbose")
     assert result.returncode == 0, result.stdout
-    # flake8 and pep257 really ran; the copyright check waits for headers to be written.
+    # flake8 and pep257 ran; the copyright check is skipped until the files have headers.
     assert "Summary: 3 tests, 0 errors, 0 failures, 1 skipped" in result.stdout
 
 
-def test_the_copyright_check_passes_once_its_mark_is_gone_and_headers_are_there(workspace: Workspace) -> None:
+def test_the_copyright_check_passes_once_all_files_have_headers(workspace: Workspace) -> None:
     package = workspace.folder / "src" / "py_pkg"
     header = "# Copyright 2026 Ada O'Neil\n# SPDX-License-Identifier: Apache-2.0\n\n"
     command = (sys.executable, "-m", "ament_copyright", str(package))
@@ -142,16 +142,16 @@ def test_ros2_run_starts_an_executable(workspace: Workspace) -> None:
 
 @pytest.mark.promise("| `Package 'my_robot_package' not found` in a terminal |")
 @pytest.mark.parametrize(
-    ("words", "error"),
+    ("arguments", "error"),
     [
         (("nothing", "hello"), "Package 'nothing' not found\n"),
         (("py_pkg", "nothing"), "No executable found\n"),
     ],
 )
 def test_ros2_run_names_a_missing_package_or_executable(
-    workspace: Workspace, words: tuple[str, str], error: str
+    workspace: Workspace, arguments: tuple[str, str], error: str
 ) -> None:
-    answer = workspace.ros2("run", *words)
+    answer = workspace.ros2("run", *arguments)
     assert (answer.returncode, answer.stderr) == (1, error)
 
 
@@ -162,7 +162,7 @@ def test_ros2_run_passes_on_arguments_signals_and_the_exit_code(workspace: Works
     ) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "arguments --ros-args -p speed:=1.0\n"
-        # As a terminal does it: the whole group hears Ctrl-C, and the executable decides.
+        # Like Ctrl-C in a terminal: the whole process group gets the signal, and the executable decides when to end.
         os.killpg(process.pid, signal.SIGINT)
         out, _ = process.communicate(timeout=PATIENCE)
     assert process.returncode == 7
@@ -175,7 +175,7 @@ def test_terminating_ros2_run_ends_its_executable(workspace: Workspace) -> None:
         assert process.stdout is not None
         assert process.stdout.readline() == "arguments\n"
         process.terminate()
-        # The pipe ends only when the executable, which holds it too, is gone.
+        # The pipe closes only after the executable, which also holds it, has ended.
         out, _ = process.communicate(timeout=PATIENCE)
     assert out == "[ros2run]: Terminated\n"
 
@@ -199,7 +199,7 @@ def test_ending_ros2_launch_ends_its_nodes(workspace: Workspace, tmp_path: Path,
         assert process.stdout is not None
         assert any("arguments" in line for line in process.stdout)
         process.send_signal(number)
-        # The pipe ends only when the node, which holds it too, is gone.
+        # The pipe closes only after the node, which also holds it, has ended.
         rest, _ = process.communicate(timeout=PATIENCE)
     assert "process has died" in rest
     assert "exit code 7" in rest
@@ -207,8 +207,8 @@ def test_ending_ros2_launch_ends_its_nodes(workspace: Workspace, tmp_path: Path,
 
 def test_ros2_launch_shows_arguments_and_the_description(workspace: Workspace) -> None:
     path = workspace.folder / "src/py_pkg/launch/hello.launch.py"
-    shown = workspace.ros2("launch", str(path), "--show-args")
-    assert shown.stdout == (
+    listed = workspace.ros2("launch", str(path), "--show-args")
+    assert listed.stdout == (
         "Arguments (pass arguments as '<name>:=<value>'):\n\n"
         "    'who':\n        Whom to greet\n        (default: 'world')\n"
     )
@@ -219,7 +219,7 @@ def test_ros2_launch_shows_arguments_and_the_description(workspace: Workspace) -
 
 
 @pytest.mark.parametrize(
-    ("words", "error"),
+    ("arguments", "error"),
     [
         (("nothing", "x.launch.py"), "Package 'nothing' not found"),
         (("py_pkg", "x.launch.py"), "file 'x.launch.py' was not found in the share directory of package 'py_pkg'"),
@@ -231,7 +231,7 @@ def test_ros2_launch_shows_arguments_and_the_description(workspace: Workspace) -
         (("./gone.launch.py",), "File './gone.launch.py' not found"),
     ],
 )
-def test_ros2_launch_reports_errors(workspace: Workspace, words: tuple[str, ...], error: str) -> None:
-    answer = workspace.ros2("launch", *words)
+def test_ros2_launch_reports_errors(workspace: Workspace, arguments: tuple[str, ...], error: str) -> None:
+    answer = workspace.ros2("launch", *arguments)
     assert answer.returncode == 1
     assert answer.stderr.startswith(error)

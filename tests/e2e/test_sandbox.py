@@ -1,4 +1,4 @@
-"""Code in a real sandbox, started or forked: what it can see, reach and leave behind."""
+"""What code in a sandbox can see, reach and leave behind, whether it is started or forked."""
 
 from __future__ import annotations
 
@@ -28,27 +28,26 @@ from autograder.run.fork_server import seccomp
 from autograder.run.sandbox import ExitReason, Isolation, Limits, Mount, Process, Sandbox, cgroup, procfs
 from autograder.run.sandbox.launcher import launch, warm_up
 from autograder.run.sandbox.limits import GIB, MIB
-from tests.e2e.sandbox_support import ROOT, in_worker_sandbox, is_forked, started_in_cell
+from tests.e2e.sandbox_support import ROOT, in_worker_sandbox, is_forked, started_in_worker_sandbox
 
 SMALL = {"wall_seconds": 60.0, "threads": 40, "memory": 200 * MIB, "output": 50_000, "scratch": 4 * MIB}
 
 
-WAY = "AUTOGRADER_TEST_WAY"
-WAYS = ("started", "forked")
+START_METHOD_VARIABLE = "AUTOGRADER_TEST_START_METHOD"
 
 
-@pytest.fixture(params=WAYS, autouse=True)
-def way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    """How a program comes into its sandbox. Code in a worker sandbox reads it from the environment."""
+@pytest.fixture(params=("started", "forked"), autouse=True)
+def start_method(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """How programs get into their sandbox. Code in a worker sandbox reads it from the environment."""
     if request.param == "forked":
         request.getfixturevalue("forks")
-    monkeypatch.setenv(WAY, request.param)
+    monkeypatch.setenv(START_METHOD_VARIABLE, request.param)
     return str(request.param)
 
 
 def run(code: str, spec: Sandbox) -> Process:
-    """Run code as a program in a sandbox, in the way that this test is about."""
-    if os.environ[WAY] == "started":
+    """Run code in a sandbox, by the start method of the current test."""
+    if os.environ[START_METHOD_VARIABLE] == "started":
         return launch([sys.executable, "-I", "-c", code], spec)
     program = spec.workdir / ".program.py"
     program.write_text(code)
@@ -57,65 +56,67 @@ def run(code: str, spec: Sandbox) -> Process:
     return process
 
 
-def inside(scratch: Path, code: str, limits: dict[str, Any], network: bool = False) -> dict[str, Any]:
-    """Run code in a sandbox whose workdir is a writable home; say how it ended, and what is left of it."""
+def run_to_its_end(scratch: Path, code: str, limits: dict[str, Any], network: bool = False) -> dict[str, Any]:
+    """Run code in a sandbox with a writable home; return how it ended, its output and the processes that it left."""
     home = scratch / "home"
     home.mkdir()
     spec = Sandbox(home, mounts=(Mount(home, writable=True),), network=network, limits=Limits(**limits))
-    if os.environ[WAY] == "forked":
+    if os.environ[START_METHOD_VARIABLE] == "forked":
         warm_up("lockstep")
     before = security.processes()
     with run(code, spec) as process:
         process.wait(limits["wall_seconds"] + 60)
         exit_reason = process.exit_reason
     deadline = time.monotonic() + 30
-    while (left := security.processes() - before) and time.monotonic() < deadline:
+    while (remaining := security.processes() - before) and time.monotonic() < deadline:
         threading.Event().wait(0.05)
     assert exit_reason is not None
     return {
         "exit_reason": exit_reason.value,
         "status": process.returncode,
         "output": process.output,
-        "left": sorted(left),
+        "remaining": sorted(remaining),
     }
 
 
 def _run(code: str, *, network: bool = False, **limits: Any) -> dict[str, Any]:
-    answer: dict[str, Any] = in_worker_sandbox(inside, code, {**SMALL, **limits}, network)
-    assert answer["left"] == []
+    answer: dict[str, Any] = in_worker_sandbox(run_to_its_end, code, {**SMALL, **limits}, network)
+    assert answer["remaining"] == []
     return answer
 
 
-def tries(scratch: Path, name: str, port: int) -> str:
-    """Try one way to escape from a sandbox in this worker sandbox, and return what it reached."""
+def attempt_escape(scratch: Path, name: str, port: int) -> str:
+    """Attempt an escape from a sandbox in this worker sandbox; return what it reached."""
     os.environ["CANARY"] = CANARY
-    profile = "lockstep" if os.environ[WAY] == "forked" else None
+    profile = "lockstep" if os.environ[START_METHOD_VARIABLE] == "forked" else None
     if profile:
         warm_up(profile)
     return security.attempt(next(escape for escape in ESCAPES if escape.id == name), scratch, port, profile)
 
 
-def _out(*names: str) -> list[str]:
+def _reached(*names: str) -> list[str]:
     with socket.create_server(("127.0.0.1", 0)) as server:
-        return [out for name in names if (out := in_worker_sandbox(tries, name, server.getsockname()[1]))]
+        return [
+            result for name in names if (result := in_worker_sandbox(attempt_escape, name, server.getsockname()[1]))
+        ]
 
 
 @pytest.mark.promise("sandbox that has no network and cannot see the checks")
 def test_no_file_process_or_memory_of_the_grader_can_be_read() -> None:
-    assert _out("files", "processes", "memory") == []
+    assert _reached("files", "processes", "memory") == []
 
 
 def test_the_system_is_read_only_and_what_is_writable_is_limited() -> None:
-    assert _out("writing", "settings", "disk") == []
+    assert _reached("writing", "settings", "disk") == []
 
 
 def test_a_sandbox_cannot_exhaust_the_kernel_s_limits_per_user() -> None:
-    assert _out("inotify", "descriptors") == []
+    assert _reached("inotify", "descriptors") == []
 
 
-def passes_while_it_is_filled(scratch: Path) -> bool:
-    """Let sandboxed programs have as many descriptors on their way as they can; say whether one can be passed here."""
-    resource.setrlimit(resource.RLIMIT_NOFILE, (1024, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))  # as most have
+def can_pass_a_descriptor_under_load(scratch: Path) -> bool:
+    """Let a sandboxed program keep its maximum of descriptors in flight; return whether this process can pass one."""
+    resource.setrlimit(resource.RLIMIT_NOFILE, (1024, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))  # the usual limit
     code = "import signal\n" + next(escape.code for escape in ESCAPES if escape.id == "descriptors")
     spec = Sandbox(scratch, mounts=(Mount(scratch, writable=True),))
     with run(f"{code}\nprint('full', flush=True)\n{ENDLESS}", spec) as process:
@@ -126,8 +127,8 @@ def passes_while_it_is_filled(scratch: Path) -> bool:
             return socket.recv_fds(far, 1, 1)[0] == b"x"
 
 
-def test_a_worker_can_pass_descriptors_while_a_program_has_all_it_can_on_their_way() -> None:
-    assert in_worker_sandbox(passes_while_it_is_filled)
+def test_a_worker_can_pass_descriptors_while_a_program_keeps_its_maximum_in_flight() -> None:
+    assert in_worker_sandbox(can_pass_a_descriptor_under_load)
 
 
 def test_a_large_file_is_cut_off() -> None:
@@ -140,24 +141,24 @@ def test_a_large_file_is_cut_off() -> None:
     "sandbox that has no network and cannot see the checks",
     "Students' code cannot read it: the sandbox has neither the network nor that folder.",
 )
-def test_there_is_no_way_out_to_any_network() -> None:
-    assert _out("network", "loopback") == []
+def test_a_program_without_a_network_reaches_nothing() -> None:
+    assert _reached("network", "loopback") == []
 
 
-def meets(scratch: Path, code: str) -> dict[str, bool]:
-    """Listen on the loopback, and let sandboxed code with and without a network try to connect."""
+def connect_to_loopback(scratch: Path, code: str) -> dict[str, bool]:
+    """Listen on the loopback address; return whether sandboxed code can connect with and without a network."""
     answers = {}
     for network in (True, False):
         (scratch / str(network)).mkdir()
         with socket.create_server(("127.0.0.1", 0)) as server:
             ready = code.replace("PORT", str(server.getsockname()[1]))
-            answers[str(network)] = "REACHED" in inside(scratch / str(network), ready, SMALL, network)["output"]
+            answers[str(network)] = "REACHED" in run_to_its_end(scratch / str(network), ready, SMALL, network)["output"]
     return answers
 
 
 def test_a_node_reaches_the_worker_sandbox_s_loopback_and_a_build_does_not() -> None:
     code = "import socket\nsocket.create_connection(('127.0.0.1', PORT), timeout=5)\nprint('REACHED')"
-    assert in_worker_sandbox(meets, code) == {"True": True, "False": False}
+    assert in_worker_sandbox(connect_to_loopback, code) == {"True": True, "False": False}
 
 
 BOUNDED = pytest.mark.skipif(
@@ -168,28 +169,28 @@ MARKS = {
     "fork bomb": BOUNDED,
     "socket buffers": pytest.mark.skipif("memory" not in cgroup.bounds(), reason="no control group counts memory here"),
 }
-WILD = ("unmapped memory", *(e.id for e in ESCAPES if e.exit_reasons != (ExitReason.EXITED,)), "daemon")
+UNBOUNDED = ("unmapped memory", *(e.id for e in ESCAPES if e.exit_reasons != (ExitReason.EXITED,)), "daemon")
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=MARKS.get(name, ())) for name in WILD])
+@pytest.mark.parametrize("name", [pytest.param(name, marks=MARKS.get(name, ())) for name in UNBOUNDED])
 def test_each_program_that_exceeds_a_limit_is_ended_and_leaves_nothing(name: str) -> None:
-    assert _out(name) == []
+    assert _reached(name) == []
 
 
 def test_neither_the_grader_nor_anything_outside_can_be_signalled_or_traced() -> None:
-    assert _out("signals", "memory") == []
+    assert _reached("signals", "memory") == []
 
 
 @pytest.mark.promise("With `--isolation process` it has both", "students' code could then read the checks")
-@pytest.mark.parametrize("way", ["started"], indirect=True)
+@pytest.mark.parametrize("start_method", ["started"], indirect=True)
 @pytest.mark.parametrize("name", ["files", "processes", "network", "unmapped memory"])
 def test_without_a_sandbox_the_same_programs_escape(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CANARY", CANARY)
     code = next(escape.program for escape in ESCAPES if escape.id == name)
     with socket.create_server(("127.0.0.1", 0)) as server:
-        head = f"PORT, OUTSIDE = {server.getsockname()[1]}, {os.getpid()}\n"
-        done = subprocess.run([sys.executable, "-c", head + code], capture_output=True, text=True, check=True)
-    assert done.stdout.startswith("OUT")
+        constants = f"PORT, OUTSIDE = {server.getsockname()[1]}, {os.getpid()}\n"
+        process = subprocess.run([sys.executable, "-c", constants + code], capture_output=True, text=True, check=True)
+    assert process.stdout.startswith("OUT")
 
 
 def test_system_calls_that_no_node_needs_fail_and_those_that_programs_need_work() -> None:
@@ -205,24 +206,24 @@ thread = threading.Thread(target=print, args=("a thread",))
 thread.start(); thread.join()
 print(subprocess.run([sys.executable, "-Ic", "print('a program')"], capture_output=True, text=True).stdout.strip())
 """
-    wanted = ["[]", "True True", str(set(map(int, seccomp.FAMILIES))), "a thread", "a program"]
-    assert _out("calls") == []
-    assert _run(code)["output"].splitlines() == wanted
+    expected = ["[]", "True True", str(set(map(int, seccomp.FAMILIES))), "a thread", "a program"]
+    assert _reached("calls") == []
+    assert _run(code)["output"].splitlines() == expected
 
 
-def unmade(scratch: Path) -> list[str]:
-    """Start programs in sandboxes that cannot be made, as when a system's update replaces what they show; say why."""
-    said = []
+def start_with_missing_mounts(scratch: Path) -> list[str]:
+    """Start programs in sandboxes whose mounts are missing, as after a system's update; return the errors."""
+    errors = []
     for name in ("gone", "beside"):
         spec = Sandbox(scratch, mounts=(Mount(scratch, writable=True), Mount(scratch / name)))
         with launch([sys.executable, "-c", "pass"], spec) as process, pytest.raises(GraderError) as raised:
             process.wait(10)
-        said.append(str(raised.value))
-    return said
+        errors.append(str(raised.value))
+    return errors
 
 
-def pretends(scratch: Path) -> list[Any]:
-    """Run a program that ends as bubblewrap does that cannot make a sandbox; return its end and its descriptors."""
+def imitate_bubblewrap(scratch: Path) -> list[Any]:
+    """Run a program that ends as bubblewrap does if it cannot make a sandbox; return its status and output."""
     code = "import os, sys; print('bwrap: No such file:', os.listdir('/proc/self/fd')); sys.exit(1)"
     with run(code, Sandbox(scratch, mounts=(Mount(scratch, writable=True),))) as process:
         process.wait(10)
@@ -230,18 +231,18 @@ def pretends(scratch: Path) -> list[Any]:
 
 
 def test_a_sandbox_that_cannot_be_created_is_not_a_failure_of_the_program() -> None:
-    for said in in_worker_sandbox(unmade):
-        assert re.match("The sandbox could not be made: bwrap: Can't find source path /.*: No such file", said), said
+    for error in in_worker_sandbox(start_with_missing_mounts):
+        assert re.match("The sandbox could not be made: bwrap: Can't find source path /.*: No such file", error), error
 
 
 def test_a_program_cannot_pretend_that_its_sandbox_was_not_made() -> None:
-    status, said = in_worker_sandbox(pretends)
-    descriptors = set(ast.literal_eval(said.partition("file: ")[2].strip()))
-    assert (status, descriptors - {"0", "1", "2", "3"}) == (1, set()), said  # 3 is the folder that is listed
+    status, output = in_worker_sandbox(imitate_bubblewrap)
+    descriptors = set(ast.literal_eval(output.partition("file: ")[2].strip()))
+    assert (status, descriptors - {"0", "1", "2", "3"}) == (1, set()), output  # 3 is the folder that it lists
 
 
-def signalled(scratch: Path, code: str) -> list[Any]:
-    """Send SIGTERM to a sandboxed program that is up; say its status and whether its handler ran."""
+def signal_program(scratch: Path, code: str) -> list[Any]:
+    """Send SIGTERM to a sandboxed program; return whether it ended, its status and its output."""
     home = scratch / "home"
     home.mkdir()
     with run(code, Sandbox(home, mounts=(Mount(home, writable=True),))) as process:
@@ -264,61 +265,61 @@ def end(*_):
     os.write(1, b"handled\\n")
     sys.exit(7)
 signal.signal(signal.SIGTERM, end)
-os.write(1, b"up\\n")  # not print, which writes the end of the line apart: the signal could come in between
+os.write(1, b"up\\n")  # print would write the line's end separately: the signal could come in between
 while True: signal.pause()
 """
-    assert in_worker_sandbox(signalled, code) == [True, 7, "up\nhandled\n"]
+    assert in_worker_sandbox(signal_program, code) == [True, 7, "up\nhandled\n"]
 
 
-def waits(scratch: Path) -> list[str]:
-    """Start a sandboxed program, and wait until this process is ended."""
+def run_endless_program(scratch: Path) -> list[str]:
+    """Start a sandboxed program, and wait until this process is killed."""
     spec = Sandbox(scratch, mounts=(Mount(scratch, writable=True),))
     process = run("print('up', flush=True)\n" + ENDLESS, spec)
     _until(lambda: "up" in process.output)
-    print("it runs", flush=True)
+    print("running", flush=True)
     signal.pause()
     return []
 
 
-def group_of(scratch: Path) -> str:
-    """Return the control groups of a sandboxed program, as the machine names them."""
+def control_groups(scratch: Path) -> str:
+    """Return the control groups of a sandboxed program, with the names that they have outside."""
     spec = Sandbox(scratch, mounts=(Mount(scratch, writable=True),))
     with run("print('up', flush=True)\n" + ENDLESS, spec) as process:
         _until(lambda: "up" in process.output)
         return Path(f"/proc/{process.innermost()}/cgroup").read_text()
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="prlimit bounds everybody but root")
+@pytest.mark.skipif(os.geteuid() != 0, reason="prlimit limits every user except root")
 @BOUNDED
 def test_the_processes_of_root_s_sandbox_are_counted_by_the_kernel() -> None:
-    assert "/autograder-" in in_worker_sandbox(group_of)
+    assert "/autograder-" in in_worker_sandbox(control_groups)
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root has control groups of its own")
 @BOUNDED
-@pytest.mark.parametrize("way", ["started"], indirect=True)  # the weak isolation level knows no other
+@pytest.mark.parametrize("start_method", ["started"], indirect=True)  # the weak isolation level has no other
 def test_the_weak_isolation_level_ends_a_fork_bomb_of_root() -> None:
     code = "import os\nwhile True:\n    try: os.fork()\n    except OSError: pass"
     before = _bombs(code)
-    answer = in_worker_sandbox(inside, code, {**SMALL, "memory": 4 * GIB}, True, isolation=Isolation.PROCESS)
+    answer = in_worker_sandbox(run_to_its_end, code, {**SMALL, "memory": 4 * GIB}, True, isolation=Isolation.PROCESS)
     assert answer["exit_reason"] == ExitReason.THREADS.value
     assert _bombs(code) <= before
 
 
 def _bombs(code: str) -> set[int]:
-    found = set()
+    pids = set()
     for pid in filter(str.isdigit, os.listdir("/proc")):
         try:
             if code.encode() in Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0"):
-                found.add(int(pid))
+                pids.add(int(pid))
         except OSError:
             continue
-    return found
+    return pids
 
 
 def test_when_a_worker_is_killed_its_sandboxes_die_with_it() -> None:
-    with started_in_cell(waits) as process:
-        _until(lambda: "it runs" in process.output)
+    with started_in_worker_sandbox(run_endless_program) as process:
+        _until(lambda: "running" in process.output)
         tree = procfs.measure(process.pid).pids
         worker = next(pid for pid in tree if procfs.name(pid).startswith("python"))
         below = set(procfs.measure(worker).pids)
@@ -327,24 +328,26 @@ def test_when_a_worker_is_killed_its_sandboxes_die_with_it() -> None:
         _until(lambda: not any(Path(f"/proc/{pid}/exe").exists() for pid in below))
 
 
-ORDINARY = 4711  # a user of no name
+ORDINARY = 4711  # a user id without a name
 
 
-@pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can be somebody else")
-@pytest.mark.parametrize("way", ["started"], indirect=True)  # the doctor tries both
+@pytest.mark.skipif(
+    os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can run a command as another user"
+)
+@pytest.mark.parametrize("start_method", ["started"], indirect=True)  # the doctor tries both
 def test_sandboxes_of_an_ordinary_user_block_the_same_escapes_as_those_of_root() -> None:
-    """The exception is what only a control group limits, if an ordinary user can make none."""
+    """The exception is an escape that only a control group blocks, if an ordinary user cannot make one."""
     if not all(path.stat().st_mode & 1 for path in (Path(__file__), *Path(__file__).parents) if path.is_dir()):
         pytest.skip("an ordinary user cannot read this folder")
     home = Path(tempfile.mkdtemp(dir="/tmp"))
     os.chown(home, ORDINARY, ORDINARY)
     user = ["setpriv", f"--reuid={ORDINARY}", f"--regid={ORDINARY}", "--clear-groups", "--no-new-privs", "env"]
-    command = [sys.executable, "-m", "autograder", "doctor", "--security", "--json", str(home / "found.json")]
+    command = [sys.executable, "-m", "autograder", "doctor", "--security", "--json", str(home / "escapes.json")]
     try:
         subprocess.run([*user, f"HOME={home}", f"TMPDIR={home}", *command], cwd=ROOT, capture_output=True, check=False)
-        found = {row["name"]: row["status"] for row in json.loads((home / "found.json").read_text())}
+        statuses = {row["name"]: row["status"] for row in json.loads((home / "escapes.json").read_text())}
         assert list(home.glob("autograder-worker-*")) == []
     finally:
         shutil.rmtree(home)
-    assert {*found} == {escape.id for escape in ESCAPES}
-    assert {name for name, status in found.items() if status != "ok"} <= {"socket buffers"}
+    assert {*statuses} == {escape.id for escape in ESCAPES}
+    assert {name for name, status in statuses.items() if status != "ok"} <= {"socket buffers"}

@@ -1,4 +1,4 @@
-"""`autograder serve` as a hub starts it: an answer is handed in from the notebook, and graded in the sandbox."""
+"""`autograder serve`, as a service of a hub, grades answers that students submit from the notebook."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ assignments:
 
 @pytest.fixture(scope="module")
 def classroom(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Classroom]:
-    """The real service of a real hub, with its own folder."""
+    """The service of a real hub, with its own folder."""
     folder = tmp_path_factory.mktemp("classroom")
     (folder / "serve.yaml").write_text(SETTINGS)
     command = [sys.executable, "-c", "from autograder.cli import main; main()", "serve", str(folder / "serve.yaml")]
@@ -45,7 +45,7 @@ def classroom(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Classroom]:
 
 @pytest.fixture
 def as_ada(classroom: Classroom, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The variables of ada's server."""
+    """Set the environment variables of ada's server."""
     monkeypatch.setenv(SERVICE, classroom.url)
     monkeypatch.setenv(TOKEN, classroom.hub.token("ada"))
 
@@ -53,7 +53,7 @@ def as_ada(classroom: Classroom, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 @pytest.mark.usefixtures("as_ada")
-def test_a_student_hands_in_from_the_notebook_and_sees_the_visible_checks(classroom: Classroom, tmp_path: Path) -> None:
+def test_a_student_submits_from_the_notebook_and_sees_the_visible_checks(classroom: Classroom, tmp_path: Path) -> None:
     for package in suites.hidden(CHAPTER).packages:
         shutil.copytree(course_paths.SOLUTIONS / package, tmp_path / "ws" / "src" / package)
     receipt = submit(CHAPTER, tmp_path)
@@ -62,15 +62,15 @@ def test_a_student_hands_in_from_the_notebook_and_sees_the_visible_checks(classr
     page = f"feedback/{receipt.number}"
     classroom.wait((classroom.folder / "data" / "gradings" / f"{receipt.number:06}" / "feedback.html").exists)
     classroom.wait(lambda: "Received and graded" in classroom.get("ada", page)[1])
-    seen = classroom.get("ada", page)[1]
-    assert seen.count('class="check passed"') == len(suites.visible(CHAPTER).checks)
-    assert "points" not in seen.partition("Visible checks")[2]
+    html = classroom.get("ada", page)[1]
+    assert html.count('class="check passed"') == len(suites.visible(CHAPTER).checks)
+    assert "points" not in html.partition("Visible checks")[2]
     assert "points, 100 %" in classroom.get("grace", page)[1]
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
-def test_what_is_no_submission_is_unclear_and_no_markup_of_it_is_shown(classroom: Classroom) -> None:
+def test_an_invalid_submission_is_unclear_and_its_markup_is_not_shown(classroom: Classroom) -> None:
     number = classroom.hand_in("bob", b"<script>alert(1)</script>", assignment=CHAPTER).number
     classroom.wait((classroom.folder / "data" / "gradings" / f"{number:06}" / "feedback.html").exists)
     classroom.wait(lambda: "unclear" in classroom.get("bob")[1])
@@ -80,9 +80,9 @@ def test_what_is_no_submission_is_unclear_and_no_markup_of_it_is_shown(classroom
 
 
 @pytest.mark.usefixtures("as_ada")
-def test_a_folder_without_an_answer_is_not_handed_in(classroom: Classroom, tmp_path: Path) -> None:
+def test_a_folder_without_an_answer_is_not_submitted(classroom: Classroom, tmp_path: Path) -> None:
     before = classroom.get("ada")[1].count("feedback/")
-    said = submit(CHAPTER, tmp_path)
-    assert isinstance(said, Notice)
-    assert said.sentence == "Nothing was handed in."
+    notice = submit(CHAPTER, tmp_path)
+    assert isinstance(notice, Notice)
+    assert notice.sentence == "Nothing was handed in."
     assert classroom.get("ada")[1].count("feedback/") == before

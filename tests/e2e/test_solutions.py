@@ -1,4 +1,4 @@
-"""Each reference package builds, passes the linters and its own tests, and its programs start and end well."""
+"""Each reference package builds, passes the linters and its own tests, and its programs start and end cleanly."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ MESSAGES = [name for name in PACKAGES if name not in PYTHON]
 LINTERS = ("flake8", "pep257")
 NOT_PASSED = {"failure", "error", "skipped"}
 PATIENCE = 60.0  # seconds: a deadline, not an expectation
-FIRST_WORDS = {
+FIRST_LINES = {
     "basic_node": "Basic node initialised",
     "configured_node": "DefaultRobot is ready",
     "distance_driver": "Distance driver initialised",
@@ -39,7 +39,7 @@ FIRST_WORDS = {
     "status_publisher": "Status of MyRobot01 every 1 s",
 }
 
-# A node that answers is spinning. A signal between its first words and its spin would hit rclpy itself.
+# A node that answers is spinning. A signal between its first line and its spin would interrupt rclpy itself.
 ASK = """
 import sys
 import rclpy
@@ -66,13 +66,13 @@ for path in sys.argv[2:]:
 
 @pytest.fixture
 def terminal(reference: Terminal, ros_domain: int) -> Terminal:
-    """The sourced workspace, in a domain of this test's own."""
+    """The sourced workspace, in the test's own domain."""
     return Terminal(reference.root, {**reference.variables, "ROS_DOMAIN_ID": str(ros_domain)})
 
 
 @contextmanager
 def node(terminal: Terminal, name: str, *arguments: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """Start a node of my_robot_package and give it with its first line of output."""
+    """Start a node of my_robot_package; yield its process and its first line of output."""
     with subprocess.Popen(
         [executable(terminal, name), *arguments],
         cwd=terminal.root,
@@ -93,81 +93,83 @@ def executable(terminal: Terminal, name: str) -> Path:
 
 
 @pytest.fixture(scope="module")
-def tested(reference: Terminal) -> str:
-    """The output of `colcon test` for all packages. Those of messages have no test that calls the linters: we do."""
-    said = reference.run("colcon", "test", "--packages-select", *PYTHON).stdout
+def test_output(reference: Terminal) -> str:
+    """The output of `colcon test`, and of the linters for message packages, which have no tests that call them."""
+    output = reference.run("colcon", "test", "--packages-select", *PYTHON).stdout
     for package in MESSAGES:
         for linter in LINTERS:
             report = reference.root / "build" / package / f"{linter}.xunit.xml"
-            said += reference.run(f"ament_{linter}", "--xunit-file", report, f"src/{package}").stdout
-    return said
+            output += reference.run(f"ament_{linter}", "--xunit-file", report, f"src/{package}").stdout
+    return output
 
 
 def test_colcon_builds_each_reference_package_without_a_warning(reference: Terminal) -> None:
-    said = (reference.root / "log/build.txt").read_text()
-    assert f"{len(PYTHON)} packages finished" in said
-    assert "stderr" not in said
+    output = (reference.root / "log/build.txt").read_text()
+    assert f"{len(PYTHON)} packages finished" in output
+    assert "stderr" not in output
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-def test_the_linters_and_the_tests_of_a_package_pass(reference: Terminal, tested: str, package: str) -> None:
+def test_the_linters_and_the_tests_of_a_package_pass(reference: Terminal, test_output: str, package: str) -> None:
     reports = list((reference.root / "build" / package).glob("*.xml"))
     cases = [case for report in reports for case in ElementTree.parse(report).iter("testcase")]
     not_passed = [case.get("name") for case in cases if {child.tag for child in case} & NOT_PASSED]
-    assert not_passed == [], tested
+    assert not_passed == [], test_output
     if package in MESSAGES:
-        assert {report.name for report in reports} >= {f"{linter}.xunit.xml" for linter in LINTERS}, tested
+        assert {report.name for report in reports} >= {f"{linter}.xunit.xml" for linter in LINTERS}, test_output
     else:
         ran = {case.get("name", "").partition("[")[0] for case in cases}
         linters = {f"test_{linter}" for linter in LINTERS}
-        assert linters <= ran, tested
-        assert ran - linters - {"test_copyright", "test_each_source_file_starts_with_its_licence"}, tested
+        assert linters <= ran, test_output
+        assert ran - linters - {"test_copyright", "test_each_source_file_starts_with_its_licence"}, test_output
 
 
 @pytest.mark.parametrize("package", MESSAGES)
-def test_the_definitions_of_an_interface_package_can_be_used(terminal: Terminal, package: str) -> None:
+def test_the_generated_types_of_an_interface_package_can_be_loaded(terminal: Terminal, package: str) -> None:
     folder = PACKAGES[package]
     names = [
         f"{path.parent.name}/{path.stem}" for kind in ("msg", "srv", "action") for path in folder.glob(f"{kind}/*")
     ]
     assert names
-    loaded = terminal.run(sys.executable, "-c", LOAD, package, *names)
-    assert loaded.returncode == 0, loaded.stdout
+    process = terminal.run(sys.executable, "-c", LOAD, package, *names)
+    assert process.returncode == 0, process.stdout
 
 
-def ended(process: subprocess.Popen[str], how: signal.Signals) -> str:
+def stop(process: subprocess.Popen[str], number: signal.Signals) -> str:
     """Send a signal, and SIGTERM again if the node missed it; return the node's output.
 
-    At SIGTERM rclpy first wakes the executor and then shuts the context down. An executor that is quicker finds the
-    context still up, and waits for the next thing to happen: for ever, in a node without a timer that nobody talks to.
+    At SIGTERM, rclpy first wakes the executor and then shuts the context down. If the executor is faster, it finds the
+    context still valid and waits for the next event: forever, in a node without timers that receives no messages.
     """
     for _ in range(3):
-        process.send_signal(how)
+        process.send_signal(number)
         try:
             return process.communicate(timeout=20)[0]
         except subprocess.TimeoutExpired:
-            assert how is signal.SIGTERM
-    raise AssertionError(f"it does not end, however often {how.name} is sent")
+            assert number is signal.SIGTERM
+    raise AssertionError(f"the node did not end after three times {number.name}")
 
 
-@pytest.mark.parametrize("name", FIRST_WORDS)
-@pytest.mark.parametrize("how", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.nightly)])
-def test_each_installed_executable_starts_and_ends_cleanly(terminal: Terminal, name: str, how: signal.Signals) -> None:
-    with node(terminal, name) as (process, first):
-        assert FIRST_WORDS[name] in first
-        asked = terminal.run(sys.executable, "-c", ASK, name)
-        assert asked.returncode == 0, asked.stdout
-        rest = ended(process, how)
+@pytest.mark.parametrize("name", FIRST_LINES)
+@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.nightly)])
+def test_each_installed_executable_starts_and_ends_cleanly(
+    terminal: Terminal, name: str, number: signal.Signals
+) -> None:
+    with node(terminal, name) as (process, first_line):
+        assert FIRST_LINES[name] in first_line
+        answer = terminal.run(sys.executable, "-c", ASK, name)
+        assert answer.returncode == 0, answer.stdout
+        rest = stop(process, number)
     assert process.returncode == 0, rest
     assert "Traceback" not in rest
 
 
-def test_the_configuration_reaches_its_node(terminal: Terminal, tmp_path: Path) -> None:
+def test_a_node_uses_the_values_of_its_parameter_file(terminal: Terminal, tmp_path: Path) -> None:
     config = terminal.root / "install/my_robot_package/share/my_robot_package/config/robot_params.yaml"
     renamed = tmp_path / "renamed.yaml"
     renamed.write_text(config.read_text().replace("MyRobot01", "Wall-hugger"))
-    with node(terminal, "status_publisher", "--ros-args", "--params-file", str(renamed)) as (_, first):
-        assert "Status of Wall-hugger" in first
+    with node(terminal, "status_publisher", "--ros-args", "--params-file", str(renamed)) as (_, first_line):
+        assert "Status of Wall-hugger" in first_line
 
 
 def test_every_launched_executable_exists(terminal: Terminal) -> None:
@@ -194,8 +196,8 @@ def test_two_robots_start_in_their_namespaces_and_end_together(
         names = [f"/{robot}/{node}" for robot in ("robot1", "robot2") for node in ("driver", "reporter")]
         launch_probe.expect_nodes(harness, names)
         launch_probe.expect_parameters(harness, "/robot2/driver", {"speed": 0.2, "turn_rate": 0.4})
-        wanted = {f"robot{number} drives at 0.20 m/s" for number in (1, 2)}
+        expected = {f"robot{number} drives at 0.20 m/s" for number in (1, 2)}
         assert harness.wait_for(
-            lambda: {message.data for message in harness.messages("/fleet/status")} >= wanted, PATIENCE
+            lambda: {message.data for message in harness.messages("/fleet/status")} >= expected, PATIENCE
         )
         launch_probe.expect_clean_stop(harness)

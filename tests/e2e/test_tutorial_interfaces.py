@@ -15,7 +15,7 @@ from rclpy.executors import SingleThreadedExecutor
 from autograder.building.interfaces import tutorials
 from autograder.ros import activate
 
-# REP 2011's hash of the type; `ros2 service info --verbose` of a Jazzy shows it.
+# The type's hash (REP 2011), as `ros2 service info --verbose` of Jazzy shows it.
 ADD_TWO_INTS = "RIHS01_e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"
 
 
@@ -75,13 +75,13 @@ def test_an_installed_interface_package_is_not_built_again(prefix: Path) -> None
 def test_a_missing_package_is_built_and_a_loaded_library_is_never_written_to(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    one = {"action_tutorials_interfaces": tutorials.packages()["action_tutorials_interfaces"]}
-    monkeypatch.setattr(tutorials, "packages", lambda: one)
+    packages = {"action_tutorials_interfaces": tutorials.packages()["action_tutorials_interfaces"]}
+    monkeypatch.setattr(tutorials, "packages", lambda: packages)
     assert tutorials.install(tmp_path) == ["action_tutorials_interfaces"]
     assert tutorials.install(tmp_path) == []
-    loaded = next((tmp_path / "lib").glob("*.so"))
+    installed = next((tmp_path / "lib").glob("*.so"))
     (tmp_path / "share/action_tutorials_interfaces/action/Fibonacci.action").write_text("another definition\n")
-    with loaded.open("rb") as library:
+    with installed.open("rb") as library:
         assert tutorials.install(tmp_path) == ["action_tutorials_interfaces"]
         assert os.fstat(library.fileno()).st_nlink == 0  # the installed library is a new file
     python = "python{}.{}".format(*sys.version_info)
@@ -91,11 +91,11 @@ def test_a_missing_package_is_built_and_a_loaded_library_is_never_written_to(
 def test_without_a_compiler_the_set_up_says_how_to_install_interface_packages_later(
     prefix: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    found = activate()
-    monkeypatch.setattr(tutorials, "find", lambda: found)
+    ros = activate()
+    monkeypatch.setattr(tutorials, "find", lambda: ros)
     monkeypatch.setattr(sys, "prefix", str(tmp_path))
     monkeypatch.setattr(shutil, "which", lambda name: None)
     assert tutorials.main() == 0
-    told = capsys.readouterr().out
-    assert "g++ is missing" in told
-    assert "-m autograder.building.interfaces.tutorials" in told
+    output = capsys.readouterr().out
+    assert "g++ is missing" in output
+    assert "-m autograder.building.interfaces.tutorials" in output

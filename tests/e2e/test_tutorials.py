@@ -1,8 +1,9 @@
 """The Python tutorials of ROS 2 Jazzy run here as printed: commands, code and expected output.
 
-ROS2_DOCUMENTATION_SOURCE names a clone of github.com/ros2/ros2_documentation, branch jazzy; `make tutorials` makes one.
-`tutorials/pages.yaml` says what a reader does on each page; commands, code and changes of files are the page's own.
-Turtlesim and demo_nodes_cpp, which are written in C++ and have no wheels, have a stand-in in `tutorials/packages`.
+ROS2_DOCUMENTATION_SOURCE is the path of a clone of github.com/ros2/ros2_documentation, branch jazzy, which `make
+tutorials` creates. `tutorials/pages.yaml` lists what a reader does on each page; commands, code and changes of files
+come from the page. `tutorials/packages` has stand-ins for turtlesim and demo_nodes_cpp, which are written in C++ and
+have no wheels.
 """
 
 from __future__ import annotations
@@ -40,13 +41,13 @@ class Page:
 
     text: str
 
-    def code(self, language: str, words: str) -> str:
-        """Return the page's first block of a language that has the words."""
+    def code(self, language: str, text: str) -> str:
+        """Return the page's first block of code in a language that contains a text."""
         blocks = (textwrap.dedent(block) for _, name, block in BLOCK.findall(self.text) if name.lower() == language)
-        return next(block.strip() + "\n" for block in blocks if words in block)
+        return next(block.strip() + "\n" for block in blocks if text in block)
 
     def expect(self, line: str) -> None:
-        """Fail unless the page prints the line; a comma at its end is free."""
+        """Fail unless the page prints the line, with or without a comma at its end."""
         printed = {other.strip().rstrip(",") for other in self.text.splitlines()}
         assert line.strip().rstrip(",") in printed, f"the page does not print: {line}"
 
@@ -57,7 +58,7 @@ class Program:
 
     process: subprocess.Popen[str]
     lines: queue.SimpleQueue[str | None] = field(default_factory=queue.SimpleQueue)
-    seen: list[str] = field(default_factory=list)
+    printed: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.thread = threading.Thread(target=self._read)
@@ -75,12 +76,12 @@ class Program:
         missing = set(texts)
         while missing:
             line = self.lines.get(timeout=PATIENCE)
-            assert line is not None, f"it ended without {missing}:\n{''.join(self.seen)}"
-            self.seen.append(line)
+            assert line is not None, f"the program ended without {missing}:\n{''.join(self.printed)}"
+            self.printed.append(line)
             missing = {text for text in missing if text not in line}
 
     def stop(self, texts: list[str]) -> None:
-        """Press Ctrl-C: a terminal sends it to all processes of the command."""
+        """Send SIGINT to all processes of the command, as Ctrl-C in a terminal does; wait for the texts and the end."""
         with suppress(ProcessLookupError):
             os.killpg(self.process.pid, signal.SIGINT)
         self.expect(texts)
@@ -97,14 +98,14 @@ class Reader:
     domain: int
     programs: dict[str, Program] = field(default_factory=dict)
 
-    def call(self, command: str, place: str = ".") -> dict[str, Any]:
+    def call(self, command: str, folder: str = ".") -> dict[str, Any]:
         """Return the arguments of a process that runs a command in a new terminal where all workspaces are sourced."""
         sources = (f"! test -f {root}/install/setup.bash || . {root}/install/setup.bash" for root in self.roots)
-        words = "; ".join([*sources, f"cd {self.folder / place}", command])
+        script = "; ".join([*sources, f"cd {self.folder / folder}", command])
         variables = {**os.environ, "ROS_DOMAIN_ID": str(self.domain), "PYTHONUNBUFFERED": "1", "USER": "reader"}
-        del variables["RCUTILS_LOGGING_USE_STDOUT"]  # the tests' own; a terminal has none
+        del variables["RCUTILS_LOGGING_USE_STDOUT"]  # set by the tests, but not in a terminal
         return {
-            "args": [sys.executable, "-m", "autograder", "ros", "bash", "-c", words],
+            "args": [sys.executable, "-m", "autograder", "ros", "bash", "-c", script],
             "env": variables,
             "stdout": subprocess.PIPE,
             "stderr": subprocess.STDOUT,
@@ -117,14 +118,14 @@ class Reader:
         return self.turtles, self.folder
 
     def do(self, page: Page, step: Step) -> None:
-        """Do one step of a page."""
+        """Execute a step of a page."""
         match step:
             case {"run": command}:
                 page.expect(command)
-                done = subprocess.run(**self.call(command, step.get("in", ".")), timeout=PATIENCE)
-                assert done.returncode == 0, done.stdout
-                assert [text for text in step.get("says", ()) if text not in done.stdout] == [], done.stdout
-                assert [text for text in step.get("silent", ()) if text in done.stdout] == [], done.stdout
+                process = subprocess.run(**self.call(command, step.get("in", ".")), timeout=PATIENCE)
+                assert process.returncode == 0, process.stdout
+                assert [text for text in step.get("says", ()) if text not in process.stdout] == [], process.stdout
+                assert [text for text in step.get("silent", ()) if text in process.stdout] == [], process.stdout
             case {"start": command}:
                 page.expect(command)
                 call = self.call(f"exec {command}", step.get("in", "."))
@@ -146,21 +147,21 @@ class Reader:
         lines = step["lines"] if "lines" in step else page.code(step["code"], step["with"]).splitlines()
         for line in lines:
             page.expect(line)
-        (where,) = {"before", "behind"} & set(step)
-        place = step[where]
-        added = "\n".join([*lines, place] if where == "before" else [place, *lines])
+        (side,) = {"before", "behind"} & set(step)
+        anchor = step[side]
+        added = "\n".join([*lines, anchor] if side == "before" else [anchor, *lines])
         text = path.read_text()
-        assert text.count(place) == 1, f"{path} has no one place {place!r}:\n{text}"
-        path.write_text(text.replace(place, added))
+        assert text.count(anchor) == 1, f"{path} does not contain {anchor!r} exactly once:\n{text}"
+        path.write_text(text.replace(anchor, added))
 
 
 @pytest.fixture(scope="module")
 def turtles(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Build the packages of the tutorials that have no wheel."""
+    """Build the packages that the tutorials need and that have no wheels; return their workspace."""
     folder = tmp_path_factory.mktemp("turtles")
     (folder / "src").symlink_to(HERE / "packages")
-    built = subprocess.run(**Reader(folder, folder, 0).call("colcon build"), timeout=PATIENCE)
-    assert built.returncode == 0, built.stdout
+    process = subprocess.run(**Reader(folder, folder, 0).call("colcon build"), timeout=PATIENCE)
+    assert process.returncode == 0, process.stdout
     return folder
 
 
@@ -174,8 +175,8 @@ def reader(turtles: Path, tmp_path: Path, ros_domain: int) -> Iterator[Reader]:
         program.stop([])
 
 
-def text(page: Step) -> Page:
-    """Return a page as the documentation has it."""
+def read_page(page: Step) -> Page:
+    """Read a page of the documentation."""
     return Page((Path(os.environ[SOURCE]) / "source/Tutorials" / f"{page['page']}.rst").read_text())
 
 
@@ -185,13 +186,13 @@ def text(page: Step) -> Page:
     "It takes commands, code and file changes from the pages",
 )
 @pytest.mark.nightly
-@pytest.mark.skipif(not os.environ.get(SOURCE), reason=f"{SOURCE} names no clone")
+@pytest.mark.skipif(not os.environ.get(SOURCE), reason=f"{SOURCE} is not set")
 @pytest.mark.timeout(4 * PATIENCE)
 @pytest.mark.parametrize("name", RUN)
 def test_a_tutorial_runs_as_printed(name: str, reader: Reader) -> None:
     page = RUN[name]
     for earlier in page.get("after", ()):
         for step in RUN[earlier]["make"]:
-            reader.do(text(RUN[earlier]), step)
+            reader.do(read_page(RUN[earlier]), step)
     for step in [*page.get("make", ()), *page["do"]]:
-        reader.do(text(page), step)
+        reader.do(read_page(page), step)

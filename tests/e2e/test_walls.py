@@ -61,7 +61,7 @@ while pending:
         if entry.is_dir(): pending.append(entry.path)
         elif not folder.startswith("/usr") and os.access(entry.path, os.W_OK): out("may write to", entry.path)
 for folder, _, names in os.walk("/proc/sys"):
-    for name in {*names} - {"ns_last_pid"}:  # of the worker sandbox's own process ids
+    for name in {*names} - {"ns_last_pid"}:  # belongs to the worker sandbox's own process ids
         if os.access(f"{folder}/{name}", os.W_OK) and "/sys/user" not in folder: out("may write to", folder, name)
 for path in Path("/proc/sys/user").iterdir():
     try:
@@ -79,7 +79,7 @@ answer["student"] = "bob"
 data = json.dumps(answer).encode()
 send_tree(line, {Entry("result.json", "file", False, len(data)): data})
 """
-LIE = """
+INVALID = """
 line.send_bytes(b"[" * 100_000)
 """
 FLOOD = """
@@ -109,9 +109,9 @@ def grade(folder: Path, student: str) -> Result:
     return grade_submission(Job(folder / student, ASSIGNMENT, student, 1, out, seconds=60.0))
 
 
-def taken_over(monkeypatch: pytest.MonkeyPatch, code: str, **names: object) -> None:
-    given = "".join(f"{name} = {value!r}\n" for name, value in names.items())
-    program = f"{BEGIN}{given}{code}"
+def compromise_worker(monkeypatch: pytest.MonkeyPatch, code: str, **names: object) -> None:
+    constants = "".join(f"{name} = {value!r}\n" for name, value in names.items())
+    program = f"{BEGIN}{constants}{code}"
     monkeypatch.setattr(
         own_sandbox, "_worker", lambda job, line: [sys.executable, "-c", program, job.to_json(), str(line)]
     )
@@ -136,8 +136,9 @@ def test_a_compromised_worker_sees_only_its_submission_and_its_chapter(
         course_paths.ROOT / ".git",
     ]
     secrets += [classroom / "bob", classroom / "results", classroom / "alice" / ".." / "bob"]
-    seen = [path for path in map(str, secrets) if not str(sys.prefix).startswith(path)]  # a Python may lie in a home
-    taken_over(monkeypatch, LOOK, SECRETS=seen, SECRET=SECRET)
+    # Python may be installed in one of the home folders.
+    paths = [path for path in map(str, secrets) if not str(sys.prefix).startswith(path)]
+    compromise_worker(monkeypatch, LOOK, SECRETS=paths, SECRET=SECRET)
     assert grade(classroom, "alice").status is Status.NOT_GRADED
     log = (classroom / "results" / "alice" / "grader.log").read_text()
     assert "OUT" not in log
@@ -147,7 +148,7 @@ def test_a_compromised_worker_sees_only_its_submission_and_its_chapter(
 def test_a_compromised_worker_can_write_only_to_its_scratch_folder(
     classroom: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    taken_over(monkeypatch, WRITE, GROUPS=["/sys/fs/cgroup"])
+    compromise_worker(monkeypatch, WRITE, GROUPS=["/sys/fs/cgroup"])
     before = (classroom / "results" / "bob" / "result.json").read_bytes()
     assert grade(classroom, "alice").status is Status.NOT_GRADED
     log = (classroom / "results" / "alice" / "grader.log").read_text()
@@ -160,7 +161,7 @@ def test_a_compromised_worker_can_write_only_to_its_scratch_folder(
     ("code", "logged"),
     [
         pytest.param(FORGE, "a worker graded", id="the result of another student"),
-        pytest.param(LIE, "a message is not JSON", id="no message"),
+        pytest.param(INVALID, "a message is not JSON", id="not a message"),
         pytest.param(FLOOD, "a message is not JSON", id="a flood"),
         pytest.param(CLIMB, "paths that lead out of it", id="a path that leads out"),
     ],
@@ -170,7 +171,7 @@ def test_the_reply_of_a_compromised_worker_harms_no_other_student(
 ) -> None:
     stored = classroom / "results" / "bob" / "result.json"
     before = stored.read_bytes()
-    taken_over(monkeypatch, code, RESULT=json.dumps(json.loads(before)))
+    compromise_worker(monkeypatch, code, RESULT=json.dumps(json.loads(before)))
     result = grade(classroom, "alice")
     assert (result.status, result.student, result.score) == (Status.NOT_GRADED, "alice", 0.0)
     assert logged in (classroom / "results" / "alice" / "grader.log").read_text()
@@ -183,7 +184,7 @@ PACKAGE = """<package format="3"><name>forged_msgs</name><version>0.0.1</version
 <member_of_group>rosidl_interface_packages</member_of_group><export><build_type>ament_cmake</build_type></export>
 </package>"""
 CMAKE = "cmake_minimum_required(VERSION 3.8)\nproject(forged_msgs NONE)\ninstall(FILES package.xml DESTINATION share)\n"
-ASK = """
+REQUEST_BUILD = """
 from autograder.building import keeper
 from autograder.run.sandbox.limits import SOURCES
 from autograder.run.sandbox.trees import read_tree
@@ -201,7 +202,7 @@ def test_shared_builds_come_from_an_untouched_worker_and_match_their_sources(
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(classroom / "cache"))
     files = {"package.xml": PACKAGE, "CMakeLists.txt": CMAKE}
-    taken_over(monkeypatch, ASK, FILES=files)
+    compromise_worker(monkeypatch, REQUEST_BUILD, FILES=files)
     grade(classroom, "alice")
     log = (classroom / "results" / "alice" / "grader.log").read_text()
     assert "BUILT ['built/install/forged_msgs/share/package.xml']" in log
@@ -209,11 +210,13 @@ def test_shared_builds_come_from_an_untouched_worker_and_match_their_sources(
     mine.mkdir(parents=True)
     for name, text in files.items():
         (mine / name).write_text(text)
-    kept = {path.name for path in (classroom / "cache" / "autograder" / keeper.CACHE).iterdir() if path.is_dir()}
-    assert kept == {keeper.key(read_tree(mine.parent, SOURCES))}
+    cached = {path.name for path in (classroom / "cache" / "autograder" / keeper.CACHE).iterdir() if path.is_dir()}
+    assert cached == {keeper.key(read_tree(mine.parent, SOURCES))}
 
 
-@pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can be somebody else")
+@pytest.mark.skipif(
+    os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can run a command as another user"
+)
 def test_root_grades_files_that_only_root_can_read(classroom: Path) -> None:
     for path in (classroom / "alice", *(classroom / "alice").rglob("*")):
         path.chmod(0o700 if path.is_dir() else 0o600)
@@ -222,26 +225,28 @@ def test_root_grades_files_that_only_root_can_read(classroom: Path) -> None:
     assert "is not a package's name" in result.diagnosis.sentence
 
 
-@pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can be somebody else")
+@pytest.mark.skipif(
+    os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can run a command as another user"
+)
 def test_root_reads_no_submission_for_a_preview_or_a_comparison(
     classroom: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (classroom / "alice" / "src" / "pkg" / "node.py").write_text("x = '\u2028'")
-    (classroom / "carol.zip").write_bytes(b"no zip")
+    (classroom / "carol.zip").write_bytes(b"not a zip")
     (classroom / "alice").chmod(0o700)
 
     def read(*_: object) -> None:
         pytest.fail("root reads a submission")
 
     monkeypatch.setattr(intake, "read_submission", read)
-    seen = apart.read_preview(classroom / "alice", ASSIGNMENT, Isolation.BUBBLEWRAP)
-    assert (seen.files, seen.unused) == (2, ())
+    preview = apart.read_preview(classroom / "alice", ASSIGNMENT, Isolation.BUBBLEWRAP)
+    assert (preview.files, preview.unused) == (2, ())
     assert apart.read_code(classroom / "alice", ASSIGNMENT, Isolation.BUBBLEWRAP) == "# pkg/node.py\nx = '\n'"
     with pytest.raises(StudentError, match=r"carol.zip is not a folder"):
         apart.read_preview(classroom / "carol.zip", ASSIGNMENT, Isolation.BUBBLEWRAP)
 
 
-WHO = """
+REPORT_RIGHTS = """
 out("is", os.getuid() in range(47000, 48000), os.getgid() == os.getuid(), os.getgroups())
 out("rights", int(open("/proc/self/status").read().split("CapEff:")[1].split()[0], 16))
 out("reads", (job.path / "src" / "pkg" / "package.xml").read_text())
@@ -252,13 +257,15 @@ except OSError: out("is refused")
 """
 
 
-@pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can be somebody else")
+@pytest.mark.skipif(
+    os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can run a command as another user"
+)
 def test_root_privileges_are_also_dropped_without_namespaces(classroom: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for path in (classroom / "alice", *(classroom / "alice").rglob("*")):
         path.chmod(0o700 if path.is_dir() else 0o600)
     stored = classroom / "results" / "bob" / "result.json"
     before = stored.read_bytes()
-    taken_over(monkeypatch, WHO, STORED=str(stored))
+    compromise_worker(monkeypatch, REPORT_RIGHTS, STORED=str(stored))
     out = classroom / "results" / "alice"
     grade_submission(Job(classroom / "alice", ASSIGNMENT, "alice", 1, out, Isolation.PROCESS))
     log = (out / "grader.log").read_text()

@@ -1,4 +1,4 @@
-"""A bomb in a sandbox ends with its sandbox, and not with the worker sandbox around it: the submission is graded."""
+"""A program that exceeds its limits ends with its own sandbox, and the worker sandbox around it can still grade."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from autograder.run.sandbox import ExitReason, Isolation, cgroup
 from autograder.run.sandbox.worker_sandbox import run_in_worker_sandbox
 
-# The bounds of `ros2 launch` are the widest: its program can have 4,096 threads before the watcher looks.
+# `ros2 launch` has the widest limits: its program can have 4,096 threads before the monitor looks.
 WORKER = """
 import sys
 from pathlib import Path
@@ -32,14 +32,14 @@ for _ in range(3):
 """
 
 
-@pytest.mark.skipif("pids" not in cgroup.bounds(), reason="root without control groups: a bomb stops the machine")
+@pytest.mark.skipif("pids" not in cgroup.bounds(), reason="root without control groups: a bomb would stop the machine")
 def test_a_bomb_in_the_widest_sandbox_does_not_end_the_worker() -> None:
     report = run_in_worker_sandbox(lambda scratch: [sys.executable, "-c", WORKER], Isolation.BUBBLEWRAP)
     assert (report.exit_reason, report.returncode) == (ExitReason.EXITED, 0), report.output
     assert report.output.split() == [ExitReason.THREADS.value] * 3
 
 
-FULL = """
+FILL_SCRATCH = """
 import os, sys
 from pathlib import Path
 from autograder.run.sandbox.bubblewrap import OUT
@@ -56,5 +56,7 @@ except OSError as error:
 
 
 def test_a_program_that_fills_the_scratch_folder_leaves_room_for_the_result_and_the_log() -> None:
-    report = run_in_worker_sandbox(lambda scratch: [sys.executable, "-c", FULL, str(scratch)], Isolation.BUBBLEWRAP)
+    report = run_in_worker_sandbox(
+        lambda scratch: [sys.executable, "-c", FILL_SCRATCH, str(scratch)], Isolation.BUBBLEWRAP
+    )
     assert (report.returncode, report.output) == (0, "No space left on device\n")
