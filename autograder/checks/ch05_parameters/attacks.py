@@ -75,7 +75,7 @@ def attacks() -> tuple[Attack, ...]:
             CHAPTER.write(files={FILE: BOMB}),
             OF_FILE,
             exactly=True,
-            says="In fleet_params.yaml",
+            says="its aliases expand to more than",
         ),
         Attack(
             "lying node",
