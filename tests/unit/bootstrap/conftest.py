@@ -1,4 +1,4 @@
-"""A clone to set up, and commands that are remembered instead of run."""
+"""A clone to set up, and commands that are recorded instead of run."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ rosbags==0.10 \\
 
 
 class Commands:
-    """Stands in for running commands: remembers them, and makes the one file that a set-up looks for."""
+    """Records commands instead of running them, and makes the one file that a set-up looks for."""
 
     def __init__(self, root: Path) -> None:
         self.root = root

@@ -1,6 +1,6 @@
 """Packages that pip does not have are installed with apt if no password is needed. Otherwise they are named.
 
-Without a compiler or Python's headers, the set-up ends there.
+Without a compiler or Python's headers, the set-up stops.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ import pytest
 from autograder.doctor import apt
 
 DEV = f"python{sysconfig.get_python_version()}-dev"
-Which = Callable[..., None]
+LeaveOnPath = Callable[..., None]
 
 
 @pytest.fixture
-def installed(monkeypatch: pytest.MonkeyPatch) -> Which:
-    """Let only the given commands be on PATH."""
+def leave_on_path(monkeypatch: pytest.MonkeyPatch) -> LeaveOnPath:
+    """Return a function that leaves only the given commands on PATH."""
 
     def only(*commands: str) -> None:
         monkeypatch.setattr(apt.shutil, "which", lambda name: f"/bin/{name}" if name in commands else None)
@@ -28,8 +28,8 @@ def installed(monkeypatch: pytest.MonkeyPatch) -> Which:
     return only
 
 
-def test_apt_installs_missing_packages_as_root(installed: Which, commands: Any, tmp_path: Path) -> None:
-    installed("apt-get")
+def test_apt_installs_missing_packages_as_root(leave_on_path: LeaveOnPath, commands: Any, tmp_path: Path) -> None:
+    leave_on_path("apt-get")
     apt.install(["bubblewrap"], tmp_path / "tried", 0, commands)
     assert [line.rpartition("DPkg::Lock::Timeout=60 ")[2] for line in commands.ran[1:]] == [
         "update",
@@ -38,8 +38,10 @@ def test_apt_installs_missing_packages_as_root(installed: Which, commands: Any, 
     assert not any("sudo" in line for line in commands.ran)
 
 
-def test_apt_is_called_through_sudo_if_sudo_needs_no_password(installed: Which, commands: Any, tmp_path: Path) -> None:
-    installed("apt-get", "sudo")
+def test_apt_is_called_through_sudo_if_sudo_needs_no_password(
+    leave_on_path: LeaveOnPath, commands: Any, tmp_path: Path
+) -> None:
+    leave_on_path("apt-get", "sudo")
     apt.install(["bubblewrap"], tmp_path / "tried", 1000, commands)
     assert commands.ran[0] == "env sudo -n true"
     assert commands.ran[-1].startswith("sudo -n env DEBIAN_FRONTEND=noninteractive apt-get ")
@@ -47,14 +49,14 @@ def test_apt_is_called_through_sudo_if_sudo_needs_no_password(installed: Which, 
 
 @pytest.mark.parametrize(("on_path", "failing"), [((), ""), (("apt-get", "sudo"), "sudo -n true")])
 def test_without_rights_to_install_the_command_is_printed(
-    installed: Which,
+    leave_on_path: LeaveOnPath,
     commands: Any,
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
     on_path: tuple[str, ...],
     failing: str,
 ) -> None:
-    installed(*on_path)
+    leave_on_path(*on_path)
     commands.failing = failing
     apt.install(["bubblewrap", "chromium"], tmp_path / "tried", 1000, commands)
     line = "set-up: bubblewrap, chromium is missing; to install it: sudo apt-get install bubblewrap chromium\n"
@@ -63,9 +65,9 @@ def test_without_rights_to_install_the_command_is_printed(
 
 
 def test_a_failed_installation_is_not_tried_again(
-    installed: Which, commands: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    leave_on_path: LeaveOnPath, commands: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    installed("apt-get")
+    leave_on_path("apt-get")
     commands.failing = "install -y"
     apt.install(["chromium"], tmp_path / "tried", 0, commands)
     assert (
@@ -90,17 +92,17 @@ def test_a_failed_installation_is_not_tried_again(
     ],
 )
 def test_without_compiler_or_headers_the_set_up_stops_with_the_command(
-    installed: Which, tmp_path: Path, tools: tuple[str, ...], with_headers: bool, message: str
+    leave_on_path: LeaveOnPath, tmp_path: Path, tools: tuple[str, ...], with_headers: bool, message: str
 ) -> None:
-    installed(*tools)
+    leave_on_path(*tools)
     if with_headers:
         (tmp_path / "Python.h").touch()
     with pytest.raises(SystemExit, match=message):
         apt.require_compiler(apt.missing_packages(tmp_path, browser=False))
 
 
-def test_without_bubblewrap_the_set_up_continues(installed: Which, tmp_path: Path) -> None:
-    installed("g++")
+def test_without_bubblewrap_the_set_up_continues(leave_on_path: LeaveOnPath, tmp_path: Path) -> None:
+    leave_on_path("g++")
     (tmp_path / "Python.h").touch()
     missing = apt.missing_packages(tmp_path, browser=True)
     assert missing == ["bubblewrap", "chromium"]

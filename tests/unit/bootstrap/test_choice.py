@@ -1,4 +1,4 @@
-"""The set-up uses the ROS that the shell has, or the wheels, or refuses in a sentence."""
+"""The set-up uses the ROS that the shell has, or the wheels, or refuses with a reason."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The locks pin everything with hashes, agree with each other, and tie the project to no package source."""
+"""The locks pin everything with hashes, agree with each other, and name no package index."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ENTRY = r"[a-z0-9-]+==[^\s;]+( ; [^\\]+?)?( +--hash=sha256:[0-9a-f]{64})+"
 
 
 def entries(lock: str) -> list[str]:
-    """Return a lock's entries, each with its continuation lines in one."""
+    """Return a lock's entries, each joined to one line."""
     text = (ROOT / lock).read_text().replace("\\\n", "")
     return text.splitlines()
 
@@ -72,9 +72,9 @@ def test_an_extra_with_a_lock_of_its_own_has_the_packages_of_the_lock(name: str)
 
 def test_the_lock_of_the_hubs_proxy_has_a_hash_for_each_package_and_no_address() -> None:
     folder = ROOT / "assets" / "hub"
-    lock, asked = (json.loads((folder / name).read_text()) for name in ("package-lock.json", "package.json"))
+    lock, manifest = (json.loads((folder / name).read_text()) for name in ("package-lock.json", "package.json"))
     own = lock["packages"].pop("")
-    assert own["dependencies"] == asked["dependencies"]
+    assert own["dependencies"] == manifest["dependencies"]
     assert len(lock["packages"]) > 10
     assert [name for name, package in lock["packages"].items() if "integrity" not in package] == []
     assert [name for name, package in lock["packages"].items() if "resolved" in package] == []
@@ -83,14 +83,14 @@ def test_the_lock_of_the_hubs_proxy_has_a_hash_for_each_package_and_no_address()
 def test_every_dependency_of_the_project_is_pinned() -> None:
     data = tomllib.loads((ROOT / "pyproject.toml").read_text())
     project = data["project"]
-    for lock, asked in (
+    for lock, dependencies in (
         (BASE, project["dependencies"]),
         (DEV, [line for extra in project["optional-dependencies"].values() for line in extra]),
         (BENCH, data["dependency-groups"]["bench"]),
         (CLUSTER, data["dependency-groups"]["cluster"]),
         (HUB, data["dependency-groups"]["hub"]),
     ):
-        missing = {canonicalize_name(Requirement(line).name) for line in asked} - names(lock)
+        missing = {canonicalize_name(Requirement(line).name) for line in dependencies} - names(lock)
         assert missing == set(), f"{lock} is older than pyproject.toml: run `make lock`"
 
 

@@ -1,4 +1,4 @@
-"""The Makefile explains itself and picks an interpreter that really runs."""
+"""The Makefile explains itself and picks an interpreter that runs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ STUDENTS = ROOT / "assets" / "students" / "Makefile"
 def make(*arguments: str, path: str | None = None, **environ: str) -> str:
     """Run make in the project and return its output."""
     clean = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS", "PYTHON"))}
-    done = subprocess.run(
+    completed = subprocess.run(
         [shutil.which("make") or "make", *arguments],
         cwd=ROOT,
         env={**clean, **({"PATH": path} if path else {}), **environ},
@@ -27,15 +27,15 @@ def make(*arguments: str, path: str | None = None, **environ: str) -> str:
         text=True,
         timeout=120,
     )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+    assert completed.returncode == 0, completed.stderr
+    return completed.stdout
 
 
 @pytest.mark.promise("`make` lists every target.")
 def test_make_alone_lists_every_target_with_its_help() -> None:
     output = make()
     (phony,) = re.findall(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.MULTILINE)
-    for target in set(phony.split()) - {"$(LINTERS)", "fast-engine"}:  # which others call
+    for target in set(phony.split()) - {"$(LINTERS)", "fast-engine"}:  # called by other targets
         line = next(line for line in output.splitlines() if line.startswith(f"  make {target} "))
         assert len(line.split()) > 3, line
     assert make("help") == output
@@ -63,22 +63,22 @@ def test_make_cluster_installs_the_pinned_packages_of_a_cluster_beside_the_cours
 
 @pytest.fixture
 def interpreters(tmp_path: Path) -> Path:
-    """A folder that contains only the shell."""
+    """A folder for PATH with a shell and the tools of the Makefiles, but without a Python."""
     for tool in ("sh", "sed", "expand"):
         (tmp_path / tool).symlink_to(shutil.which(tool) or tool)
     return tmp_path
 
 
-def interpreter(folder: Path, name: str, body: str) -> None:
+def write_interpreter(folder: Path, name: str, body: str) -> None:
     """Put an executable script into the folder."""
     (folder / name).write_text(f"#!/bin/sh\n{body}\n")
     (folder / name).chmod(0o755)
 
 
-def chosen(folder: Path, **environ: str) -> str:
-    """Return the interpreter that both set-ups, the course's and a release's, would be run with.
+def chosen_interpreter(folder: Path, **environ: str) -> str:
+    """Return the interpreter that the Makefiles of the course and of a release both choose.
 
-    The system has none unless one is given.
+    There is no system Python unless `SYSTEM_PYTHON` names one.
     """
     system = {"SYSTEM_PYTHON": "", **environ}
     (choice,) = {
@@ -89,36 +89,36 @@ def chosen(folder: Path, **environ: str) -> str:
 
 
 def test_a_python_that_does_not_run_is_skipped(interpreters: Path) -> None:
-    interpreter(interpreters, "python3.12", "echo 'pyenv: python3.12: command not found' >&2; exit 127")
-    interpreter(interpreters, "python3", "exit 0")
-    assert chosen(interpreters) == "python3"
+    write_interpreter(interpreters, "python3.12", "echo 'pyenv: python3.12: command not found' >&2; exit 127")
+    write_interpreter(interpreters, "python3", "exit 0")
+    assert chosen_interpreter(interpreters) == "python3"
 
 
 def test_an_interpreter_of_the_wrong_version_is_skipped(interpreters: Path) -> None:
-    interpreter(interpreters, "python3", "exit 1")
-    interpreter(interpreters, "python3.11", "exit 0")
-    assert chosen(interpreters) == "python3.11"
+    write_interpreter(interpreters, "python3", "exit 1")
+    write_interpreter(interpreters, "python3.11", "exit 0")
+    assert chosen_interpreter(interpreters) == "python3.11"
 
 
 def test_the_python_of_the_system_is_preferred_to_one_built_by_hand(interpreters: Path) -> None:
     for name in ("system", "python3", "python3.13"):
-        interpreter(interpreters, name, "exit 0")
-    assert chosen(interpreters, SYSTEM_PYTHON="system") == "system"
+        write_interpreter(interpreters, name, "exit 0")
+    assert chosen_interpreter(interpreters, SYSTEM_PYTHON="system") == "system"
 
 
 def test_the_python_of_jazzy_is_preferred(interpreters: Path) -> None:
     for name in ("python3.10", "python3.12", "python3"):
-        interpreter(interpreters, name, "exit 0")
-    assert chosen(interpreters) == "python3.12"
+        write_interpreter(interpreters, name, "exit 0")
+    assert chosen_interpreter(interpreters) == "python3.12"
 
 
 def test_without_a_usable_python_the_makefile_takes_python3_and_the_set_up_reports_it(interpreters: Path) -> None:
-    assert chosen(interpreters) == "python3"
+    assert chosen_interpreter(interpreters) == "python3"
 
 
 @pytest.mark.promise("`make PYTHON=...` uses the Python of your choice", "`make setup PYTHON=python3.12`")
 def test_the_interpreter_that_the_user_chose_is_used(interpreters: Path) -> None:
-    assert chosen(interpreters, PYTHON="/opt/python3.13") == "/opt/python3.13"
+    assert chosen_interpreter(interpreters, PYTHON="/opt/python3.13") == "/opt/python3.13"
 
 
 def test_a_release_prefers_the_same_python_of_the_system_as_the_course() -> None:
@@ -132,5 +132,5 @@ def test_a_release_prefers_the_same_python_of_the_system_as_the_course() -> None
 def test_the_interpreter_chosen_on_this_machine_is_supported() -> None:
     name = make("-n", "setup").split()[0]
     code = "import sys; print(*sys.version_info[:2])"
-    done = subprocess.run([name, "-c", code], capture_output=True, text=True, timeout=60)
-    assert (3, 10) <= tuple(map(int, done.stdout.split())) <= (3, 13)
+    completed = subprocess.run([name, "-c", code], capture_output=True, text=True, timeout=60)
+    assert (3, 10) <= tuple(map(int, completed.stdout.split())) <= (3, 13)

@@ -19,8 +19,8 @@ def test_the_running_interpreter_is_the_one_under_the_virtual_environment() -> N
     interpreter = Interpreter.running()
     assert not Path(interpreter.executable).is_relative_to(sys.prefix)
     code = "import sys, sysconfig; print(sys.prefix == sys.base_prefix, sysconfig.get_config_var('EXT_SUFFIX'))"
-    done = subprocess.run([interpreter.executable, "-c", code], capture_output=True, text=True, timeout=60)
-    assert done.stdout.split() == ["True", interpreter.suffix]
+    completed = subprocess.run([interpreter.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert completed.stdout.split() == ["True", interpreter.suffix]
 
 
 def test_an_activated_environment_is_set_up_by_the_same_interpreter_as_before() -> None:
@@ -52,19 +52,19 @@ def script_clone(clone: Path) -> Path:
 
 
 def test_the_script_gives_the_reason_for_a_failure_in_a_sentence(script_clone: Path) -> None:
-    done = script(script_clone, ROS_DISTRO="iron", AMENT_PREFIX_PATH="/opt/ros/iron")
-    assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr.startswith("set-up: the sourced ROS distribution is iron, but the course needs Jazzy")
-    assert done.stderr.count("\n") == 1
+    completed = script(script_clone, ROS_DISTRO="iron", AMENT_PREFIX_PATH="/opt/ros/iron")
+    assert (completed.returncode, completed.stdout) == (1, "")
+    assert completed.stderr.startswith("set-up: the sourced ROS distribution is iron, but the course needs Jazzy")
+    assert completed.stderr.count("\n") == 1
 
 
 @pytest.mark.slow
 def test_the_script_shows_the_output_of_a_failed_pip_and_writes_no_stamp(script_clone: Path) -> None:
-    done = script(script_clone)
-    assert done.returncode == 1
-    assert "set-up: installing the pinned packages of requirements.lock" in done.stdout
-    assert "unpinned" in done.stderr
-    assert "set-up: pip could not install requirements.lock" in done.stderr
+    completed = script(script_clone)
+    assert completed.returncode == 1
+    assert "set-up: installing the pinned packages of requirements.lock" in completed.stdout
+    assert "unpinned" in completed.stderr
+    assert "set-up: pip could not install requirements.lock" in completed.stderr
     assert not (script_clone / ".venv" / bootstrap.STAMP).exists()
 
 
@@ -75,11 +75,11 @@ def test_without_pythons_headers_the_script_ends_before_it_makes_anything(script
     before, headers, after = apt.read_text().partition('sysconfig.get_path("include")')
     assert headers
     apt.write_text(f"{before}{str(tmp_path)!r}{after}")
-    done = script(script_clone, PATH=str(tmp_path))
-    assert done.returncode == 1
-    assert "set-up: Python.h not found" in done.stderr
-    assert "-dev`, then the same command again.\n" in done.stderr
-    assert "creating .venv" not in done.stdout
+    completed = script(script_clone, PATH=str(tmp_path))
+    assert completed.returncode == 1
+    assert "set-up: Python.h not found" in completed.stderr
+    assert "-dev`, then the same command again.\n" in completed.stderr
+    assert "creating .venv" not in completed.stdout
     assert not (script_clone / ".venv").exists()
 
 
@@ -95,9 +95,9 @@ set_up = names["SetUp"](pathlib.Path({str(script_clone)!r}), names["Interpreter"
 """
     subprocess.run([Interpreter.running().executable, "-I", "-c", code], check=True, timeout=60)
     before = json.loads((script_clone / ".venv" / bootstrap.STAMP).read_text())
-    done = script(script_clone, "--dev")
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "creating .venv" not in done.stdout
+    completed = script(script_clone, "--dev")
+    assert (completed.returncode, completed.stderr) == (0, "")
+    assert "creating .venv" not in completed.stdout
     assert json.loads((script_clone / ".venv" / bootstrap.STAMP).read_text()) == before
 
 

@@ -24,8 +24,8 @@ def set_up(clone: Path, commands: Any) -> SetUp:
 def test_a_set_up_is_created_once(set_up: SetUp, commands: Any, capsys: pytest.CaptureFixture[str]) -> None:
     set_up.make(dev=False)
     assert commands.take() == ["venv", "base", "patch", "launch", "project", "tutorials"]
-    shown = capsys.readouterr().out
-    assert shown.startswith("set-up: creating .venv with Python 3.12.1 and ROS 2 Jazzy from wheels\n")
+    output = capsys.readouterr().out
+    assert output.startswith("set-up: creating .venv with Python 3.12.1 and ROS 2 Jazzy from wheels\n")
     set_up.make(dev=False)
     assert commands.take() == []
     assert capsys.readouterr().out == ""
@@ -48,7 +48,7 @@ def test_packages_of_the_tests_are_installed_at_once_if_there_is_no_set_up(set_u
 
 
 @pytest.mark.parametrize(
-    ("changed", "again"),
+    ("changed", "repeated_steps"),
     [
         ("requirements.lock", ["venv", "base", "patch", "launch", "project", "tutorials"]),
         ("autograder/ros/patch_wheels.py", ["venv", "base", "patch", "launch", "project", "tutorials"]),
@@ -58,13 +58,13 @@ def test_packages_of_the_tests_are_installed_at_once_if_there_is_no_set_up(set_u
     ],
 )
 def test_a_changed_file_repeats_the_steps_that_depend_on_it(
-    set_up: SetUp, commands: Any, changed: str, again: list[str]
+    set_up: SetUp, commands: Any, changed: str, repeated_steps: list[str]
 ) -> None:
     set_up.make(dev=False)
     commands.take()
     (set_up.root / changed).write_text("another\n")
     set_up.make(dev=False)
-    assert commands.take() == again
+    assert commands.take() == repeated_steps
 
 
 @pytest.mark.parametrize("change", [{"sourced": "/opt/ros/jazzy"}, {"interpreter": replace(PY312, build="3.12.2")}])

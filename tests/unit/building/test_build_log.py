@@ -1,4 +1,4 @@
-"""A failed build's log shows a student's own files and lines, and no loader's."""
+"""The log of a failed build shows the student's files and lines, without the frames of loaders."""
 
 from __future__ import annotations
 

@@ -24,8 +24,8 @@ def package(source: Path, name: str, *depends: str, interface: bool = False) -> 
         (folder / "CMakeLists.txt").write_text("project(x)\n")
 
 
-def bundled(source: Path, *wanted: str) -> set[str]:
-    return set(interface_bundle(read_packages(source)[0], wanted))
+def bundled(source: Path, *requested: str) -> set[str]:
+    return set(interface_bundle(read_packages(source)[0], requested))
 
 
 def test_the_bundle_contains_the_interfaces_that_the_requested_packages_need(tmp_path: Path) -> None:
@@ -54,14 +54,14 @@ def test_packages_that_need_each_other_end_the_search(tmp_path: Path) -> None:
 def test_any_change_of_content_changes_the_key(tmp_path: Path, name: str) -> None:
     package(tmp_path, "robot_msgs", interface=True)
 
-    def found() -> str:
+    def current_key() -> str:
         return keeper.key(read_tree(tmp_path, SOURCES))
 
-    before = found()
-    assert found() == before
+    before = current_key()
+    assert current_key() == before
     path = tmp_path / "robot_msgs" / name
     path.write_text((path.read_text() if path.exists() else "") + " ")
-    assert found() != before
+    assert current_key() != before
 
 
 def test_scripts_name_the_new_folder_and_other_files_are_unchanged(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""What a worker hears of interface packages that do not build."""
+"""How a worker learns that interface packages do not build."""
 
 from __future__ import annotations
 
@@ -30,8 +30,10 @@ def test_a_build_that_a_limit_ended_is_not_tried_again_for_the_same_request(
     assert type(raised.value) is error
 
 
-def test_waiting_for_a_build_that_a_limit_ends_is_not_repeated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Three bring the same sources at once, and a fourth later. To build them takes until all three have asked."""
+def test_submissions_that_wait_for_the_same_build_share_its_failure(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Three requests bring the same sources at once, and a fourth later. The build lasts until all three have asked."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     asked, built = threading.Semaphore(0), list[str]()
 

@@ -17,7 +17,7 @@ FAILED, PASSED, NOT_CHECKED = Outcome.FAILED, Outcome.PASSED, Outcome.NOT_CHECKE
 
 @pytest.fixture
 def result(make_check: MakeCheck) -> Make:
-    """Make the result of a check, which comes after others."""
+    """Make the result of a check that comes `after` others."""
 
     def make(id: str, outcome: Outcome, *after: str, points: float = 1.0, message: str = "") -> CheckResult:
         check = make_check(id, f"It is {id}.", points, "graph", after=after)
@@ -26,15 +26,15 @@ def result(make_check: MakeCheck) -> Make:
     return make
 
 
-def told(*checks: CheckResult, diagnosis: str = "") -> list[tuple[str, str, str]]:
+def folded(*checks: CheckResult, diagnosis: str = "") -> list[tuple[str, str, str]]:
     """Return each cause with the ids of the checks that failed or were skipped because of it."""
-    found = causes(checks, diagnosis)
-    assert sorted(check.id for cause in found for check in cause.checks) == sorted(check.id for check in checks)
-    return [(c.check.id, " ".join(o.id for o in c.failed), " ".join(o.id for o in c.unchecked)) for c in found]
+    all_causes = causes(checks, diagnosis)
+    assert sorted(check.id for cause in all_causes for check in cause.checks) == sorted(check.id for check in checks)
+    return [(c.check.id, " ".join(o.id for o in c.failed), " ".join(o.id for o in c.unchecked)) for c in all_causes]
 
 
 def test_failures_after_a_failure_are_folded_under_it_directly_or_not(result: Make) -> None:
-    assert told(
+    assert folded(
         result("a", PASSED),
         result("b", FAILED, "a"),
         result("c", FAILED, "a", "b"),
@@ -47,26 +47,26 @@ def test_failures_after_a_failure_are_folded_under_it_directly_or_not(result: Ma
 
 def test_a_check_is_folded_under_a_cause_that_is_shown_after_it(result: Make) -> None:
     checks = result("b", FAILED, "a"), result("a", FAILED)
-    assert told(*checks) == [("a", "b", "")]
+    assert folded(*checks) == [("a", "b", "")]
 
 
 def test_a_check_that_names_itself_or_an_unknown_check_has_no_cause(result: Make) -> None:
-    assert told(result("a", FAILED, "gone"), result("b", FAILED, "b")) == [("a", "", ""), ("b", "", "")]
+    assert folded(result("a", FAILED, "gone"), result("b", FAILED, "b")) == [("a", "", ""), ("b", "", "")]
 
 
 def test_checks_not_run_for_the_same_reason_are_one_line(result: Make) -> None:
     build = [result(name, NOT_CHECKED, message="it does not build") for name in "abc"]
-    assert told(*build, result("d", NOT_CHECKED, "c", message="first c")) == [("a", "", "b c d")]
+    assert folded(*build, result("d", NOT_CHECKED, "c", message="first c")) == [("a", "", "b c d")]
     assert causes(build)[0].not_checked == "Not checked: It is b. It is c."
     many = causes([result(name, NOT_CHECKED, message="it does not build") for name in "abcde"])[0]
     assert (many.not_checked, len(many.unnamed)) == ("Not checked: 4 more checks.", 4)
-    assert told(result("a", NOT_CHECKED, message="x"), result("b", NOT_CHECKED)) == [("a", "", ""), ("b", "", "")]
+    assert folded(result("a", NOT_CHECKED, message="x"), result("b", NOT_CHECKED)) == [("a", "", ""), ("b", "", "")]
 
 
-def test_checks_that_failed_by_the_diagnosis_have_one_cause(result: Make) -> None:
+def test_checks_that_failed_with_the_message_of_the_diagnosis_have_one_cause(result: Make) -> None:
     checks = [result(name, FAILED, message="It crashed.") for name in "ab"]
-    assert told(*checks, result("c", FAILED), diagnosis="It crashed.") == [("a", "b", ""), ("c", "", "")]
-    assert told(*checks, diagnosis="It hangs.") == [("a", "", ""), ("b", "", "")]
+    assert folded(*checks, result("c", FAILED), diagnosis="It crashed.") == [("a", "b", ""), ("c", "", "")]
+    assert folded(*checks, diagnosis="It hangs.") == [("a", "", ""), ("b", "", "")]
 
 
 def test_the_most_expensive_cause_includes_its_consequences_and_the_first_of_equals_wins(result: Make) -> None:

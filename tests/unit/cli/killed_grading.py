@@ -1,4 +1,4 @@
-"""A grading of a class that kills itself, as `kill -9` does, before a chosen change of a file of its results.
+"""A grading of a class that kills itself, as `kill -9` does, before a chosen change to a file of its results.
 
 It runs in a separate process. The workers are replaced; the code that writes and replaces results is real.
 """
@@ -29,13 +29,13 @@ from autograder.suite.suites import Suite
 
 CHAPTER = "02_nodes"
 NOTEBOOK = b'{"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}'
-# The audit events of changes to files, with the places of the paths among their arguments.
+# The audit events of changes to files, with the positions of the paths among their arguments.
 CHANGES = {"os.rename": (0, 1), "os.remove": (0,), "os.mkdir": (0,), "os.rmdir": (0,), "open": (0,)}
 WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT  # flags of a file that is opened to be changed
 
 
 class Worker:
-    """Stands for the workers: grades a submission by the checks that `lost` names for its student."""
+    """Replaces the workers: fails the checks that `lost` names for the student, and passes all others."""
 
     def __init__(self, lost: Mapping[str, tuple[str, ...]]) -> None:
         self._lost = lost
@@ -72,9 +72,9 @@ def grade(folder: Path, lost: Mapping[str, tuple[str, ...]], version: str, *opti
         folder: holds the folder `class`, and gets the folder `results`.
         lost: the checks that each student loses.
         version: the version of the suite.
-        options: more words of the command.
-        kill_at: the number of the change to the results before which the process kills itself, from 0; -1 for none.
-            If it does not, the file `changes` contains their number.
+        options: further options of the command.
+        kill_at: the index of the change to the results before which the process kills itself, or -1 to let it
+            complete. The file `changes` then contains the number of changes.
     """
     results, changes = folder / "results", 0
     printed = os.open(folder / "printed", os.O_WRONLY | os.O_CREAT | os.O_APPEND)
@@ -83,7 +83,7 @@ def grade(folder: Path, lost: Mapping[str, tuple[str, ...]], version: str, *opti
         nonlocal changes
         if event not in CHANGES or (event == "open" and not arguments[2] & WRITING):
             return
-        if any(str(arguments[place]).startswith(str(results)) for place in CHANGES[event]):
+        if any(str(arguments[position]).startswith(str(results)) for position in CHANGES[event]):
             if changes == kill_at:
                 if event == "open" and arguments[2] & os.O_TRUNC and Path(arguments[0]).exists():
                     os.truncate(arguments[0], 0)  # as if it were killed before it could write

@@ -40,19 +40,19 @@ def _submission(folder: Path) -> Path:
 
 @pytest.fixture
 def graded(monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, Any]]:
-    """Let the `grade` verb get given results; returns what it asked for."""
+    """Return a function that makes `grade` return given results. It returns the options that `grade` is called with."""
 
     def give(*results: result.Result) -> dict[str, Any]:
-        asked: dict[str, Any] = {}
+        options_used: dict[str, Any] = {}
 
         def grade_all(entries: object, assignment: str, **options: Any) -> tuple[result.Result, ...]:
-            asked.update(options, entries=entries, assignment=assignment)
-            for one in results:
-                options["on_result"](one)
+            options_used.update(options, entries=entries, assignment=assignment)
+            for each in results:
+                options["on_result"](each)
             return results
 
         monkeypatch.setattr(sys.modules["autograder.cli.grade"], "grade_all", grade_all)
-        return asked
+        return options_used
 
     return give
 
@@ -79,16 +79,21 @@ def test_a_module_that_only_helps_a_verb_is_not_listed_as_one(tmp_path: Path, mo
 def test_grading_prints_a_line_and_a_row_for_each_submission_and_exits_0(
     tmp_path: Path, make_result: MakeResult, graded: Callable[..., dict[str, Any]]
 ) -> None:
-    asked = graded(make_result("alice"))
+    options = graded(make_result("alice"))
     out, stored = tmp_path / "out", tmp_path / "all.json"
-    done = _run(
+    completed = _run(
         *("grade", str(_submission(tmp_path / "alice")), "--assignment", "02_nodes", "--out", str(out)),
         *("--seed", "5", "-j", "3", "--json", str(stored)),
     )
-    assert done.exit_code == 0, done.output
-    assert "[1/1] alice: 4/10 = 40 %" in done.output
-    assert "it kept driving: 0.08 m from the north wall" in done.output
-    assert (asked["seed"], asked["jobs"], asked["isolation"].value, asked["resume"]) == (5, 3, "bubblewrap", False)
+    assert completed.exit_code == 0, completed.output
+    assert "[1/1] alice: 4/10 = 40 %" in completed.output
+    assert "it kept driving: 0.08 m from the north wall" in completed.output
+    assert (options["seed"], options["jobs"], options["isolation"].value, options["resume"]) == (
+        5,
+        3,
+        "bubblewrap",
+        False,
+    )
     assert json.loads(stored.read_text())[0]["student"] == "alice"
     assert (out / "index.html").is_file()
 
@@ -106,8 +111,8 @@ def test_regrading_with_resume_lists_the_students_whose_mark_changed(
     alice, bob, carol = make_result("alice"), make_result("bob"), make_result("carol")
     for before in (alice, bob):  # carol is not graded yet
         result.write_json(tmp_path / "out" / before.student / "result.json", before.to_json())
-    mended = replace(alice, checks=(*alice.checks[:2], replace(alice.checks[2], points=4.0), *alice.checks[3:]))
-    graded(mended, bob, carol)
+    regraded = replace(alice, checks=(*alice.checks[:2], replace(alice.checks[2], points=4.0), *alice.checks[3:]))
+    graded(regraded, bob, carol)
     command = ("grade", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out"))
     output = _run(*command, "--resume").output
     heading = "Marks that changed because of the suite or the submission:\n"
@@ -138,11 +143,11 @@ def test_a_dry_run_of_grading_says_what_becomes_of_stored_results(tmp_path: Path
         result.write_json(tmp_path / "out" / stored.student / "result.json", stored.to_json())
     before = {path: path.read_bytes() for path in (tmp_path / "out").rglob("*.json")}
     for more, kept in (((), "replaces"), (("--resume",), "keeps")):
-        said = " ".join(_run(*command, *more).output.split())
-        assert f"alice {kept} 4/10 = 40 %" in said
-        assert "bob replaces 4/10 = 40 %" in said
-        assert "carol new" in said
-        assert "Nothing was graded or written." in said
+        output = " ".join(_run(*command, *more).output.split())
+        assert f"alice {kept} 4/10 = 40 %" in output
+        assert "bob replaces 4/10 = 40 %" in output
+        assert "carol new" in output
+        assert "Nothing was graded or written." in output
     assert {path: path.read_bytes() for path in (tmp_path / "out").rglob("*") if path.is_file()} == before
 
 
@@ -150,12 +155,12 @@ def test_a_submission_that_was_not_graded_exits_1_and_shows_no_zero(
     tmp_path: Path, ungraded_result: result.Result, graded: Callable[..., dict[str, Any]]
 ) -> None:
     graded(ungraded_result)
-    done = _run(
+    completed = _run(
         "grade", str(_submission(tmp_path / "carol")), "--assignment", "02_nodes", "--out", str(tmp_path / "out")
     )
-    assert done.exit_code == 1
-    assert "carol       not graded" in done.output
-    assert "0/10" not in done.output
+    assert completed.exit_code == 1
+    assert "carol       not graded" in completed.output
+    assert "0/10" not in completed.output
 
 
 @pytest.mark.parametrize(
@@ -183,7 +188,7 @@ def _main(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    ("arguments", "message"),
     [
         (("grade", "/no/where", "--assignment", "02_nodes"), "/no/where: there is no such file or folder"),
         (("grade", "/tmp", "--assignment", "77_none"), "there are no hidden checks for '77_none'; there are for: "),
@@ -192,12 +197,12 @@ def _main(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     ],
 )
 def test_an_unknown_name_is_reported_in_one_sentence_and_exits_2(
-    arguments: tuple[str, ...], words: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    arguments: tuple[str, ...], message: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert _main(monkeypatch, *arguments) == 2
-    said = capsys.readouterr().err
-    assert words in said
-    assert "Traceback" not in said
+    errors = capsys.readouterr().err
+    assert message in errors
+    assert "Traceback" not in errors
 
 
 @pytest.mark.parametrize(("error", "status"), [(UsageError("wrong"), 2), (GraderError("broken"), 1)])
@@ -219,30 +224,30 @@ def test_checking_finds_the_workspace_from_the_chapter_and_from_the_course(
 ) -> None:
     (tmp_path / folder).mkdir(parents=True)
     monkeypatch.chdir(tmp_path)
-    asked: list[tuple[str, Path]] = []
+    calls: list[tuple[str, Path]] = []
 
     def run_checks(assignment: str, workspace: Path, **options: object) -> CheckReport:
-        asked.append((assignment, workspace))
+        calls.append((assignment, workspace))
         return CheckReport(assignment, ())
 
     monkeypatch.setattr(importlib.import_module("autograder.cli.check"), "run_checks", run_checks)
     _run("check", "02_nodes")
-    assert asked == [("02_nodes", Path(folder))]
+    assert calls == [("02_nodes", Path(folder))]
 
 
 @pytest.mark.promise("`fresh=True` in the notebook, or `--fresh` in a terminal, runs the checks anyway.")
-def test_checking_asks_for_what_its_options_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[dict[str, object]] = []
+def test_the_options_of_check_are_passed_to_the_checks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[dict[str, object]] = []
 
     def run_checks(assignment: str, workspace: Path, **options: object) -> CheckReport:
-        asked.append({name: value for name, value in options.items() if value})
+        calls.append({name: value for name, value in options.items() if value})
         return CheckReport(assignment, ())
 
     monkeypatch.setattr(sys.modules["autograder.cli.check"], "run_checks", run_checks)
     _run("check", "08_capstone", str(tmp_path), "--step", "2", "--fresh")
     _run("check", "09_assessment", str(tmp_path), "--question", "3")
     _run("check", "04_launch", str(tmp_path), "--exercise", "1")
-    assert asked == [{"step": 2, "fresh": True}, {"question": 3}, {"exercise": 1}]
+    assert calls == [{"step": 2, "fresh": True}, {"question": 3}, {"exercise": 1}]
 
 
 @pytest.mark.parametrize(("outcome", "status"), [(Outcome.PASSED, 0), (Outcome.FAILED, 1), (Outcome.NOT_CHECKED, 1)])
@@ -252,9 +257,9 @@ def test_checking_exits_0_only_when_every_check_passed(
     turns = Check("turns", "It turns.", 2.0, "graph", Visibility.VISIBLE, ("look left",), None, ())
     report = CheckReport("02_nodes", (result.CheckResult.of(turns, outcome, "it did not"),))
     monkeypatch.setattr(sys.modules["autograder.cli.check"], "run_checks", lambda *arguments, **options: report)
-    done = _run("check", "02_nodes", str(tmp_path), "--json", str(tmp_path / "report.json"))
-    assert done.exit_code == status
-    assert "It turns." in done.output
+    completed = _run("check", "02_nodes", str(tmp_path), "--json", str(tmp_path / "report.json"))
+    assert completed.exit_code == status
+    assert "It turns." in completed.output
     assert json.loads((tmp_path / "report.json").read_text())["lines"][0]["outcome"] == outcome.value
 
 
@@ -273,6 +278,6 @@ def test_a_table_has_as_many_columns_as_its_headings() -> None:
 
 def test_the_installed_command_works_and_reports_errors() -> None:
     command = [str(Path(sys.executable).with_name("autograder")), "grade", "/no/where", "--assignment", "02_nodes"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
-    assert (done.returncode, done.stderr) == (2, "autograder: /no/where: there is no such file or folder\n")
+    completed = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert (completed.returncode, completed.stderr) == (2, "autograder: /no/where: there is no such file or folder\n")
     assert grade_verb.callback is not None

@@ -112,13 +112,16 @@ def test_the_lists_of_hidden_checks_that_students_get_are_up_to_date() -> None:
 def test_a_student_whose_visible_checks_all_pass_gets_the_list_of_hidden_checks(
     assignment: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    shown = {check.title for check in suites.visible(assignment).checks}
-    judged = [check.title for check in suites.hidden(assignment).checks if check.title not in shown]
+    visible_titles = {check.title for check in suites.visible(assignment).checks}
+    hidden_titles = [check.title for check in suites.hidden(assignment).checks if check.title not in visible_titles]
     passed = [dataclasses.asdict(CheckResult.of(each, Outcome.PASSED)) for each in suites.visible(assignment).checks]
-    answer = {"diagnosis": {"kind": "ok"}, "checks": passed, "sources": [], "reads": [], "lasting": True}
-    monkeypatch.setattr(checking, "run_in_worker", lambda *_, **__: nullcontext((answer, None)))
+    reply = {"diagnosis": {"kind": "ok"}, "checks": passed, "sources": [], "reads": [], "lasting": True}
+    monkeypatch.setattr(checking, "run_in_worker", lambda *_, **__: nullcontext((reply, None)))
     report = checking.check(assignment)
     assert isinstance(report, CheckReport)
     lines = repr(report).splitlines()
-    assert lines[-len(judged) - 1] == f"After you submit, {len(judged)} more checks run with their own inputs:"
-    assert lines[-len(judged) :] == [f"- {title}" for title in judged]
+    assert (
+        lines[-len(hidden_titles) - 1]
+        == f"After you submit, {len(hidden_titles)} more checks run with their own inputs:"
+    )
+    assert lines[-len(hidden_titles) :] == [f"- {title}" for title in hidden_titles]

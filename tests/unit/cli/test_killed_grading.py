@@ -1,4 +1,4 @@
-"""A grading of a class again that is killed at any change of a file, and resumed, lists all whose marks changed."""
+"""A regrading that is killed at any change of a file and then resumed lists all students whose marks changed."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from autograder.report.export import load
 from tests.unit.cli.killed_grading import grade
 
 FORKS = multiprocessing.get_context("forkserver")
-# What each process would import otherwise, which takes longer than a grading here.
+# Preloaded, because importing them in each process takes longer than a grading here.
 FORKS.set_forkserver_preload(
     ["tests.unit.cli.killed_grading", "autograder.cli.grade", "jsonschema.validators", "nbformat", "PIL.PngImagePlugin"]
 )
 OLD, NEW = "1-0123456789ab", "2-0123456789ab"
-Lost = Mapping[str, tuple[str, ...]]
-BEFORE: Lost = {"alice": ("nan",), "bob": (), "carol": ("starts",), "dave": ("room",)}
-AFTER: Lost = {"alice": (), "bob": (), "carol": ("node_name",), "dave": ("room",)}
+LostChecks = Mapping[str, tuple[str, ...]]
+BEFORE: LostChecks = {"alice": ("nan",), "bob": (), "carol": ("starts",), "dave": ("room",)}
+AFTER: LostChecks = {"alice": (), "bob": (), "carol": ("node_name",), "dave": ("room",)}
 INSTANTS = 20
 LIST = """
 Marks that changed because of the suite or the submission:
@@ -35,7 +35,7 @@ erin (02_nodes): 51 -> 53
 """
 
 
-def run(folder: Path, lost: Lost, version: str, *options: str, kill_at: int = -1) -> int | None:
+def run(folder: Path, lost: LostChecks, version: str, *options: str, kill_at: int = -1) -> int | None:
     """Grade the class in a separate process; return its exit status."""
     process = FORKS.Process(target=grade, args=(folder, lost, version, *options), kwargs={"kill_at": kill_at})
     process.start()
@@ -96,8 +96,8 @@ def test_the_list_of_changes_is_whole_after_a_kill_at_any_instant(
     assert run(folder, AFTER, NEW, "--resume") == 0
     assert set(listed(folder)) == {LIST}
     assert {result.suite_version for result in load(folder / "results")} == {NEW}
-    left = {path.name for path in (folder / "results").rglob("*")}
-    assert left.isdisjoint({".unfinished", "earlier-marks.json"})
+    file_names = {path.name for path in (folder / "results").rglob("*")}
+    assert file_names.isdisjoint({".unfinished", "earlier-marks.json"})
 
 
 def test_changes_that_were_listed_are_not_listed_again(graded: Path, changes: int, tmp_path: Path) -> None:

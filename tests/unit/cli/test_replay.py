@@ -32,10 +32,10 @@ def test_the_stored_run_of_a_check_is_shown_on_its_own(stored: Path, monkeypatch
     for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(variable, raising=False)
     for path in (stored, stored / "result.json"):  # the first run's page is not a second result
-        said = CliRunner().invoke(cli.group, ["replay", str(path), "--check", "turns"])
-        assert said.exit_code == 0, said.output
+        completed = CliRunner().invoke(cli.group, ["replay", str(path), "--check", "turns"])
+        assert completed.exit_code == 0, completed.output
         page = stored / "replay" / "turns" / "feedback.html"
-        assert said.output == f"The run of 'turns': {page}\n"
+        assert completed.output == f"The run of 'turns': {page}\n"
     text = page.read_text(encoding="utf-8")
     assert 'id="run-turns-track"' in text
     assert 'id="run-starts-track"' not in text

@@ -1,4 +1,4 @@
-"""No text of a student controls the grader's terminal, whichever verb prints it."""
+"""Text of a student does not control the grader's terminal, whichever verb prints it."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from autograder.notebook.checking import CheckReport
 from autograder.plain_text import visible
 from autograder.result.model import Outcome, Result, write_json
 
-# A window title, the clipboard, a cursor that moves up, controls of the second set, marks that turn a line round or are
-# not seen, ends of lines, and half of a surrogate pair.
+# A window title, the clipboard, a cursor movement, C1 controls, marks that reverse a line or are invisible, ends of
+# lines, and half of a surrogate pair.
 HOSTILE = "a\x1b]0;t\x07\x1b]52;c;eA==\x07\x1b[2A\x9b1m\u202eb\u2066\u200f\u200b\ufeff\u2028\x85\r\x00\x7f\udc80z"
 MakeResult = Callable[..., Result]
 
@@ -32,8 +32,8 @@ MARKS = "\u200b\u200f\ufeff"  # allowed on a page: some languages need them, and
 
 
 def expect_harmless(text: str, allowed: str = "") -> None:
-    seen = {char for char in text if unicodedata.category(char) in ("Cc", "Cf", "Cs", "Zl", "Zp")}
-    assert not seen - {"\n", "\t", *allowed}, sorted(map(ascii, seen))
+    controls = {char for char in text if unicodedata.category(char) in ("Cc", "Cf", "Cs", "Zl", "Zp")}
+    assert not controls - {"\n", "\t", *allowed}, sorted(map(ascii, controls))
 
 
 @pytest.fixture
@@ -47,13 +47,13 @@ def hostile(make_result: MakeResult) -> Result:
 
 
 def run(*arguments: str) -> str:
-    done = CliRunner().invoke(cli.group, arguments)
-    assert done.exception is None or isinstance(done.exception, SystemExit), done.output
-    expect_harmless(done.output)
-    return done.output
+    completed = CliRunner().invoke(cli.group, arguments)
+    assert completed.exception is None or isinstance(completed.exception, SystemExit), completed.output
+    expect_harmless(completed.output)
+    return completed.output
 
 
-def test_grading_prints_no_control_of_a_name_or_a_message(
+def test_grading_escapes_control_characters_in_names_and_messages(
     tmp_path: Path, hostile: Result, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     broken = replace(hostile, student="c\nd", diagnosis=Diagnosis(Kind.BUILD_FAILED, HOSTILE), build=None, checks=())
@@ -64,14 +64,14 @@ def test_grading_prints_no_control_of_a_name_or_a_message(
 
     monkeypatch.setattr(import_module("autograder.cli.grade"), "grade_all", grade_all)
     (tmp_path / "x" / "src").mkdir(parents=True)
-    said = run("grade", str(tmp_path / "x"), "--assignment", "02_nodes", "--out", str(tmp_path / "out"))
-    assert r"\x1b]52;c;eA==\x07" in said
-    assert r"\u202eb" in said
-    assert not any(line.startswith("d") for line in said.splitlines())  # a name has one line
+    output = run("grade", str(tmp_path / "x"), "--assignment", "02_nodes", "--out", str(tmp_path / "out"))
+    assert r"\x1b]52;c;eA==\x07" in output
+    assert r"\u202eb" in output
+    assert not any(line.startswith("d") for line in output.splitlines())  # a name has one line
 
 
 @pytest.mark.parametrize("form", ["csv", "markdown", "junit"])
-def test_exporting_writes_no_control_of_a_name_or_a_message(tmp_path: Path, hostile: Result, form: str) -> None:
+def test_exporting_escapes_control_characters_in_names_and_messages(tmp_path: Path, hostile: Result, form: str) -> None:
     write_json(tmp_path / "all" / "results.json", [hostile.to_json()])
     run("export", str(tmp_path / "all"), "--format", form, "--out", str(tmp_path / "marks"))
     expect_harmless((tmp_path / "marks").read_bytes().decode().replace("\r\n", "\n"), MARKS)
@@ -85,7 +85,7 @@ def test_a_formula_is_text_in_a_spreadsheet(tmp_path: Path, make_result: MakeRes
         assert not cell.startswith(("=", "+", "-", "@")), begin
 
 
-def test_comparing_and_replaying_print_no_control_of_a_name(tmp_path: Path, hostile: Result) -> None:
+def test_comparing_and_replaying_escape_control_characters_in_names(tmp_path: Path, hostile: Result) -> None:
     for folder, score in (("old", 1.0), ("new", 0.0)):
         checks = (replace(hostile.checks[0], points=score), *hostile.checks[1:])
         write_json(tmp_path / folder / "result.json", replace(hostile, checks=checks).to_json())
@@ -93,7 +93,7 @@ def test_comparing_and_replaying_print_no_control_of_a_name(tmp_path: Path, host
     run("replay", str(tmp_path / "new"), "--check", hostile.checks[0].id, "--no-open")
 
 
-def test_checking_prints_no_control_of_a_message(
+def test_checking_escapes_control_characters_in_messages(
     tmp_path: Path, hostile: Result, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     failed = [check for check in hostile.checks if check.outcome is Outcome.FAILED]
@@ -105,18 +105,18 @@ def test_checking_prints_no_control_of_a_message(
     assert "52;c" in run("check", "02_nodes", str(tmp_path))
 
 
-def test_similar_prints_no_control_of_a_name(tmp_path: Path) -> None:
+def test_similar_escapes_control_characters_in_names(tmp_path: Path) -> None:
     names = [f"{name}\x1b[2A\u202e\n{name}" for name in ("alice", "bob")]
     for name in names:
         (tmp_path / "class" / name / "src").mkdir(parents=True)
         text = "\n".join(f"def f{n}(a, b):\n    return [a * {n} + b, a]  # \u202e" for n in range(20))
         (tmp_path / "class" / name / "src" / "node.py").write_text(text)
-    said = run("similar", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out"))
-    assert r"alice\x1b[2A\u202e\nalice and bob" in said
+    output = run("similar", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out"))
+    assert r"alice\x1b[2A\u202e\nalice and bob" in output
     expect_harmless((tmp_path / "out" / "index.html").read_text(encoding="utf-8"), MARKS)
 
 
-def test_errors_print_no_control_of_a_files_name(
+def test_errors_escape_control_characters_in_file_names(
     capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for error in (UsageError(HOSTILE), RuntimeError(HOSTILE)):
@@ -127,17 +127,17 @@ def test_errors_print_no_control_of_a_files_name(
         monkeypatch.setattr(cli.group, "main", fail)
         with pytest.raises(SystemExit):
             cli.main(["doctor"])
-        said = capfd.readouterr().err
-        assert r"\x1b]52" in said
-        expect_harmless(said)
+        output = capfd.readouterr().err
+        assert r"\x1b]52" in output
+        expect_harmless(output)
     monkeypatch.undo()
     assert "no such option" in run("grade", "--no\x1b[2A\u202e").lower()
     assert "does not exist" in run("export", ".", "--format", "canvas", "--out", "x", "--roster", "no\x1b[2A\u202e")
 
 
-def test_a_name_with_lines_makes_one_row() -> None:
-    said = table([("a\nb  100/100", "1", "x\ny")], ("submission", "marks", "why"))
-    assert [line.split("  ")[0] for line in said.splitlines()] == ["submission", said.splitlines()[1], r"a\nb"]
+def test_a_name_with_line_breaks_makes_one_row() -> None:
+    output = table([("a\nb  100/100", "1", "x\ny")], ("submission", "marks", "why"))
+    assert [line.split("  ")[0] for line in output.splitlines()] == ["submission", output.splitlines()[1], r"a\nb"]
 
 
 def test_names_of_people_are_unchanged() -> None:
@@ -145,7 +145,7 @@ def test_names_of_people_are_unchanged() -> None:
         assert visible(name, line=True) == name
 
 
-def test_all_that_a_verb_prints_goes_through_one_function() -> None:
+def test_all_output_of_a_verb_goes_through_one_function() -> None:
     for path in sorted((ROOT / "autograder" / "cli").glob("*.py")):
         if path.name in ("terminal.py", "ros.py"):  # ros prints lines for a shell, of the machine's own paths
             continue

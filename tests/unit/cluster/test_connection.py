@@ -1,4 +1,4 @@
-"""Machines of a cluster fit each other, and connect by TLS unless they are the same machine."""
+"""Machines of a cluster have the same versions, and connect by TLS unless they are one machine."""
 
 from __future__ import annotations
 
@@ -46,42 +46,42 @@ def test_a_missing_certificate_is_named(tmp_path: Path) -> None:
 
 @pytest.mark.promise("make cluster-certificates")
 def test_a_certificate_works_for_server_and_client_and_only_its_owner_can_read_it(tmp_path: Path) -> None:
-    make = ["make", "-f", course_paths.ROOT / "Makefile", "cluster-certificates"]
-    subprocess.run(make, cwd=tmp_path, check=True)
+    command = ["make", "-f", course_paths.ROOT / "Makefile", "cluster-certificates"]
+    subprocess.run(command, cwd=tmp_path, check=True)
     certificate, key = (tmp_path / "cluster-certificates" / name for name in (CERTIFICATE, KEY))
     context = ssl.create_default_context(cafile=str(certificate))
     context.load_cert_chain(certificate, key)
     assert len(context.get_ca_certs()) == 1
     assert stat.S_IMODE(key.stat().st_mode) == 0o600
     before = key.read_text()
-    subprocess.run(make, cwd=tmp_path, check=True)
+    subprocess.run(command, cwd=tmp_path, check=True)
     assert key.read_text() == before
 
 
-HERE = "autograder 02_nodes 5ca1ab1e0000 10cc10cc10cc 3.12 stand-ins bubblewrap"
+OWN_RESOURCE = "autograder 02_nodes 5ca1ab1e0000 10cc10cc10cc 3.12 stand-ins bubblewrap"
 
 
 @pytest.mark.promise("It gets no submissions, and the client says what differs.")
 @pytest.mark.parametrize(
     ("offered", "reason"),
     [
-        ([HERE], ""),
-        ([HERE.replace("bubblewrap", "process"), HERE], ""),
-        ([HERE.replace("5ca1ab1e0000", "0")], "its suite of 02_nodes is 0, but here it is 5ca1ab1e0000"),
-        ([HERE.replace("02_nodes", "03_interfaces")], "its suite of 02_nodes is missing"),
-        ([HERE.replace("10cc10cc10cc", "0")], "its requirements.lock is 0"),
-        ([HERE.replace("3.12", "3.10")], "its Python is 3.10, but here it is 3.12"),
-        ([HERE.replace("stand-ins", "launch-3.4.3")], "its launch is launch-3.4.3, but here it is stand-ins"),
+        ([OWN_RESOURCE], ""),
+        ([OWN_RESOURCE.replace("bubblewrap", "process"), OWN_RESOURCE], ""),
+        ([OWN_RESOURCE.replace("5ca1ab1e0000", "0")], "its suite of 02_nodes is 0, but here it is 5ca1ab1e0000"),
+        ([OWN_RESOURCE.replace("02_nodes", "03_interfaces")], "its suite of 02_nodes is missing"),
+        ([OWN_RESOURCE.replace("10cc10cc10cc", "0")], "its requirements.lock is 0"),
+        ([OWN_RESOURCE.replace("3.12", "3.10")], "its Python is 3.10, but here it is 3.12"),
+        ([OWN_RESOURCE.replace("stand-ins", "launch-3.4.3")], "its launch is launch-3.4.3, but here it is stand-ins"),
         (
-            [HERE.replace("bubblewrap", "process")],
+            [OWN_RESOURCE.replace("bubblewrap", "process")],
             "it does not support the isolation level bubblewrap: `autograder doctor`",
         ),
         (["GPU"], "it does not report its versions: start it with `--preload autograder.grade.cluster`"),
     ],
 )
 def test_a_worker_with_other_versions_is_rejected_with_the_reason(offered: list[str], reason: str) -> None:
-    assert difference(HERE, offered).startswith(reason)
-    assert (difference(HERE, offered) == "") is (HERE in offered)
+    assert difference(OWN_RESOURCE, offered).startswith(reason)
+    assert (difference(OWN_RESOURCE, offered) == "") is (OWN_RESOURCE in offered)
 
 
 def test_a_machine_meets_its_own_requirements() -> None:

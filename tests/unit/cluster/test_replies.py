@@ -39,8 +39,8 @@ def job(tmp_path: Path) -> Job:
 def result(make_result: Callable[..., Result]) -> Result:
     suite = suites.hidden(CHAPTER)
     checks = tuple(CheckResult.of(check, Outcome.PASSED) for check in suite.checks)
-    told = {"suite_version": suite.version, "files_digest": suite.files_digest, "submission_sha256": SHA256}
-    return make_result("", checks=checks, max_score=suite.max_score, **told)
+    versions = {"suite_version": suite.version, "files_digest": suite.files_digest, "submission_sha256": SHA256}
+    return make_result("", checks=checks, max_score=suite.max_score, **versions)
 
 
 def png() -> bytes:
@@ -90,9 +90,9 @@ def test_a_task_writes_no_file_outside_its_folder(job: Job, name: str) -> None:
 
 @pytest.mark.promise("The student's name stays with the client.")
 def test_a_reply_is_stored_under_the_student_s_name(job: Job, result: Result) -> None:
-    told = with_run(result, "turns.run.json")
-    taken = accept(answer(told, **{"turns.png": png(), "turns.run.json": b"{}"}), job, SHA256)
-    assert taken == replace(told, student="Zoë")
+    reported = with_run(result, "turns.run.json")
+    accepted = accept(answer(reported, **{"turns.png": png(), "turns.run.json": b"{}"}), job, SHA256)
+    assert accepted == replace(reported, student="Zoë")
     assert json.loads((job.out / "result.json").read_text())["student"] == "Zoë"
     assert (job.out / "turns.png").read_bytes() == png()
     assert (job.out / "turns.run.json").read_bytes() == b"{}"
@@ -100,7 +100,7 @@ def test_a_reply_is_stored_under_the_student_s_name(job: Job, result: Result) ->
 
 def hostile(result: Result) -> dict[str, tuple[object, str]]:
     first, *rest = result.checks
-    none = [replace(check, points=0.0) for check in rest]
+    zeroed = [replace(check, points=0.0) for check in rest]
     picture = {"turns.png": png()}
     large = io.BytesIO()
     Image.new("1", (6000, 6000)).save(large, "PNG")
@@ -111,8 +111,8 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
         "nested": (b"\x91" * 100_000, "cannot be read"),
         "empty lists": (msgpack.packb([{"result.json": [[]] * 100_000}, ""]), "cannot be read"),
         "empty maps": (msgpack.packb([{"result.json": {"a": {"b": {}}}}, ""]), "cannot be read"),
-        "a file too few": (msgpack.packb([{"result.json": b""}, ""])[:-1], "cannot be read"),
-        "a name that is none": (b"\x92\x81\x01\xc4\x00\xa0", "does not consist of named files"),
+        "a missing file": (msgpack.packb([{"result.json": b""}, ""])[:-1], "cannot be read"),
+        "an invalid name": (b"\x92\x81\x01\xc4\x00\xa0", "does not consist of named files"),
         "too many files": (msgpack.packb([{str(n): b"" for n in range(201)}, ""]), "does not consist of named files"),
         "no files": (msgpack.packb([[1], ""]), "cannot be read"),
         "no result": (Reply({}).pack(), "contains no result"),
@@ -123,7 +123,7 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
         "other files": (answer(replace(result, files_digest="0" * 12)), "a worker graded"),
         "another maximum": (answer(replace(result, max_score=99.0)), "a worker graded"),
         "another isolation level": (answer(replace(result, isolation="process")), "a worker graded"),
-        "a check too few": (answer(replace(result, checks=tuple(rest))), "does not contain the checks"),
+        "a missing check": (answer(replace(result, checks=tuple(rest))), "does not contain the checks"),
         "a check worth more": (
             answer(replace(result, checks=(replace(first, max_points=99.0), *rest))),
             "does not contain the checks",
@@ -133,19 +133,19 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
             f"points of {result.max_score:g}",
         ),
         "too many points for a check": (
-            answer(replace(result, checks=(replace(first, points=first.max_points + 1), *none))),
+            answer(replace(result, checks=(replace(first, points=first.max_points + 1), *zeroed))),
             "more points",
         ),
-        "a file that is no picture": (answer(result, **{"evil.sh": b"rm"}), "its result names"),
+        "a file that is not a picture": (answer(result, **{"evil.sh": b"rm"}), "its result names"),
         "a picture outside": (answer(with_picture(result, "../x.png"), **{"../x.png": png()}), "of the name"),
-        "a picture that is none": (
+        "an invalid picture": (
             answer(with_picture(result, "turns.png"), **{"turns.png": b"GIF"}),
             "cannot be read",
         ),
         "a missing picture": (answer(with_picture(result, "turns.png")), "its result names"),
-        "a picture too many": (answer(result, **picture), "its result names"),
+        "an unnamed picture": (answer(result, **picture), "its result names"),
         "a huge picture": (answer(with_picture(result, "turns.png"), **{"turns.png": large.getvalue()}), "pixels"),
-        "a run that is none": (
+        "an invalid run": (
             answer(with_run(result, "turns.run.json"), **picture, **{"turns.run.json": b"[]"}),
             "it is not a run",
         ),
@@ -160,8 +160,8 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
 
 @pytest.mark.promise("The client treats replies as untrusted.", "It writes nothing until the whole reply is valid.")
 def test_a_hostile_reply_is_rejected_and_writes_nothing(job: Job, result: Result) -> None:
-    for name, (data, why) in hostile(result).items():
-        with pytest.raises(ReplyError, match=why):
+    for name, (data, reason) in hostile(result).items():
+        with pytest.raises(ReplyError, match=reason):
             pytest.fail(f"{name}: {accept(data, job, SHA256)}")
         assert not job.out.exists(), name
 

@@ -1,4 +1,4 @@
-"""Runs `autograder course check` for each line that it reads, in a fork of a process that has all modules already.
+"""Runs `autograder course check` for each line that it reads, in a fork of a process with all modules imported.
 
 Each answer is the command's output, and a last line with its exit status. The line contains the arguments.
 """
@@ -12,7 +12,7 @@ import sys
 from autograder.cli import main
 
 END = "exit status"
-SLOW = (
+SLOW_IMPORTS = (
     "autograder.cli.course",
     "autograder.harness",
     "nbgrader.preprocessors",
@@ -24,7 +24,7 @@ SLOW = (
 
 def serve() -> None:
     """Answer until the input ends."""
-    for name in SLOW:
+    for name in SLOW_IMPORTS:
         importlib.import_module(name)
     for line in sys.stdin:
         if (child := os.fork()) == 0:

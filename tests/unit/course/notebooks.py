@@ -45,9 +45,9 @@ def notebook(*cells: NotebookNode, **course: Any) -> NotebookNode:
     return new_notebook(cells=list(cells), metadata={"kernelspec": KERNEL, "course": course})
 
 
-def chapter(root: Path, made: NotebookNode, name: str = "01_small") -> Chapter:
+def chapter(root: Path, content: NotebookNode, name: str = "01_small") -> Chapter:
     folder = root / "chapters" / name
     folder.mkdir(parents=True)
-    written = Chapter(folder)
-    written.write(made)
-    return written
+    saved = Chapter(folder)
+    saved.write(content)
+    return saved

@@ -27,12 +27,12 @@ FUNCTION = '%%writefile ws/a.py\ndef main():\n    """Run."""\n'
 MAX_UNCHECKED = 12  # in the whole course
 
 
-def made(**course: Any) -> NotebookNode:
+def contract_notebook(**course: Any) -> NotebookNode:
     return notebook(prose(TABLE, "table", course={"contract": {"waits": ROW, "ends": ENDS}, **course}))
 
 
-def check(id: str, *holds: str) -> Check:
-    return Check(id, f"{id}.", 1.0, "graph", Visibility.HIDDEN, (), None, (), holds)
+def check(id: str, *covers: str) -> Check:
+    return Check(id, f"{id}.", 1.0, "graph", Visibility.HIDDEN, (), None, (), covers)
 
 
 def messages(book: NotebookNode, *checks: Check) -> list[str]:
@@ -40,53 +40,54 @@ def messages(book: NotebookNode, *checks: Check) -> list[str]:
 
 
 def test_a_table_row_is_quoted_with_its_heading_and_a_bullet_without_its_dash() -> None:
-    stated = requirements(made().cells)
+    stated = requirements(contract_notebook().cells)
     assert stated["waits"].text == "no scan yet: speed 0, turn 0"
     assert stated["ends"].text == "It ends with exit status 0."
 
 
 def test_a_complete_contract_has_no_findings() -> None:
-    assert messages(made(), check("stops", "waits", "ends")) == []
+    assert messages(contract_notebook(), check("stops", "waits", "ends")) == []
 
 
 def test_a_requirement_without_a_check_is_found() -> None:
-    assert messages(made(), check("stops", "waits")) == ["no check covers the requirement 'ends'"]
+    assert messages(contract_notebook(), check("stops", "waits")) == ["no check covers the requirement 'ends'"]
 
 
 def test_a_check_without_a_requirement_is_found() -> None:
-    found = messages(made(), check("stops", "waits", "ends"), check("bare"), check("other", "flies"))
-    assert found == [
+    findings = messages(contract_notebook(), check("stops", "waits", "ends"), check("bare"), check("other", "flies"))
+    assert findings == [
         "the hidden check 'bare' covers no requirement",
         "the hidden check 'other' covers 'flies', which no cell names",
     ]
 
 
 def test_a_sentence_that_changed_in_its_cell_is_found() -> None:
-    book = made(contract={"waits": ROW.replace("0", "1"), "ends": ENDS})
-    found = messages(book, check("stops", "waits", "ends"))
-    assert "'waits': its released text does not contain the sentence '| no scan yet | 1 | 1 |'" in found
+    book = contract_notebook(contract={"waits": ROW.replace("0", "1"), "ends": ENDS})
+    findings = messages(book, check("stops", "waits", "ends"))
+    assert "'waits': its released text does not contain the sentence '| no scan yet | 1 | 1 |'" in findings
 
 
 def test_a_text_that_differs_from_the_released_one_is_found() -> None:
-    found = messages(
-        made(contract={"waits": ROW, "ends": ENDS, "name": "called `guard"}), check("s", "waits", "ends", "name")
+    findings = messages(
+        contract_notebook(contract={"waits": ROW, "ends": ENDS, "name": "called `guard"}),
+        check("s", "waits", "ends", "name"),
     )
-    assert found == ["'name': 'called `guard' is not a row, a sentence or part of one in the released text"]
+    assert findings == ["'name': 'called `guard' is not a row, a sentence or part of one in the released text"]
 
 
 def test_a_row_or_a_bullet_without_an_id_is_found_unless_it_only_explains() -> None:
-    without = {"contract": {"waits": ROW}}
-    wanted = f"neither `contract` nor `explains` names a sentence of {ENDS!r}"
-    assert messages(made(**without), check("stops", "waits")) == [wanted]
-    assert messages(made(**without, explains=["exit status 0."]), check("stops", "waits")) == []
+    incomplete = {"contract": {"waits": ROW}}
+    expected = f"neither `contract` nor `explains` names a sentence of {ENDS!r}"
+    assert messages(contract_notebook(**incomplete), check("stops", "waits")) == [expected]
+    assert messages(contract_notebook(**incomplete, explains=["exit status 0."]), check("stops", "waits")) == []
 
 
 def test_a_sentence_that_the_release_does_not_show_is_found() -> None:
     source = f"{FUNCTION}    # BEGIN SOLUTION\n    end()  # It ends.\n    # END SOLUTION"
     course = {"hide": ["main"], "contract": {"runs": "Run.", "ends": "It ends."}}
     book = notebook(code(source, "main", course=course, nbgrader=solution("main")))
-    found = messages(book, check("stops", "runs", "ends"))
-    assert found == ["'ends': its released text does not contain the sentence 'It ends.'"]
+    findings = messages(book, check("stops", "runs", "ends"))
+    assert findings == ["'ends': its released text does not contain the sentence 'It ends.'"]
 
 
 def test_the_docstring_of_a_function_that_a_student_writes_needs_an_id() -> None:
@@ -96,12 +97,12 @@ def test_the_docstring_of_a_function_that_a_student_writes_needs_an_id() -> None
 
 
 def test_an_unchecked_sentence_has_no_check() -> None:
-    book = made(unchecked={"ends": "nobody sees it"})
+    book = contract_notebook(unchecked={"ends": "it is not visible from outside"})
     assert messages(book, check("stops", "waits")) == []
-    found = messages(book, check("stops", "waits", "ends"))
-    assert found == ["the requirement 'ends' is marked as unchecked, but a check covers it"]
+    findings = messages(book, check("stops", "waits", "ends"))
+    assert findings == ["the requirement 'ends' is marked as unchecked, but a check covers it"]
     assert "'flies' is marked as unchecked, but is not a requirement of the cell" in messages(
-        made(unchecked={"flies": "so"}), check("stops", "waits", "ends")
+        contract_notebook(unchecked={"flies": "so"}), check("stops", "waits", "ends")
     )
 
 
@@ -116,5 +117,5 @@ def test_the_contract_of_each_chapter_has_no_findings(chapter: Any) -> None:
 
 
 def test_the_course_has_no_more_unchecked_sentences_than_allowed() -> None:
-    found = [s.id for name in suites.checkable_assignments() for s in contract(name).values() if s.unchecked]
-    assert len(found) <= MAX_UNCHECKED, found
+    findings = [s.id for name in suites.checkable_assignments() for s in contract(name).values() if s.unchecked]
+    assert len(findings) <= MAX_UNCHECKED, findings

@@ -44,7 +44,7 @@ def test_empty_lines_name_the_start_and_the_end_of_the_file() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "cuts", "words"),
+    ("text", "cuts", "message"),
     [
         (MANIFEST, [("<parcel>", "")], "the line '<parcel>' occurs 0 times"),
         ("a\na\nb\n", [("a", "")], "the line 'a' occurs 2 times"),
@@ -54,8 +54,8 @@ def test_empty_lines_name_the_start_and_the_end_of_the_file() -> None:
         ("# BEGIN SOLUTION\na\n", [("", "")], "contains solution markers"),
     ],
 )
-def test_a_cut_whose_lines_are_not_found_is_an_error(text: str, cuts: list[tuple[str, str]], words: str) -> None:
-    with pytest.raises(CourseError, match=words):
+def test_a_cut_whose_lines_are_not_found_is_an_error(text: str, cuts: list[tuple[str, str]], message: str) -> None:
+    with pytest.raises(CourseError, match=message):
         mark_lines(text, cuts)
 
 
@@ -83,7 +83,7 @@ def test_a_cell_is_cut_as_its_metadata_says_and_its_release_holds_no_answer(
 
 
 @pytest.mark.parametrize(
-    ("course", "words"),
+    ("course", "message"),
     [
         ({"cut": "a"}, "`cut` must be a list, not a text"),
         ({"cut": [["a"]]}, r"`cut\[0\]` needs 2 entries, and has 1"),
@@ -93,6 +93,6 @@ def test_a_cell_is_cut_as_its_metadata_says_and_its_release_holds_no_answer(
         ({"cut": [["a", "b"]], "hide": ["main"]}, "a cell hides functions by `hide` or lines by `cut`, not both"),
     ],
 )
-def test_invalid_metadata_for_cuts_are_an_error(course: dict[str, object], words: str) -> None:
-    with pytest.raises(CourseError, match=words):
+def test_invalid_metadata_for_cuts_are_an_error(course: dict[str, object], message: str) -> None:
+    with pytest.raises(CourseError, match=message):
         copied_file(_cell(**course))

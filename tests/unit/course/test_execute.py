@@ -1,4 +1,4 @@
-"""A notebook runs as its author, a student who solved it, and a student who just got it have it."""
+"""A notebook runs in three forms: the author's source, the solved form and the released form."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_creating_a_form_does_not_change_the_source() -> None:
 
 @pytest.mark.slow
 def test_a_notebook_runs_beside_a_copy_of_its_files(tmp_path: Path) -> None:
-    made = chapter(
+    small_chapter = chapter(
         tmp_path,
         notebook(
             prose("# T", "t"),
@@ -53,12 +53,12 @@ def test_a_notebook_runs_beside_a_copy_of_its_files(tmp_path: Path) -> None:
             code("Path('made').touch()", "w"),
         ),
     )
-    (made.folder / "given.txt").write_text("hello")
-    (made.folder / "build").mkdir()
-    result = run_notebook(made, report=tmp_path / "out/report.ipynb")
+    (small_chapter.folder / "given.txt").write_text("hello")
+    (small_chapter.folder / "build").mkdir()
+    result = run_notebook(small_chapter, report=tmp_path / "out/report.ipynb")
     assert result.ok, result.failure
     assert result.notebook.cells[1].outputs[0].text == "hello\n"
-    assert not (made.folder / "made").exists()
+    assert not (small_chapter.folder / "made").exists()
     assert "hello" in (tmp_path / "out/report.ipynb").read_text()
 
 
@@ -71,8 +71,8 @@ def test_a_notebook_runs_beside_a_copy_of_its_files(tmp_path: Path) -> None:
     ],
 )
 def test_an_error_and_a_warning_both_fail_and_name_their_cell(tmp_path: Path, source: str, message: str) -> None:
-    made = chapter(tmp_path, notebook(code("1", "fine"), code(source, "bad"), code("2", "never")))
-    result = run_notebook(made)
+    small_chapter = chapter(tmp_path, notebook(code("1", "fine"), code(source, "bad"), code("2", "never")))
+    result = run_notebook(small_chapter)
     assert not result.ok
     assert result.failure is not None
     assert result.failure.startswith("cell 'bad'")

@@ -12,18 +12,18 @@ from tests.notebooks.alternative_texts import images_without_alt
 from .notebooks import code, grade, manual, notebook, prose, solution
 
 
-def messages(made: NotebookNode) -> str:
-    return "\n".join(str(finding) for finding in broken_rules("n.ipynb", made))
+def messages(book: NotebookNode) -> str:
+    return "\n".join(str(finding) for finding in broken_rules("n.ipynb", book))
 
 
 def test_a_clean_notebook_has_no_findings() -> None:
-    made = notebook(
+    book = notebook(
         prose("# Title\n\n## Part\n\n### Step\n\n![a robot](robot.png)\n\n```\n# no heading\n```", "title"),
         prose("## Next\n\n<img src='x.svg' alt='a wall'>", "next"),
         code("# BEGIN SOLUTION\n# END SOLUTION", "s", nbgrader=solution("s")),
         code("grade()", "g", nbgrader=grade("g", 1), course={"group": "graph"}),
     )
-    assert messages(made) == ""
+    assert messages(book) == ""
 
 
 ANSWER = "# BEGIN SOLUTION\nSo.\n# END SOLUTION"
@@ -31,12 +31,12 @@ SCHEME = "### BEGIN MARK SCHEME\n1 point.\n### END MARK SCHEME"
 
 
 def test_cells_that_a_person_grades_need_no_group_and_their_markers_are_not_headings() -> None:
-    made = notebook(
+    book = notebook(
         prose("# Title", "title"),
         prose(f"Why?\n\n{SCHEME}", "why", nbgrader={**solution("why"), "solution": False, "locked": True}),
         prose(ANSWER, "so", nbgrader=manual("so", 2)),
     )
-    assert messages(made) == ""
+    assert messages(book) == ""
 
 
 def executed() -> NotebookNode:
@@ -51,26 +51,26 @@ def old_schema() -> NotebookNode:
 
 
 def half_a_cell() -> NotebookNode:
-    made = notebook(code("", "half"))
-    del made.cells[0]["source"]
-    return made
+    book = notebook(code("", "half"))
+    del book.cells[0]["source"]
+    return book
 
 
 def other_kernel() -> NotebookNode:
-    made = notebook(prose("# T", "t"))
-    made.metadata.kernelspec.name = "ros"
-    return made
+    book = notebook(prose("# T", "t"))
+    book.metadata.kernelspec.name = "ros"
+    return book
 
 
 def old_format() -> NotebookNode:
-    made = notebook(prose("# T", "t"))
-    made.nbformat_minor = 4
-    del made.cells[0]["id"]
-    return made
+    book = notebook(prose("# T", "t"))
+    book.nbformat_minor = 4
+    del book.cells[0]["id"]
+    return book
 
 
 @pytest.mark.parametrize(
-    ("made", "message"),
+    ("book", "message"),
     [
         (executed(), "cell 'run': has outputs"),
         (executed(), "cell 'run': has an execution count"),
@@ -125,12 +125,12 @@ def old_format() -> NotebookNode:
         ),
     ],
 )
-def test_each_error_of_a_notebook_is_named(made: NotebookNode, message: str) -> None:
-    assert message in messages(made)
+def test_each_error_of_a_notebook_is_named(book: NotebookNode, message: str) -> None:
+    assert message in messages(book)
 
 
 @pytest.mark.parametrize(
-    ("data", "metadata", "mute"),
+    ("data", "metadata", "is_found"),
     [
         ({"text/plain": "1"}, {}, False),
         ({"image/png": "..."}, {}, True),
@@ -140,8 +140,8 @@ def test_each_error_of_a_notebook_is_named(made: NotebookNode, message: str) -> 
     ],
 )
 def test_a_figure_without_alternative_text_is_found(
-    data: dict[str, str], metadata: dict[str, object], mute: bool
+    data: dict[str, str], metadata: dict[str, object], is_found: bool
 ) -> None:
     cell = code("show()", "figure")
     cell.outputs = [new_output("display_data", data, metadata=metadata)]
-    assert images_without_alt(notebook(cell)) == (["figure"] if mute else [])
+    assert images_without_alt(notebook(cell)) == (["figure"] if is_found else [])

@@ -12,13 +12,13 @@ from autograder.exceptions import UsageError
 
 
 @pytest.mark.parametrize(
-    ("name", "whose"),
+    ("name", "owner"),
     [
         ("json", "a module of Python's standard library"),
         ("launch", "a package of ROS"),
         ("rclpy", "a package of ROS"),
         ("std_msgs", "a package of ROS"),
-        ("slam_toolbox", "a package of ROS"),  # which has no wheel: a student meets it later
+        ("slam_toolbox", "a package of ROS"),  # it has no wheel; students meet it later
         ("pyyaml", "a package that pip installed"),
         ("import_linter", "a package that pip installed"),
         ("yaml", "a module that Python can already import"),
@@ -27,8 +27,8 @@ from autograder.exceptions import UsageError
         ("install", "a name that colcon, setuptools or pytest uses"),
     ],
 )
-def test_a_name_that_exists_elsewhere_is_taken(name: str, whose: str) -> None:
-    assert taken_by(name) == whose
+def test_a_name_that_exists_elsewhere_is_taken(name: str, owner: str) -> None:
+    assert taken_by(name) == owner
 
 
 @pytest.mark.parametrize("name", ["nearest", "mapping", "launch_lab", "my_robot_package"])
@@ -43,12 +43,12 @@ def test_a_plain_folder_on_the_path_does_not_occupy_a_name(tmp_path: Path, monke
 
 
 @pytest.mark.parametrize("name", ["", "2d", "Robot", "a-b", "a__b", "a_", "import", "café", "a/b"])
-def test_a_name_has_the_form_that_ros_and_python_want(name: str) -> None:
+def test_a_name_that_ros_or_python_does_not_allow_is_refused(name: str) -> None:
     assert not is_package_name(name)
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         (
             {"package": "02_json"},
@@ -59,7 +59,7 @@ def test_a_name_has_the_form_that_ros_and_python_want(name: str) -> None:
         ({"node": "laser_scan"}, "a node 'laser_scan' would have the class LaserScan, which its module also imports."),
     ],
 )
-def test_a_package_or_node_whose_name_is_taken_is_rejected(options: dict[str, str], said: str) -> None:
+def test_a_package_or_node_whose_name_is_taken_is_rejected(options: dict[str, str], message: str) -> None:
     with pytest.raises(UsageError) as raised:
         write_chapter("40_reading", **options)
-    assert said in str(raised.value)
+    assert message in str(raised.value)

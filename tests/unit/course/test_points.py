@@ -18,39 +18,39 @@ def graded(**groups: float) -> NotebookNode:
     )
 
 
-def found(made: NotebookNode) -> list[str]:
-    return [str(finding) for finding, _ in point_differences("n.ipynb", made, POINTS)]
+def differences(book: NotebookNode) -> list[str]:
+    return [str(finding) for finding, _ in point_differences("n.ipynb", book, POINTS)]
 
 
-def correct(made: NotebookNode) -> None:
-    for _, correction in list(point_differences("n.ipynb", made, POINTS)):
+def correct(book: NotebookNode) -> None:
+    for _, correction in list(point_differences("n.ipynb", book, POINTS)):
         assert correction is not None
         correction()
 
 
 def test_each_cell_gets_the_points_of_its_group() -> None:
-    made = graded(reaction=0, graph=0)
-    correct(made)
-    assert [cell.metadata.nbgrader.points for cell in made.cells] == [3.5, 1.0]
-    assert found(made) == []
+    book = graded(reaction=0, graph=0)
+    correct(book)
+    assert [cell.metadata.nbgrader.points for cell in book.cells] == [3.5, 1.0]
+    assert differences(book) == []
 
 
 def test_points_that_a_person_gives_are_not_counted_by_the_suite() -> None:
-    made = graded(reaction=0, graph=1)
-    made.cells.append(prose("Why?", "why", nbgrader=manual("why", 6)))
-    correct(made)
-    assert [cell.metadata.nbgrader.points for cell in made.cells] == [3.5, 1.0, 6]
-    assert found(made) == []
+    book = graded(reaction=0, graph=1)
+    book.cells.append(prose("Why?", "why", nbgrader=manual("why", 6)))
+    correct(book)
+    assert [cell.metadata.nbgrader.points for cell in book.cells] == [3.5, 1.0, 6]
+    assert differences(book) == []
 
 
 def test_wrong_points_are_named() -> None:
-    assert found(graded(reaction=3, graph=1)) == [
+    assert differences(graded(reaction=3, graph=1)) == [
         "n.ipynb, cell 'reaction': has 3 points, but the checks of 'reaction' have 3.5"
     ]
 
 
 @pytest.mark.parametrize(
-    ("made", "message"),
+    ("book", "message"),
     [
         (graded(graph=1, reaction=3.5), "its grade cells are not in the order of the suite: reaction, graph"),
         (graded(reaction=3.5), "group 'graph' has no grade cell"),
@@ -65,6 +65,6 @@ def test_wrong_points_are_named() -> None:
         ),
     ],
 )
-def test_a_suite_and_a_notebook_that_do_not_fit_are_an_error_of_the_author(made: NotebookNode, message: str) -> None:
-    ((finding, correction),) = (pair for pair in point_differences("n.ipynb", made, POINTS) if message in str(pair[0]))
+def test_a_notebook_that_does_not_match_its_suite_is_left_to_the_author(book: NotebookNode, message: str) -> None:
+    ((finding, correction),) = (pair for pair in point_differences("n.ipynb", book, POINTS) if message in str(pair[0]))
     assert correction is None, finding

@@ -1,4 +1,4 @@
-"""An author's slips: each is a sentence with its file and line, and `autograder course check` says all at once."""
+"""An author's slips: `autograder course check` reports all of them at once, each with its file and line."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ def test_more():
     expect(True, "no")
 '''
 
-# The file, the text in it, the text in its place, the line of the finding (and its file, if that is another one), and
-# the beginning of its sentence. A file that the chapter does not have is made.
+# The file, the text to replace, its replacement, the line of the finding (with its cell, in a notebook), and the start
+# of its message. A file without a text to replace is created.
 SLIPS = [
     (MUTANTS, "    check: nearest\n\n  - id: first", "\n  - id: first", "5", "`mutants[0]` (farthest) has no `check`"),
     (MUTANTS, "find: min(filter, ", "", "7", "`mutants[0].edits[0]` (farthest) has `replace`, and no `find`"),
@@ -174,71 +174,75 @@ def check(course: Path) -> Iterator[CheckCourse]:
     ) as server:
         assert server.stdin is not None
         assert server.stdout is not None
-        asked, answers = server.stdin, server.stdout
+        requests, replies = server.stdin, server.stdout
 
         def run() -> str:
-            asked.write("\n")
-            asked.flush()
-            said = ""
-            while not said.rpartition("\n")[2].startswith(END):
-                line = answers.readline()
-                assert line, said
-                said += f"\n{line.rstrip()}"
-            return said
+            requests.write("\n")
+            requests.flush()
+            output = ""
+            while not output.rpartition("\n")[2].startswith(END):
+                line = replies.readline()
+                assert line, output
+                output += f"\n{line.rstrip()}"
+            return output
 
         yield run
-        asked.close()
+        requests.close()
 
 
-def slip(course: Path, file: str, text: str | None, put: str) -> Callable[[], None]:
+def slip(course: Path, file: str, text: str | None, replacement: str) -> Callable[[], None]:
     """Make a slip in a file of the course, and return a function that undoes it."""
     path = course / file
     if text is None:
         path.parent.mkdir(exist_ok=True)
-        path.write_text(put)
+        path.write_text(replacement)
         return path.unlink
-    whole = path.read_text()
-    assert text in whole
-    path.write_text(whole.replace(text, put, 1))
-    return lambda: path.write_text(whole) and None
+    original = path.read_text()
+    assert text in original
+    path.write_text(original.replace(text, replacement, 1))
+    return lambda: path.write_text(original) and None
 
 
 @pytest.mark.promise("names the file and line of every mistake")
-@pytest.mark.parametrize(("file", "text", "put", "line", "sentence"), SLIPS, ids=[each[4][:40] for each in SLIPS])
-def test_a_slip_is_a_sentence_with_its_file_and_line(
-    course: Path, check: CheckCourse, file: str, text: str | None, put: str, line: str, sentence: str
+@pytest.mark.parametrize(
+    ("file", "text", "replacement", "line", "message"), SLIPS, ids=[each[4][:40] for each in SLIPS]
+)
+def test_a_slip_is_reported_with_its_file_and_line(
+    course: Path, check: CheckCourse, file: str, text: str | None, replacement: str, line: str, message: str
 ) -> None:
-    undo = slip(course, file, text, put)
+    undo = slip(course, file, text, replacement)
     try:
-        said = check()
+        output = check()
     finally:
         undo()
-    named = course / file if file == "course.yaml" else file
-    assert f"\n{named}:{line}: {sentence}" in said
-    assert said.endswith(f"\n{END} 1")
-    assert "Traceback" not in said
+    reported_file = course / file if file == "course.yaml" else file
+    assert f"\n{reported_file}:{line}: {message}" in output
+    assert output.endswith(f"\n{END} 1")
+    assert "Traceback" not in output
 
 
-def test_slips_in_several_files_are_all_said_at_once(course: Path, check: CheckCourse) -> None:
+def test_slips_in_several_files_are_all_reported_at_once(course: Path, check: CheckCourse) -> None:
     chosen = [SLIPS[index] for index in (0, 10, 17, 26, 27, 30)]
     undo = [slip(course, *each[:3]) for each in chosen]
     try:
-        said = check()
+        output = check()
     finally:
         for each in undo:
             each()
-    missing = [sentence for *_, sentence in chosen if sentence not in said]
-    assert missing == [SLIPS[17][4]]  # the requirements that a check covers are known only if its suite can be imported
+    unreported = [sentence for *_, sentence in chosen if sentence not in output]
+    assert unreported == [
+        SLIPS[17][4]
+    ]  # the requirements that a check covers are known only if its suite can be imported
     assert check() == f"\n{END} 0"
 
 
-def test_sync_says_what_is_wrong_with_a_suite_that_cannot_be_imported(course: Path) -> None:
+def test_sync_reports_what_is_wrong_with_a_suite_that_cannot_be_imported(course: Path) -> None:
     undo = slip(course, SUITE, '("readings",)', '("readings")')
     command = [sys.executable, "-m", "autograder", "--course", str(course), "course", "sync"]
     try:
-        done = subprocess.run(command, cwd=course_paths.ROOT, text=True, capture_output=True)
+        completed = subprocess.run(command, cwd=course_paths.ROOT, text=True, capture_output=True)
     finally:
         undo()
-    assert done.returncode == 1
-    assert done.stderr.startswith(f"autograder: {SUITE}:4: `MODULES` is a text, and not a tuple")
-    assert "Traceback" not in done.stderr
+    assert completed.returncode == 1
+    assert completed.stderr.startswith(f"autograder: {SUITE}:4: `MODULES` is a text, and not a tuple")
+    assert "Traceback" not in completed.stderr

@@ -78,9 +78,7 @@ PARTS = '''def drive(node):
         ("node.publish(command)", "", PARTS.splitlines()[8:]),
     ],
 )
-def test_of_a_function_in_parts_only_the_lines_between_two_lines_are_marked(
-    before: str, after: str, hidden: list[str]
-) -> None:
+def test_only_the_named_parts_of_a_function_are_marked(before: str, after: str, hidden: list[str]) -> None:
     marked = mark_functions(PARTS, ["drive"], {"drive": (before, after)})
     lines = marked.splitlines()
     begin, end = (next(n for n, line in enumerate(lines) if mark in line) for mark in ("# BEGIN", "# END"))

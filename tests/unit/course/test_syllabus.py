@@ -19,7 +19,7 @@ CHECK = Check("named", "It has its name.", 2.0, "graph", Visibility.HIDDEN, (), 
 OBJECTIVE = {"objective": "nodes", "exercise": "exercise", "groups": ["graph"]}
 
 
-def made(**course: object):  # type: ignore[no-untyped-def]
+def chapter_notebook(**course: object):  # type: ignore[no-untyped-def]
     cells = (prose("# From a node to a robot", "title"), prose("## Write it", "exercise"), code("1", "node"))
     cells[2].metadata["course"] = {"covers": ["basic_node.py"], "errata": [7]}
     return notebook(*cells, **course)
@@ -29,18 +29,18 @@ def messages(*chapters: object) -> list[str]:
     return [finding.message for finding in find_coverage(SYLLABUS, chapters).findings]  # type: ignore[arg-type]
 
 
-def test_places_are_found_by_the_heading_above_them() -> None:
-    covered = find_coverage(SYLLABUS, [("02_nodes", made(objectives=[OBJECTIVE]), [CHECK])])
+def test_a_location_is_named_by_the_heading_above_it() -> None:
+    covered = find_coverage(SYLLABUS, [("02_nodes", chapter_notebook(objectives=[OBJECTIVE]), [CHECK])])
     assert covered.items == {"basic_node.py": [Location("02_nodes", "Write it")], "Q1": []}
     assert covered.errata == {7: [Location("02_nodes", "Write it")]}
     assert [(row.exercise, row.checks) for row in covered.rows] == [("Write it", (CHECK,))]
 
 
 def test_a_syllabus_item_that_no_notebook_covers_is_named() -> None:
-    assert messages(("02_nodes", made(objectives=[OBJECTIVE]), [CHECK])) == [
+    assert messages(("02_nodes", chapter_notebook(objectives=[OBJECTIVE]), [CHECK])) == [
         "no notebook covers 'Q1': What is setup.py?"
     ]
-    assert "no hidden check covers 'nodes': Write nodes" in messages(("02_nodes", made(), []))
+    assert "no hidden check covers 'nodes': Write nodes" in messages(("02_nodes", chapter_notebook(), []))
 
 
 @pytest.mark.parametrize(
@@ -53,16 +53,16 @@ def test_a_syllabus_item_that_no_notebook_covers_is_named() -> None:
     ],
 )
 def test_an_objective_with_an_unknown_or_missing_target_is_named(change: dict[str, object], message: str) -> None:
-    assert message in messages(("02_nodes", made(objectives=[{**OBJECTIVE, **change}]), [CHECK]))
+    assert message in messages(("02_nodes", chapter_notebook(objectives=[{**OBJECTIVE, **change}]), [CHECK]))
 
 
 def test_a_key_that_the_syllabus_does_not_have_is_named() -> None:
-    book = made(objectives=[OBJECTIVE], errata=[99])
+    book = chapter_notebook(objectives=[OBJECTIVE], errata=[99])
     assert "the syllabus has no 99" in messages(("02_nodes", book, [CHECK]))
 
 
-def test_the_page_has_a_row_for_each_and_keeps_to_markdown() -> None:
-    covered = find_coverage(SYLLABUS, [("02_nodes", made(objectives=[OBJECTIVE]), [CHECK])])
+def test_the_page_has_a_row_for_each_item_and_escapes_markdown() -> None:
+    covered = find_coverage(SYLLABUS, [("02_nodes", chapter_notebook(objectives=[OBJECTIVE]), [CHECK])])
     text = page(SYLLABUS, covered, {"02_nodes": "A | B"}, {"02_nodes": Effort(words=240, cells=10, lines=100)})
     assert "| [02_nodes](02_nodes/02_nodes.ipynb) | A \\| B | 2 | 240 | 10 | 100 | 2 hours |" in text
     assert "| Write nodes | 02_nodes | Write it | `named` |" in text

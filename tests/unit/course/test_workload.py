@@ -1,4 +1,4 @@
-"""The time that a chapter states is counted from what there is to read, run and write."""
+"""The time that a chapter states is estimated from what students read, run and write."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_the_longest_time_without_anything_to_write_is_counted() -> None:
 
 
 @pytest.mark.parametrize("chapter", chapters(), ids=lambda chapter: chapter.assignment)
-def test_a_student_reads_and_runs_for_at_most_30_minutes_before_something_is_to_be_written(chapter: Chapter) -> None:
+def test_a_student_reads_and_runs_for_at_most_30_minutes_before_writing_something(chapter: Chapter) -> None:
     assert effort(chapter.read()).longest_reading <= 30.0
 
 
@@ -55,5 +55,5 @@ def test_a_duration_is_rounded_to_steps(minutes: float, words: str) -> None:
 def test_a_chapter_that_states_a_wrong_time_is_reported() -> None:
     (finding,) = outdated_time_sentence("turn.ipynb", BOOK)
     assert "5 minutes to read and run, 5 minutes for the exercises" in str(finding)
-    honest = new_markdown_cell("# Turn around\n\n*5 minutes to read\nand run, 5 minutes for the exercises.*")
-    assert outdated_time_sentence("turn.ipynb", new_notebook(cells=[honest, *BOOK.cells[1:]])) == []
+    correct = new_markdown_cell("# Turn around\n\n*5 minutes to read\nand run, 5 minutes for the exercises.*")
+    assert outdated_time_sentence("turn.ipynb", new_notebook(cells=[correct, *BOOK.cells[1:]])) == []

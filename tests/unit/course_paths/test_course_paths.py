@@ -1,4 +1,4 @@
-"""A course is described by its course.yaml, and no code of the autograder describes it."""
+"""A course is described by its course.yaml alone: the autograder's code names no part of it."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_a_course_file_names_the_folders_and_the_files_that_students_get(tmp_pat
 
 
 @pytest.mark.parametrize(
-    ("lines", "said"),
+    ("lines", "message"),
     [
         ("name: small\n", "title"),
         (LINES + "colour: red\n", "colour"),
@@ -51,10 +51,10 @@ def test_a_course_file_names_the_folders_and_the_files_that_students_get(tmp_pat
         ("name: [\n", "course.yaml"),
     ],
 )
-def test_a_wrong_line_of_a_course_file_is_named(tmp_path: Path, lines: str, said: str) -> None:
+def test_a_wrong_line_of_a_course_file_is_named(tmp_path: Path, lines: str, message: str) -> None:
     with pytest.raises(UsageError, match=r"course\.yaml") as raised:
         course(tmp_path, lines)
-    assert said in str(raised.value)
+    assert message in str(raised.value)
 
 
 def test_a_folder_without_the_file_is_not_a_course(tmp_path: Path) -> None:
@@ -89,19 +89,21 @@ def test_no_module_of_the_autograder_reads_the_course_when_it_is_imported(tmp_pa
     ]
     importing = f"import importlib\nfor name in {names}: importlib.import_module(name)\n"
     importing += "from autograder import course_paths\n"
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-c", importing + "print(course_paths.course.cache_info().currsize)\ncourse_paths.CHAPTERS"],
         env={**os.environ, course_paths.COURSE_VARIABLE: str(tmp_path)},
         capture_output=True,
         text=True,
         check=False,
     )
-    assert (done.stdout, "is not a course" in done.stderr) == ("0\n", True), done.stderr
+    assert (completed.stdout, "is not a course" in completed.stderr) == ("0\n", True), completed.stderr
 
 
 def test_each_path_that_the_course_file_names_exists() -> None:
-    made = course_paths.course().guide  # by `autograder course tables`
-    assert {part for part in course_paths.course().parts if not (course_paths.course().root / part).exists()} <= {made}
+    generated = course_paths.course().guide  # by `autograder course tables`
+    assert {part for part in course_paths.course().parts if not (course_paths.course().root / part).exists()} <= {
+        generated
+    }
     assert course_paths.course().demo in course_paths.assignments()
 
 

@@ -9,8 +9,8 @@ from autograder.author.verification.cases import attacks
 from autograder.course_paths import ROOT
 from autograder.suite import suites
 
-MADE = runpy.run_path(str(ROOT / "docs" / "attacks_page.py"))
-ROWS = MADE["ROWS"]
+SCRIPT = runpy.run_path(str(ROOT / "docs" / "attacks_page.py"))
+ROWS = SCRIPT["ROWS"]
 
 
 def test_each_attack_has_a_test() -> None:
@@ -27,6 +27,6 @@ def test_each_test_that_the_table_names_exists() -> None:
 
 def test_the_table_names_exactly_the_attacks_of_the_verification() -> None:
     named = {name for row in ROWS for name in row["submissions"]}
-    there = [attack.id for assignment in suites.graded_assignments() for attack in attacks(assignment)]
-    assert named == set(there)
-    assert len(there) == len(set(there))
+    ids = [attack.id for assignment in suites.graded_assignments() for attack in attacks(assignment)]
+    assert named == set(ids)
+    assert len(ids) == len(set(ids))

@@ -8,10 +8,10 @@ import pytest
 
 from autograder.course_paths import ROOT
 
-MADE = runpy.run_path(str(ROOT / "docs" / "limits_page.py"))
+SCRIPT = runpy.run_path(str(ROOT / "docs" / "limits_page.py"))
 
 
 @pytest.mark.promise("The resources that a submission may use, how each limit is enforced, and the file that tests it.")
 def test_each_limit_names_a_file_of_tests() -> None:
-    there = {path.stem for path in (ROOT / "tests").rglob("test_*.py")}
-    assert {test for *_, test in MADE["rows"]()} <= there
+    test_files = {path.stem for path in (ROOT / "tests").rglob("test_*.py")}
+    assert {test for *_, test in SCRIPT["rows"]()} <= test_files

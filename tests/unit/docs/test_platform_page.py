@@ -12,8 +12,8 @@ from autograder.course_paths import ROOT
 from autograder.ros.distribution import DISTRIBUTION
 from autograder.ros.ros2.main import STAND_INS
 
-MADE = runpy.run_path(str(ROOT / "docs" / "platform_page.py"))
-LOCK, locked = MADE["LOCK"], MADE["locked"]
+SCRIPT = runpy.run_path(str(ROOT / "docs" / "platform_page.py"))
+LOCK, locked = SCRIPT["LOCK"], SCRIPT["locked"]
 LOCKED = """numpy==1.26.4 ; python_full_version < '3.13' \\
     --hash=sha256:00
 numpy==2.1.3 ; python_full_version == '3.13.*' and sys_platform == 'linux' \\
@@ -28,7 +28,7 @@ def test_a_lock_is_read_for_each_python() -> None:
 
 
 def test_the_platform_page_lists_what_the_lock_installs_and_which_tutorials_run() -> None:
-    page = MADE["current"]()
+    page = SCRIPT["current"]()
     installed = locked(LOCK.read_text(encoding="utf-8"), DISTRIBUTION.pythons[0])
     assert all(f"| {each.name} | {each.debian} | {each.version} |" in page for each in DISTRIBUTION.packages)
     assert all(installed[each.name] in page for each in DISTRIBUTION.packages)
@@ -39,7 +39,7 @@ def test_the_platform_page_lists_what_the_lock_installs_and_which_tutorials_run(
     "pytest, setuptools, CMake and similar tools have the versions of Ubuntu 24.04",
     "Students' programs, builds and tests use the versions of that platform",
 )
-@pytest.mark.parametrize("python", MADE["PYTHONS"])
+@pytest.mark.parametrize("python", SCRIPT["PYTHONS"])
 def test_the_lock_installs_the_platforms_versions_or_the_page_gives_the_reason(python: str) -> None:
     versions = locked(LOCK.read_text(encoding="utf-8"), python)
     unexplained = {
@@ -51,9 +51,9 @@ def test_the_lock_installs_the_platforms_versions_or_the_page_gives_the_reason(p
 
 
 @pytest.mark.promise("Features that are not covered raise an error that says so.")
-@pytest.mark.parametrize("name", MADE["LAUNCH"])
+@pytest.mark.parametrize("name", SCRIPT["LAUNCH"])
 def test_each_name_listed_as_not_covered_raises_an_error_that_says_so(name: str) -> None:
-    module, _, last = name.rpartition(".")
-    program = f"import sys; sys.path.insert(0, {str(STAND_INS)!r})\nfrom {module} import {last}"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
-    assert f"'{name}' is not covered: this is the course's stand-in" in done.stderr
+    module, _, attribute = name.rpartition(".")
+    program = f"import sys; sys.path.insert(0, {str(STAND_INS)!r})\nfrom {module} import {attribute}"
+    completed = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert f"'{name}' is not covered: this is the course's stand-in" in completed.stderr

@@ -8,22 +8,22 @@ import pytest
 
 from autograder.course_paths import ROOT
 
-MADE = runpy.run_path(str(ROOT / "docs" / "promises_page.py"))
-TEXTS = MADE["texts"]()
-PROMISES = list(MADE["promises"]())
+SCRIPT = runpy.run_path(str(ROOT / "docs" / "promises_page.py"))
+TEXTS = SCRIPT["texts"]()
+PROMISES = list(SCRIPT["promises"]())
 
 
 @pytest.mark.parametrize("page", TEXTS)
 def test_each_promise_of_a_page_has_a_test(page: str) -> None:
-    promised = [sentence for sentence in MADE["sentences"](TEXTS[page]) if MADE["is_promise"](sentence)]
-    held = {one.words for one in PROMISES}
-    open_ones = [sentence for sentence in promised if not any(words in sentence for words in held)]
-    assert open_ones == [], "mark the test that shows it by @pytest.mark.promise, or say what is true"
+    promised = [sentence for sentence in SCRIPT["sentences"](TEXTS[page]) if SCRIPT["is_promise"](sentence)]
+    quoted = {promise.words for promise in PROMISES}
+    untested = [sentence for sentence in promised if not any(words in sentence for words in quoted)]
+    assert untested == [], "mark the test that shows it by @pytest.mark.promise, or say what is true"
 
 
 def test_the_words_of_each_promise_occur_in_a_page() -> None:
-    sentences = [sentence for text in TEXTS.values() for sentence in MADE["sentences"](text)]
-    assert [one for one in PROMISES if not any(one.words in sentence for sentence in sentences)] == []
+    sentences = [sentence for text in TEXTS.values() for sentence in SCRIPT["sentences"](text)]
+    assert [promise for promise in PROMISES if not any(promise.words in sentence for sentence in sentences)] == []
 
 
 def test_promises_are_found() -> None:
@@ -41,7 +41,7 @@ $ cd folder
 $ autograder grade class    # the class
 ```
 """
-    assert [sentence for sentence in MADE["sentences"](text) if MADE["is_promise"](sentence)] == [
+    assert [sentence for sentence in SCRIPT["sentences"](text) if SCRIPT["is_promise"](sentence)] == [
         "The exit status is 1.",
         "- `make demo` ends with a line.",
         "It is *never* silent.",
@@ -51,6 +51,6 @@ $ autograder grade class    # the class
 
 
 def test_the_page_marks_nightly_tests() -> None:
-    page = MADE["current"]()
+    page = SCRIPT["current"]()
     assert "`tests/e2e/test_tutorials.py::test_a_tutorial_runs_as_printed` (nightly)" in page
     assert "`tests/e2e/test_interrupt.py::test_ctrl_c_ends_a_class_and_resume_continues_it`" in page

@@ -27,13 +27,13 @@ def test_the_examples_run_and_draw_the_pictures_that_the_guide_shows(tmp_path: P
     assert all((tmp_path / name).is_file() for name in pictures)
 
 
-def test_each_parameter_of_the_node_is_named_and_no_other() -> None:
+def test_the_guide_names_exactly_the_parameters_of_the_node() -> None:
     known = {setting.name for setting in SETTINGS}
     assert known - set(re.findall(r"[`\s](\w+)(?:`|:=)", TEXT)) == set()
     assert set(re.findall(r"-p (\w+):=", TEXT)) <= known
 
 
-def test_the_commands_are_verbs_with_the_options_that_they_are_given() -> None:
+def test_the_commands_of_the_guide_use_existing_verbs_and_options() -> None:
     commands = re.findall(r"^\$ python -m sim (.*?)(?: --ros-args.*)?$", TEXT, re.MULTILINE)
     assert len(commands) > 8
     verbs: dict[str, click.Command] = main.commands

@@ -1,4 +1,4 @@
-"""Each finding is seen on a machine that lacks the thing, and has the command that fixes it."""
+"""Each finding is reported on a machine that lacks the thing, with the command that fixes it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ DENIED = "bwrap: setting up uid map: Permission denied"
 
 
 def answers(failing: Mapping[str, CommandResult]) -> Callable[[Sequence[str], Mapping[str, str]], CommandResult]:
-    """Return a `run` under which everything works but the commands that hold one of the given words."""
+    """Return a `run` in which all commands succeed, except those that contain one of the given words."""
 
     def run(command: Sequence[str], _: Mapping[str, str]) -> CommandResult:
         fine = CommandResult(0, f"{command[0]} 1.0")
@@ -41,14 +41,14 @@ def answers(failing: Mapping[str, CommandResult]) -> Callable[[Sequence[str], Ma
     return run
 
 
-def good(**lack: Any) -> System:
+def complete_machine(**replaced: Any) -> System:
     """Return a machine that lacks nothing, with some attributes replaced."""
     system = System()
-    vars(system).update({**GOOD, **lack})
+    vars(system).update({**COMPLETE, **replaced})
     return system
 
 
-GOOD: dict[str, Any] = dict(
+COMPLETE: dict[str, Any] = dict(
     python=(3, 12, 1),
     platform=("Linux", "x86_64"),
     prefix=VENV,
@@ -85,15 +85,15 @@ def raising(error: Exception) -> Callable[[], RosEnvironment]:
     return find
 
 
-def finding(name: str, **lack: Any) -> Finding:
-    """Examine the good machine with something replaced, and return the finding of that name."""
-    return next(each for each in examine(good(**lack)) if each.name == name)
+def finding(name: str, **replaced: Any) -> Finding:
+    """Examine the complete machine with some attributes replaced, and return the finding of that name."""
+    return next(reported for reported in examine(complete_machine(**replaced)) if reported.name == name)
 
 
 def test_a_complete_machine_is_healthy_and_has_nothing_to_fix() -> None:
-    findings = examine(good())
-    assert {each.status for each in findings} == {Status.OK}, findings
-    assert [each.fix for each in findings if each.fix] == []
+    findings = examine(complete_machine())
+    assert {reported.status for reported in findings} == {Status.OK}, findings
+    assert [reported.fix for reported in findings if reported.fix] == []
     assert healthy(findings)
 
 
@@ -106,14 +106,14 @@ def test_a_complete_machine_is_healthy_and_has_nothing_to_fix() -> None:
     ],
 )
 def test_the_doctor_says_which_launch_is_installed_and_both_are_fine(installed: str, description: str) -> None:
-    result = finding("launch, ros2", describe_launch=lambda: installed)
-    assert (result.status, result.state) == (Status.OK, description)
+    reported = finding("launch, ros2", describe_launch=lambda: installed)
+    assert (reported.status, reported.state) == (Status.OK, description)
 
 
 def test_the_nearest_version_for_this_python_needs_no_fix() -> None:
-    result = finding("versions", package={**VERSIONS, "numpy": "2.1.3"}.get)
-    assert result.status is Status.OK
-    assert result.state == "as on Ubuntu 24.04, except numpy 2.1.3 for 1.26.4: the nearest for this Python"
+    reported = finding("versions", package={**VERSIONS, "numpy": "2.1.3"}.get)
+    assert reported.status is Status.OK
+    assert reported.state == "as on Ubuntu 24.04, except numpy 2.1.3 for 1.26.4: the nearest for this Python"
 
 
 def sysctl(name: str, value: str) -> Callable[[Path], str | None]:
@@ -168,21 +168,21 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "make setup",
     ),
     "half an installation": ("ROS 2", {"read": {}.get}, Status.MISSING, "no package.xml", "make setup"),
-    "CMake files not mended": (
+    "CMake files not patched": (
         "CMake files",
         {"unpatched_cmake_files": lambda prefix: 15 * [prefix]},
         Status.MISSING,
         "15 CMake files",
         "-m autograder.ros.patch_wheels",
     ),
-    "a log folder that was chosen and is closed": (
+    "a chosen log folder that is not writable": (
         "ROS logs",
         {"environ": {"ROS_LOG_DIR": "/closed"}, "writable": unwritable("/closed")},
         Status.MISSING,
         "/closed, is not writable",
         "unset ROS_LOG_DIR",
     ),
-    "a usual log folder that is closed": (
+    "a default log folder that is not writable": (
         "ROS logs",
         {"writable": lambda path: False},
         Status.MISSING,
@@ -228,7 +228,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "is 300, but must be 0 to 232",
         "unset ROS_DOMAIN_ID",
     ),
-    "a domain that is no number": (
+    "a domain that is not a number": (
         "ROS variables",
         {"environ": {"ROS_DOMAIN_ID": "lab"}},
         Status.MISSING,
@@ -293,7 +293,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         f"cannot create nested namespaces ({DENIED}): AppArmor restricts user namespaces",
         "sudo sysctl -w kernel.apparmor_restrict_unprivileged_userns=0",
     ),
-    "a kernel closed to users": (
+    "a kernel that forbids user namespaces": (
         "isolation",
         {"namespaces_failure": lambda: DENIED, "read": sysctl("kernel.unprivileged_userns_clone", "0")},
         Status.WEAK,
@@ -324,7 +324,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "the kernel or a security module forbids it",
         "sudo dmesg | tail",
     ),
-    "a closed folder for temporary files": (
+    "an unwritable folder for temporary files": (
         "disk",
         {"tmp": Path("/full"), "writable": unwritable("/full")},
         Status.MISSING,
@@ -377,20 +377,20 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     "`autograder doctor` reports different versions on a machine",
     "| `g++: command not found` |",
 )
-@pytest.mark.parametrize(("name", "lack", "status", "state", "fix"), LACKS.values(), ids=LACKS.keys())
+@pytest.mark.parametrize(("name", "lack", "status", "text", "fix"), LACKS.values(), ids=LACKS.keys())
 def test_a_missing_thing_is_named_with_the_command_that_fixes_it(
-    name: str, lack: dict[str, Any], status: Status, state: str, fix: str
+    name: str, lack: dict[str, Any], status: Status, text: str, fix: str
 ) -> None:
-    result = finding(name, **lack)
-    assert result.status is status
-    assert state in result.state
-    assert fix in result.fix
-    assert not result.state.endswith(".")
+    reported = finding(name, **lack)
+    assert reported.status is status
+    assert text in reported.state
+    assert fix in reported.fix
+    assert not reported.state.endswith(".")
 
 
 def test_a_weak_finding_leaves_a_machine_healthy_and_a_missing_thing_does_not() -> None:
-    assert healthy(examine(good(in_venv=False)))
-    assert not healthy(examine(good(which=without("bwrap"))))
+    assert healthy(examine(complete_machine(in_venv=False)))
+    assert not healthy(examine(complete_machine(which=without("bwrap"))))
 
 
 def test_a_newest_release_and_a_release_without_a_newest_folder_are_fine() -> None:
@@ -400,21 +400,21 @@ def test_a_newest_release_and_a_release_without_a_newest_folder_are_fine() -> No
 
 
 def test_a_sourced_jazzy_is_fine_and_has_no_wheels_to_fix() -> None:
-    alone = good(find_ros=lambda: SOURCED, prefix=Path("/course/bare"))
+    alone = complete_machine(find_ros=lambda: SOURCED, prefix=Path("/course/bare"))
     findings = examine(alone)
-    assert {each.status for each in findings} == {Status.OK}
-    assert "CMake files" not in [each.name for each in findings]
+    assert {reported.status for reported in findings} == {Status.OK}
+    assert "CMake files" not in [reported.name for reported in findings]
 
 
 def test_rclpy_is_started_with_the_log_folder_that_the_user_chose() -> None:
-    seen: list[Mapping[str, str]] = []
+    environments: list[Mapping[str, str]] = []
 
     def run(command: Sequence[str], variables: Mapping[str, str]) -> CommandResult:
-        seen.append(variables)
+        environments.append(variables)
         return CommandResult(0, "fine")
 
-    examine(good(run=run, environ={"ROS_LOG_DIR": "/mine"}))
-    started = next(variables for variables in seen if variables)
+    examine(complete_machine(run=run, environ={"ROS_LOG_DIR": "/mine"}))
+    started = next(variables for variables in environments if variables)
     assert (started["ROS_LOG_DIR"], started["AMENT_PREFIX_PATH"]) == ("/mine", str(VENV))
 
 
@@ -436,7 +436,7 @@ def test_the_report_aligns_findings_and_never_breaks_a_command() -> None:
 
 @pytest.mark.promise(".venv/bin/autograder doctor")
 def test_this_machine_can_run_the_course() -> None:
-    findings = {each.name: each for each in examine(System())}
+    findings = {reported.name: reported for reported in examine(System())}
     for name in ("Python", "environment", "ROS 2", "rclpy", "compiler", "build tools", "notebooks", "disk"):
         assert findings[name].status is Status.OK, findings[name]
 
@@ -461,12 +461,12 @@ def test_the_real_probes_report_missing_things_instead_of_raising(
 
 def test_a_command_that_does_not_end_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("autograder.doctor.system.COMMAND_TIMEOUT_SECONDS", 0.2)
-    ran = System().run([sys.executable, "-c", "import threading; threading.Event().wait()"], {})
-    assert (ran.status, ran.last_line) == (124, f"{sys.executable} did not end within 0.2 s")
+    result = System().run([sys.executable, "-c", "import threading; threading.Event().wait()"], {})
+    assert (result.status, result.last_line) == (124, f"{sys.executable} did not end within 0.2 s")
 
 
 @pytest.fixture
-def forgets_tries() -> Iterator[None]:
+def uncached_probe() -> Iterator[None]:
     """Discard the cached probe of namespaces before and after the test."""
     namespaces_failure.cache_clear()
     yield
@@ -477,14 +477,14 @@ def forgets_tries() -> Iterator[None]:
     "The command that `autograder doctor` prints", "`autograder doctor` in a container says whether that is sufficient"
 )
 def test_a_bubblewrap_without_namespaces_is_detected_on_this_machine(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgets_tries: None
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, uncached_probe: None
 ) -> None:
     denied = tmp_path / "bwrap"
     denied.write_text(f"#!/bin/sh\necho '{DENIED}' >&2\nexit 1\n")
     denied.chmod(denied.stat().st_mode | stat.S_IXUSR)
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
-    result = next(each for each in examine(System()) if each.name == "isolation")
-    assert (result.status, DENIED in result.state, bool(result.fix)) == (Status.WEAK, True, True)
+    isolation = next(reported for reported in examine(System()) if reported.name == "isolation")
+    assert (isolation.status, DENIED in isolation.state, bool(isolation.fix)) == (Status.WEAK, True, True)
 
 
 def test_a_broken_python_environment_is_detected_on_this_machine(tmp_path: Path) -> None:
@@ -497,9 +497,9 @@ def test_a_broken_python_environment_is_detected_on_this_machine(tmp_path: Path)
         "ROS_DISTRO": "jazzy",
         "AMENT_PREFIX_PATH": f"{tmp_path}:{sys.prefix}",
     }
-    done = subprocess.run([sys.executable, "-c", code], env=environ, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 1, done.stderr
-    output = " ".join(done.stdout.split())
+    completed = subprocess.run([sys.executable, "-c", code], env=environ, capture_output=True, text=True, timeout=120)
+    assert completed.returncode == 1, completed.stderr
+    output = " ".join(completed.stdout.split())
     assert "a node does not start: ImportError: half an installation" in output
     assert "the wheels are also installed" in output
 
@@ -512,6 +512,6 @@ def test_a_broken_python_environment_is_detected_on_this_machine(tmp_path: Path)
     ],
 )
 def test_a_limit_without_a_control_group_is_reported(bounds: set[str], message: str, fix: str) -> None:
-    result = finding("isolation", bounds=lambda: frozenset(bounds))
-    assert (result.status, result.fix) == (Status.WEAK, fix)
-    assert message in result.state
+    reported = finding("isolation", bounds=lambda: frozenset(bounds))
+    assert (reported.status, reported.fix) == (Status.WEAK, fix)
+    assert message in reported.state

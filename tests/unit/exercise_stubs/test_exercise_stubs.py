@@ -41,20 +41,20 @@ def test_a_stub_in_a_file_that_colcon_reads_explains_a_failed_build(tmp_path: Pa
     path = tmp_path / "robot" / name
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(f"{CODE_STUB}\n")
-    found = explain(FAILED, tmp_path, "robot")
-    assert found.kind is Kind.UNFINISHED
+    diagnosis = explain(FAILED, tmp_path, "robot")
+    assert diagnosis.kind is Kind.UNFINISHED
     assert (
-        found.sentence
+        diagnosis.sentence
         == f"src/robot/{name} is still to be written: replace the line raise NotImplementedError(...) with yours."
     )
-    assert found.detail.startswith(f"src/robot/{name}, line 2: raise NotImplementedError(")
+    assert diagnosis.detail.startswith(f"src/robot/{name}, line 2: raise NotImplementedError(")
 
 
 def test_several_files_are_named_in_one_sentence(tmp_path: Path) -> None:
     write(tmp_path, robot__package_xml=CODE_STUB, robot__setup_py=CODE_STUB, robot__CMakeLists_txt=CODE_STUB)
     sentence = explain(FAILED, tmp_path, "robot").sentence
-    wanted = "src/robot/package.xml, src/robot/setup.py and src/robot/CMakeLists.txt are still to be written"
-    assert sentence.startswith(wanted)
+    expected = "src/robot/package.xml, src/robot/setup.py and src/robot/CMakeLists.txt are still to be written"
+    assert sentence.startswith(expected)
 
 
 def test_a_stub_in_a_package_that_it_depends_on_explains_a_failed_build(tmp_path: Path) -> None:

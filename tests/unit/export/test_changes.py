@@ -46,9 +46,9 @@ def test_checks_whose_points_changed_are_listed_even_if_the_mark_is_the_same(mak
 def test_new_and_removed_checks_and_new_students_are_listed(make_result: MakeResult, ungraded_result: Result) -> None:
     alice = make_result("alice")
     fewer = replace(alice, checks=alice.checks[1:])
-    found = changes([fewer], [alice, make_result("dora"), ungraded_result])
-    assert found[0].checks == (CheckChange("starts", None, 1.0),)
-    assert [(change.student, change.before, change.after) for change in found[1:]] == [("dora", None, 4.0)]
+    compared = changes([fewer], [alice, make_result("dora"), ungraded_result])
+    assert compared[0].checks == (CheckChange("starts", None, 1.0),)
+    assert [(change.student, change.before, change.after) for change in compared[1:]] == [("dora", None, 4.0)]
 
 
 def test_a_student_with_two_results_is_refused(make_result: MakeResult) -> None:
@@ -66,12 +66,12 @@ def test_the_command_names_students_checks_and_another_submission(make_result: M
         tmp_path / "new" / "alice" / "result.json", regraded(replace(alice, submission_sha256="0" * 64), 4.0).to_json()
     )
     arguments = ["compare", str(tmp_path / "old"), str(tmp_path / "new"), "--json", str(tmp_path / "found.json")]
-    ran = CliRunner().invoke(group, arguments)
-    assert ran.exit_code == 0
-    assert ran.output.splitlines() == [
+    completed = CliRunner().invoke(group, arguments)
+    assert completed.exit_code == 0
+    assert completed.output.splitlines() == [
         "alice (02_nodes): 4 -> 7, for a different submission",
         "    turns: 1 -> 4",
         "1 student with a different result",
     ]
-    (found,) = json.loads((tmp_path / "found.json").read_text())
-    assert found["checks"] == [{"id": "turns", "before": 1.0, "after": 4.0}]
+    (change,) = json.loads((tmp_path / "found.json").read_text())
+    assert change["checks"] == [{"id": "turns", "before": 1.0, "after": 4.0}]

@@ -60,11 +60,11 @@ def test_csv_contains_no_formula(hostile: Class, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("delimiter", [",", ";", "\t", "|"])
-@pytest.mark.parametrize("between", ["{}=1", '{}"=1', '"{}"=1"{}', "{} '=1{}", '{}""" @x', "a{}b{}-1{}"])
+@pytest.mark.parametrize("template", ["{}=1", '{}"=1', '"{}"=1"{}', "{} '=1{}", '{}""" @x', "a{}b{}-1{}"])
 def test_csv_contains_no_formula_whichever_separator_a_spreadsheet_assumes(
-    make_result: Callable[..., Result], tmp_path: Path, between: str, delimiter: str
+    make_result: Callable[..., Result], tmp_path: Path, template: str, delimiter: str
 ) -> None:
-    text = between.replace("{}", delimiter)
+    text = template.replace("{}", delimiter)
     sentence = Diagnosis(Kind.BUILD_FAILED, f"see {text}")
     path = write([make_result("ada", diagnosis=sentence)], "csv", tmp_path / "marks.csv")
     with path.open(encoding="utf-8", newline="") as file:
@@ -121,9 +121,9 @@ def test_gradescope_gets_the_score_and_a_test_for_each_check(a_class: Class, tmp
 
 def test_gradescope_names_the_cause_of_a_consequence(a_class: Class, tmp_path: Path) -> None:
     tests = json.loads((write(a_class, "gradescope", tmp_path / "g") / "alice" / "results.json").read_text())["tests"]
-    came = f'This came with "{tests[2]["name"]}": fix that first and run again.'
-    assert tests[3]["output"] == f"Not checked. {came}"
-    assert came not in tests[2]["output"] + tests[4]["output"]
+    advice = f'This came with "{tests[2]["name"]}": fix that first and run again.'
+    assert tests[3]["output"] == f"Not checked. {advice}"
+    assert advice not in tests[2]["output"] + tests[4]["output"]
 
 
 @pytest.mark.promise("Students see the results of hidden checks when you publish the marks.")
@@ -169,14 +169,14 @@ def test_markdown_shows_a_students_text_as_text(hostile: Class, tmp_path: Path) 
     assert "&lt;script&gt;`x`[a](b)" in html
 
 
-def test_a_module_of_the_folder_is_a_format() -> None:
+def test_each_module_of_the_folder_is_a_format() -> None:
     assert {"csv", "gradescope", "html", "junit", "markdown"} <= set(FORMATS)
     folder = Path(formats.__file__).parent
     assert sorted(FORMATS) == sorted(path.stem for path in folder.glob("*.py") if path.stem != "__init__")
 
 
 @pytest.mark.parametrize("format", FORMATS)
-def test_a_file_and_a_folder_are_not_mixed_up(format: str, tmp_path: Path) -> None:
+def test_a_format_that_needs_a_folder_refuses_a_file_and_the_reverse(format: str, tmp_path: Path) -> None:
     file = tmp_path / "file"
     file.write_text("")
     wrong, kind = (file, "folder") if FORMATS[format].FOLDER else (tmp_path, "file")

@@ -24,7 +24,7 @@ MakeResult = Callable[..., Result]
 
 
 class Page(HTMLParser):
-    """A page as its reader gets it: the text, the tags, the pictures."""
+    """A parsed page: its text, tags and attributes."""
 
     def __init__(self, path: Path) -> None:
         super().__init__()
@@ -261,7 +261,7 @@ def test_no_text_of_a_student_becomes_markup(
         assert "{{7*7}}" in page.text
 
 
-def test_control_characters_and_half_characters_do_not_reach_the_page(make_result: MakeResult, tmp_path: Path) -> None:
+def test_control_characters_and_lone_surrogates_do_not_reach_the_page(make_result: MakeResult, tmp_path: Path) -> None:
     wild = "\x1b[31mred\x1b[0m \x00 \udcff \u202eevil"
     result = make_result(diagnosis=Diagnosis(Kind.CRASHED_LATER, "It crashed.", wild))
     text = Page(feedback.write(result, tmp_path)).text
@@ -279,7 +279,7 @@ def test_a_page_asks_for_nothing_from_the_network(
 
 
 @pytest.mark.promise("give every student a feedback page")
-def test_the_table_links_each_page_and_sums_up(
+def test_the_table_links_each_page_and_shows_totals(
     make_result: MakeResult, broken_result: Result, ungraded_result: Result, tmp_path: Path
 ) -> None:
     alice = make_result()

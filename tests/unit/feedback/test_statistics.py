@@ -49,6 +49,6 @@ def test_a_check_with_equal_results_has_no_discrimination_and_one_that_all_passe
 
 @pytest.mark.promise("the most frequent messages")
 def test_a_reason_is_counted_once_for_each_student_who_got_it(make_result: MakeResult) -> None:
-    found = class_statistics([make_result("alice"), make_result("bob")]).reasons
-    assert ("it starts after 3 s", 2) in found
+    reasons = class_statistics([make_result("alice"), make_result("bob")]).reasons
+    assert ("it starts after 3 s", 2) in reasons
     assert class_statistics([make_result("alice")]).reasons == ()

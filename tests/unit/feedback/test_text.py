@@ -14,5 +14,5 @@ def test_one_line_replaces_white_space_by_single_spaces() -> None:
 @pytest.mark.parametrize(
     ("value", "text"), [(3.0, "3"), (2.5, "2.5"), (1 / 3, "0.33"), (0.0, "0"), (100.0, "100"), (123456.0, "123456")]
 )
-def test_points_are_written_as_people_write_them(value: float, text: str) -> None:
+def test_points_are_written_without_trailing_zeros(value: float, text: str) -> None:
     assert number(value) == text

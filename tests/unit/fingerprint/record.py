@@ -1,9 +1,9 @@
-"""Records what all gradings share, a digest for each file, with the GRADER_VERSION that it was recorded for.
+"""Records a digest of each file that all gradings share, with the present GRADER_VERSION.
 
     python -m tests.unit.fingerprint.record
 
 A module's digest excludes parts that cannot change a mark: full-line comments, docstrings and empty lines.
-There is a line for each file, so that two branches that change two files do not collide.
+Each file has its own line, so that branches that change different files do not conflict.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from autograder import course_paths
 from autograder.suite import fingerprint
 
 RECORD = Path(__file__).with_name("recorded.txt")
-LOCK = course_paths.ROOT / "requirements.lock"  # the packages that students' programs meet
+LOCK = course_paths.ROOT / "requirements.lock"  # the packages that students' programs use
 
 
 def current() -> str:
-    """Return the record as it would be now."""
+    """Return the record of the present files."""
     any_chapter = course_paths.assignments()[0]
     shared = {*fingerprint.files(any_chapter), LOCK}.difference(fingerprint.chapter_files(any_chapter))
     lines = (f"{_digest(path)}  {path.relative_to(course_paths.ROOT).as_posix()}" for path in sorted(shared))
@@ -33,20 +33,20 @@ def current() -> str:
 def _digest(path: Path) -> str:
     data = path.read_bytes()
     if path.suffix == ".py":
-        data = "\n".join(_telling(data.decode())).encode()
+        data = "\n".join(_effective_lines(data.decode())).encode()
     return hashlib.sha256(data).hexdigest()[:12]
 
 
-def _telling(source: str) -> Iterator[str]:
+def _effective_lines(source: str) -> Iterator[str]:
     """Yield the lines of a module that can change what it does."""
-    silent = {number for begin, end in _docstrings(source) for number in range(begin, end + 1)}
+    ignored = {number for begin, end in _docstrings(source) for number in range(begin, end + 1)}
     lines = source.split("\n")
     for token in tokenize.generate_tokens(io.StringIO(source).readline):
         number, column = token.start
         if token.type == tokenize.COMMENT and not lines[number - 1][:column].strip():
-            silent.add(number)
+            ignored.add(number)
     for number, line in enumerate(lines, start=1):
-        if number not in silent and line.strip():
+        if number not in ignored and line.strip():
             yield line
 
 

@@ -1,4 +1,4 @@
-"""A suite's version changes with the chapter's files and the grader's number, its digest with every file read."""
+"""A suite's version depends on the chapter's files and GRADER_VERSION, its digest on every file a grading reads."""
 
 from __future__ import annotations
 
@@ -142,18 +142,18 @@ def test_every_module_that_a_grading_imports_is_among_the_files() -> None:
         "import autograder.grade.worker, autograder.grade.run_notebook, autograder.building.interface_bundle\n"
         "from autograder.suite import suites\n"
         "[suites.hidden(name) for name in suites.graded_assignments()]\n"
-        "places = [getattr(module, '__file__', None) for module in list(sys.modules.values())]\n"
-        "print(json.dumps([place for place in places if place]))\n"
+        "paths = [getattr(module, '__file__', None) for module in list(sys.modules.values())]\n"
+        "print(json.dumps([path for path in paths if path]))\n"
     )
     printed = subprocess.run(
         [sys.executable, "-c", code], check=True, capture_output=True, text=True, cwd=course_paths.ROOT
     )
-    homes = (course_paths.ROOT / "autograder", course_paths.ROOT / "sim")
+    folders = (course_paths.ROOT / "autograder", course_paths.ROOT / "sim")
     modules = {Path(place) for place in json.loads(printed.stdout)}
-    imported = {module for module in modules if any(home in module.parents for home in homes)}
-    known = {path for name in suites.graded_assignments() for path in files(name, suites.hidden(name).reads)}
+    imported = {module for module in modules if any(folder in module.parents for folder in folders)}
+    listed = {path for name in suites.graded_assignments() for path in files(name, suites.hidden(name).reads)}
     assert len(imported) > 100
-    assert imported - known == set()
+    assert imported - listed == set()
 
 
 def test_each_path_in_reads_of_a_suite_exists() -> None:

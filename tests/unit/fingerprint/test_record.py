@@ -1,15 +1,15 @@
-"""Nobody changes how marks come about without a look at GRADER_VERSION."""
+"""A change of a file that all gradings share needs a decision about GRADER_VERSION."""
 
 from __future__ import annotations
 
 import pytest
 
-from tests.unit.fingerprint.record import RECORD, _telling, current
+from tests.unit.fingerprint.record import RECORD, _effective_lines, current
 
 HELP = """
-These files, which all gradings share, are not as they were recorded for {version}. If a submission can get another
+These files, which all gradings share, differ from their record for {version}. If a submission can get another
 mark, or another reason for it, with the same seed, raise GRADER_VERSION in autograder/suite/fingerprint.py. Then, or
-if no mark can change, record them anew: python -m tests.unit.fingerprint.record
+if no mark can change, record them again: python -m tests.unit.fingerprint.record
 """
 
 
@@ -24,4 +24,4 @@ def test_comments_and_docstrings_do_not_count_as_a_change() -> None:
     source = (
         '"""What it is."""\n\n# Why.\ndef f():\n    """Return.\n\n    Two.\n    """\n    return """\n# text"""  # 2\n'
     )
-    assert list(_telling(source)) == ["def f():", '    return """', '# text"""  # 2']
+    assert list(_effective_lines(source)) == ["def f():", '    return """', '# text"""  # 2']

@@ -29,13 +29,16 @@ def _submission(folder: Path) -> Path:
     return folder
 
 
-def _found(*paths: Path) -> list[tuple[str, str]]:
+def _discovered(*paths: Path) -> list[tuple[str, str]]:
     return [(student, path.name) for student, path in discover(paths, CHAPTER).submissions.items()]
 
 
 def test_a_single_submission_has_the_name_of_its_folder_or_file(tmp_path: Path) -> None:
     (tmp_path / "bob.zip").write_bytes(b"")
-    assert _found(_submission(tmp_path / "alice"), tmp_path / "bob.zip") == [("alice", "alice"), ("bob", "bob.zip")]
+    assert _discovered(_submission(tmp_path / "alice"), tmp_path / "bob.zip") == [
+        ("alice", "alice"),
+        ("bob", "bob.zip"),
+    ]
 
 
 @pytest.mark.promise(
@@ -48,16 +51,16 @@ def test_a_folder_of_submissions_has_one_submission_for_each_student(tmp_path: P
     (tmp_path / "class" / "carol.ipynb").write_bytes(b"{}")
     (tmp_path / "class" / "notes.txt").write_bytes(b"")
     (tmp_path / "class" / ".hidden").mkdir()
-    found = discover((tmp_path / "class",), CHAPTER)
-    assert list(found.submissions) == ["alice", "bob", "carol"]
-    assert [name for name, _ in found.others] == ["notes.txt"]
+    discovered = discover((tmp_path / "class",), CHAPTER)
+    assert list(discovered.submissions) == ["alice", "bob", "carol"]
+    assert [name for name, _ in discovered.others] == ["notes.txt"]
 
 
 def test_an_archive_is_a_submission_whatever_its_ending(tmp_path: Path) -> None:
     names = ["ada.tar.gz", "bob.ZIP", "cyd.7z", "dan.Ipynb", "eve.tgz", "fay.rar", "gus.ipynb.txt"]
     for name in names:
         (tmp_path / name).write_bytes(b"")
-    assert _found(tmp_path) == [(name.partition(".")[0], name) for name in names]
+    assert _discovered(tmp_path) == [(name.partition(".")[0], name) for name in names]
 
 
 def test_files_beside_a_students_folder_of_the_assignment_belong_to_the_submission(tmp_path: Path) -> None:
@@ -65,18 +68,18 @@ def test_files_beside_a_students_folder_of_the_assignment_belong_to_the_submissi
         _submission(tmp_path / "submitted" / student / CHAPTER)
     (tmp_path / "submitted" / "alice" / "timestamp.txt").write_text("")
     (tmp_path / "submitted" / "bob" / "better.zip").write_bytes(b"")
-    assert _found(tmp_path / "submitted") == [("alice", CHAPTER), ("bob", "bob")]
+    assert _discovered(tmp_path / "submitted") == [("alice", CHAPTER), ("bob", "bob")]
 
 
 def test_nbgrader_s_submitted_layout_is_understood(tmp_path: Path) -> None:
     for student in ("alice", "bob"):
         _submission(tmp_path / "submitted" / student / CHAPTER)
-    assert _found(tmp_path / "submitted") == [("alice", CHAPTER), ("bob", CHAPTER)]
+    assert _discovered(tmp_path / "submitted") == [("alice", CHAPTER), ("bob", CHAPTER)]
 
 
 def test_an_empty_submission_in_a_class_is_still_a_submission(tmp_path: Path) -> None:
     (tmp_path / "class" / "dave").mkdir(parents=True)
-    assert _found(tmp_path / "class") == [("dave", "dave")]
+    assert _discovered(tmp_path / "class") == [("dave", "dave")]
 
 
 def test_an_empty_folder_is_a_usage_error(tmp_path: Path) -> None:
@@ -106,7 +109,7 @@ def test_two_submissions_with_the_same_name_are_a_usage_error(tmp_path: Path) ->
 
 
 class Grader:
-    """Stands where a submission is graded; remembers which were, and how many at once."""
+    """Replaces grade_submission: records the students, and waits until `together` submissions are graded at once."""
 
     def __init__(self, make_result: MakeResult, together: int) -> None:
         self.graded: list[str] = []
@@ -127,7 +130,7 @@ class Grader:
 
 @pytest.fixture
 def submissions(tmp_path: Path) -> dict[str, Path]:
-    """The class: two with another answer each."""
+    """The class: two submissions with different answers."""
     (_submission(tmp_path / "alice") / "src" / "pkg" / "README").write_text("alice's")
     return {"alice": tmp_path / "alice", "bob": _submission(tmp_path / "bob")}
 
@@ -207,6 +210,6 @@ def test_a_submission_that_was_not_graded_is_graded_again(grade: Callable[..., l
 
 
 def test_each_result_is_announced(grade: Callable[..., list[str]]) -> None:
-    seen: list[str] = []
-    grade(on_result=lambda result: seen.append(result.student))
-    assert sorted(seen) == ["alice", "bob"]
+    announced: list[str] = []
+    grade(on_result=lambda result: announced.append(result.student))
+    assert sorted(announced) == ["alice", "bob"]

@@ -1,4 +1,4 @@
-"""What a notebook's sandbox claims, and what a notebook says of itself, costs seconds to read at most."""
+"""Reading what a notebook's sandbox reports, and a notebook's own metadata, takes seconds at most."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def stream(text: str) -> dict[str, str]:
 def test_an_endless_answer_is_read_quickly_and_the_part_before_it_counts(flood: bytes) -> None:
     began = time.process_time()
     answer = read_answer(cell(0, [stream("mine")]) + flood)
-    assert time.process_time() - began < 10  # an answer as large as it may be took up to nine minutes
+    assert time.process_time() - began < 10  # an answer of the maximum size once took up to nine minutes
     assert answer.cells[0].outputs[0].text == "mine"
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from autograder.grade.machine_lock import MachineLock
 
-SECONDS = 60.0  # for what must happen
+SECONDS = 60.0  # deadline for events that must happen
 
 
 def test_several_gradings_share_the_machine() -> None:
@@ -29,37 +29,37 @@ def test_an_exclusive_grading_waits_for_the_others_and_later_ones_wait_for_it() 
     machine, order = MachineLock(), list[str]()
     begun, ended = threading.Event(), threading.Event()
 
-    def beside(name: str, wait: threading.Event | None = None) -> None:
+    def grade_beside(name: str, wait: threading.Event | None = None) -> None:
         with machine.shared():
             begun.set()
             if wait is not None:
                 wait.wait(SECONDS)
             order.append(name)
 
-    def alone(name: str) -> None:
+    def grade_alone(name: str) -> None:
         with machine.exclusive():
             order.append(f"{name} begins")
             order.append(f"{name} ends")
 
     with ThreadPoolExecutor(4) as pool:
-        futures = [pool.submit(beside, "first", ended)]
+        futures = [pool.submit(grade_beside, "first", ended)]
         assert begun.wait(SECONDS)
-        futures.append(pool.submit(alone, "a"))
+        futures.append(pool.submit(grade_alone, "a"))
         deadline = time.monotonic() + SECONDS
         while not machine._turn.locked():
             assert time.monotonic() < deadline
             threading.Event().wait(0.01)
-        futures.append(pool.submit(beside, "late"))
+        futures.append(pool.submit(grade_beside, "late"))
         ended.set()
         for future in futures:
             future.result(SECONDS)
     assert order == ["first", "a begins", "a ends", "late"]
 
 
-@pytest.mark.parametrize("way", ["shared", "exclusive"])
-def test_an_error_releases_the_machine(way: str) -> None:
+@pytest.mark.parametrize("mode", ["shared", "exclusive"])
+def test_an_error_releases_the_machine(mode: str) -> None:
     machine = MachineLock()
-    with pytest.raises(ValueError, match="mine"), getattr(machine, way)():
+    with pytest.raises(ValueError, match="mine"), getattr(machine, mode)():
         raise ValueError("mine")
     with machine.exclusive(), pytest.raises(ZeroDivisionError):
         _ = 1 / 0

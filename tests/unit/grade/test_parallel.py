@@ -20,27 +20,27 @@ def test_results_have_the_order_of_the_items() -> None:
         return item * item
 
     def on_done(result: int) -> None:
-        came.append(result)
+        results.append(result)
         second_done.set()
 
-    came: list[int] = []
+    results: list[int] = []
     assert map_parallel(do, (0, 1, 2), jobs=2, on_done=on_done) == (0, 1, 4)
-    assert sorted(came) == [0, 1, 4]
-    assert came[0] != 0
+    assert sorted(results) == [0, 1, 4]
+    assert results[0] != 0
 
 
 @pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt])
 def test_no_item_is_started_after_an_error(error: type[BaseException]) -> None:
     begun: list[int] = []
-    told = threading.Event()
+    reported = threading.Event()
 
     def do(item: int) -> int:
         begun.append(item)
-        assert item == 0 or told.wait(60.0)
+        assert item == 0 or reported.wait(60.0)
         return item
 
     def on_done(result: int) -> None:
-        threading.Timer(0.2, told.set).start()
+        threading.Timer(0.2, reported.set).start()
         raise error("enough")
 
     with pytest.raises(error, match="enough"):

@@ -35,7 +35,7 @@ def grade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Grade:
     monkeypatch.setenv("PYTEST_PLUGINS", "no_such_plugin")
 
     def grade_text(text: str, options: Options = WHOLE_SUITE, last: bool = False, seed: int = 7) -> GradingPlugin:
-        # A name of its own: pytest keeps the modules that this process has imported.
+        # A unique name: pytest keeps the modules that this process has imported.
         path = tmp_path / "chapter" / "hidden" / f"checks_{next(_NUMBERS)}.py"
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(HEAD + textwrap.dedent(text))
@@ -223,7 +223,7 @@ def test_any_other_exception_is_the_grader_s_own_failure(grade: Grade, error: st
 
 @pytest.mark.promise("`grader.log` beside the result says where.")
 @pytest.mark.parametrize("where", ["check", "fixture", "module"])
-def test_an_error_over_a_student_s_data_fails_only_that_check_and_is_logged_for_the_instructor(
+def test_an_error_in_handling_a_student_s_data_fails_only_that_check_and_is_logged_for_the_instructor(
     grade: Grade, where: str
 ) -> None:
     plugin = grade(f"""
@@ -301,7 +301,7 @@ def test_an_error_that_data_do_not_cause_is_the_grader_s_failure(grade: Grade, e
     assert (len(plugin.failures), plugin.unjudged) == (1, {})
 
 
-def test_an_error_of_a_program_or_the_machine_is_the_program_s_in_the_last_try(grade: Grade) -> None:
+def test_an_error_of_a_program_or_the_machine_counts_as_the_program_s_in_the_last_try(grade: Grade) -> None:
     text = """
         from autograder.exceptions import DoubtfulError
         from autograder.submission.reading import hold
@@ -336,7 +336,7 @@ def test_a_module_that_cannot_be_imported_is_the_grader_s_own_failure(grade: Gra
     assert "no_such_module" in plugin.failures[0]
 
 
-def test_a_test_that_declares_no_check_counts_for_nothing(grade: Grade) -> None:
+def test_a_test_that_declares_no_check_is_ignored(grade: Grade) -> None:
     plugin = grade("""
         def test_helper():
             assert True
@@ -381,10 +381,10 @@ def test_files_around_the_suite_are_not_collected(grade: Grade, tmp_path: Path) 
 def test_a_pytest_plug_in_installed_on_the_machine_is_not_loaded(
     grade: Grade, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    about = tmp_path / "site" / "launch_testing-9.9.dist-info"
-    about.mkdir(parents=True)
-    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: launch-testing\nVersion: 9.9\n")
-    (about / "entry_points.txt").write_text("[pytest11]\nlaunch_testing_of_somebody = broken_plug_in\n")
+    metadata = tmp_path / "site" / "launch_testing-9.9.dist-info"
+    metadata.mkdir(parents=True)
+    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: launch-testing\nVersion: 9.9\n")
+    (metadata / "entry_points.txt").write_text("[pytest11]\nlaunch_testing_of_somebody = broken_plug_in\n")
     (tmp_path / "site" / "broken_plug_in.py").write_text("raise SystemExit('loaded')")
     monkeypatch.syspath_prepend(tmp_path / "site")
     plugin = grade("""
@@ -439,6 +439,6 @@ def test_a_check_gets_only_the_messages_of_its_own_set_up_and_call(grade: Grade)
             '''The second.'''
             workspace.exchanges.add(2.0, "asked", "/stop", "")
     """
-    said = {name: [row.name for row in result.talk] for name, result in grade(text).results.items()}
-    assert said == {"first": ["/prepare", "/go"], "second": ["/stop"]}
+    names = {name: [row.name for row in result.talk] for name, result in grade(text).results.items()}
+    assert names == {"first": ["/prepare", "/go"], "second": ["/stop"]}
     assert [result.talk for result in grade(text, Options(pictures=False)).results.values()] == [(), ()]

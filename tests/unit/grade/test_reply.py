@@ -1,4 +1,4 @@
-"""What the process that started a worker makes of the files that it left costs little, whatever they are."""
+"""Checking the files that a worker leaves costs little, whatever they contain."""
 
 from __future__ import annotations
 
@@ -30,15 +30,17 @@ JOB = Job(Path("ada"), "02_nodes", "ada", 7, Path("out"))
 def result(make_result: Callable[..., Result]) -> Result:
     suite = JOB.suite
     checks = tuple(CheckResult.of(check, Outcome.PASSED) for check in suite.checks)
-    told = {"suite_version": suite.version, "files_digest": suite.files_digest, "max_score": suite.max_score}
-    return make_result(JOB.student, checks=checks, seed=JOB.seed, isolation=JOB.isolation.value, **told)
+    versions = {"suite_version": suite.version, "files_digest": suite.files_digest, "max_score": suite.max_score}
+    return make_result(JOB.student, checks=checks, seed=JOB.seed, isolation=JOB.isolation.value, **versions)
 
 
 def files(result: Result, **others: bytes) -> dict[str, bytes]:
     return {"result.json": json.dumps(result.to_json()).encode(), **others}
 
 
-def test_no_error_that_a_reply_causes_ends_a_class(result: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_error_caused_by_a_reply_does_not_end_the_grading_of_a_class(
+    result: Result, monkeypatch: pytest.MonkeyPatch
+) -> None:
     for error in (OverflowError, KeyError, AttributeError, MemoryError):
         monkeypatch.setattr(
             reply, "from_json", lambda data, source, error=error: (_ for _ in ()).throw(error("of data"))
@@ -57,10 +59,10 @@ def test_json_of_too_many_values_is_refused_before_it_takes_memory(flood: bytes)
     try:
         with pytest.raises(ValueError, match="more than 1,000 values"):
             read_json(flood, 1000)
-        _, most = tracemalloc.get_traced_memory()
+        _, peak = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
-    assert most < 6 * len(flood)  # to parse the first takes 20 times as much
+    assert peak < 6 * len(flood)  # to parse the first takes 20 times as much
 
 
 def test_a_string_counts_as_one_value() -> None:
@@ -78,10 +80,10 @@ def test_a_result_with_a_number_that_no_page_can_show_is_refused(result: Result,
 
 @pytest.mark.parametrize("name", ["result.json", "notebook.ipynb", "a.run.json"])
 def test_each_file_that_is_parsed_is_counted_first(result: Result, name: str) -> None:
-    own = files(replace(result, artifacts=(Artifact("a.png", "track", "0" * 64, "x", run="a.run.json"),)))
+    reply_files = files(replace(result, artifacts=(Artifact("a.png", "track", "0" * 64, "x", run="a.run.json"),)))
     values = b'{"cells": [' + b"[]," * NOTEBOOK_VALUES + b"0]}"
     with pytest.raises(ReplyError, match=r"more than [0-9,]+ values|cannot identify image"):
-        checked({**own, "a.png": b"", "a.run.json": b"{}", name: values}, JOB)
+        checked({**reply_files, "a.png": b"", "a.run.json": b"{}", name: values}, JOB)
 
 
 def test_a_large_result_is_refused(result: Result) -> None:
@@ -89,17 +91,17 @@ def test_a_large_result_is_refused(result: Result) -> None:
         checked({"result.json": b" " * (8 * MIB + 1)}, JOB)
 
 
-def test_a_file_that_a_result_names_a_thousand_times_is_not_shown_so_often(result: Result) -> None:
-    again = replace(result, artifacts=(Artifact("a.png", "track", "0" * 64, "x"),) * 1000)
+def test_a_result_that_names_a_file_a_thousand_times_is_refused(result: Result) -> None:
+    repeated = replace(result, artifacts=(Artifact("a.png", "track", "0" * 64, "x"),) * 1000)
     with pytest.raises(ReplyError, match="shows its 1 files 1000 times"):
-        checked(files(again, **{"a.png": bytes(MIB)}), JOB)
+        checked(files(repeated, **{"a.png": bytes(MIB)}), JOB)
 
 
 def test_a_notebook_of_all_outputs_and_lines_that_a_run_may_have_is_accepted(result: Result) -> None:
-    """A text of millions of lines had millions of values, and more bytes than a worker may leave."""
-    many = [{"output_type": "display_data", "data": {"application/json": [[]] * (MAX_VALUES - 20)}, "metadata": {}}]
+    """Stored as a list of lines, such a text would have millions of values and too many bytes."""
+    values = [{"output_type": "display_data", "data": {"application/json": [[]] * (MAX_VALUES - 20)}, "metadata": {}}]
     lines = [new_output("stream", text="\n" * 4 * MIB)]
-    cells = [new_code_cell("\n" * 2 * MIB, outputs=lines), {**new_code_cell(), "outputs": many}]
+    cells = [new_code_cell("\n" * 2 * MIB, outputs=lines), {**new_code_cell(), "outputs": values}]
     data = encode(NotebookNode({**new_notebook(), "cells": list(map(NotebookNode, cells))}))
     assert len(data) < MAX_BYTES
     checked(files(result, **{"notebook.ipynb": data}), JOB)
@@ -113,7 +115,7 @@ def test_a_notebook_that_would_be_too_large_is_kept_without_its_outputs(monkeypa
     assert (cell.source, cell.outputs) == ("1", [])
 
 
-def test_jupyter_reads_a_notebook_as_it_is_written_and_the_grader_one_of_jupyters() -> None:
+def test_jupyter_and_the_grader_read_each_other_s_notebooks() -> None:
     notebook = new_notebook(cells=[new_code_cell("1\n2", outputs=[new_output("stream", text="a\nb")])])
     read = nbformat.reads(encode(notebook).decode(), as_version=4)
     nbformat.validate(read)

@@ -43,11 +43,11 @@ def _cells(notebook: NotebookNode) -> dict[str, NotebookNode]:
 
 
 def _is_as_released(notebook: NotebookNode) -> bool:
-    found, wanted = _cells(notebook), _cells(_source())
+    cells, expected = _cells(notebook), _cells(_source())
     claims = [submitted_notebook.grade_id(cell) for cell in notebook.cells if submitted_notebook.grade_id(cell)]
-    return sorted(claims) == sorted(wanted) and all(
-        found[name].metadata == cell.metadata and found[name].cell_type == cell.cell_type
-        for name, cell in wanted.items()
+    return sorted(claims) == sorted(expected) and all(
+        cells[name].metadata == cell.metadata and cells[name].cell_type == cell.cell_type
+        for name, cell in expected.items()
     )
 
 
@@ -112,7 +112,7 @@ def test_outputs_and_the_notebook_s_own_metadata_are_dropped() -> None:
     assert restored.metadata == _source().metadata
 
 
-def test_an_answer_whose_metadata_was_dropped_is_known_by_its_id_or_the_question_above_it() -> None:
+def test_an_answer_whose_metadata_was_dropped_is_recognised_by_its_id_or_the_question_above_it() -> None:
     for keep_ids in (True, False):
         source = _source()
         source.cells[2:2] = [

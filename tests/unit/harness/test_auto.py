@@ -1,4 +1,4 @@
-"""A harness that chooses its time: to use it too early is an error."""
+"""A harness that chooses between stepped and real time is entered before it is used."""
 
 from __future__ import annotations
 

@@ -16,12 +16,12 @@ import pytest
 from autograder.harness import cpu_starvation
 from autograder.run.sandbox import procfs
 
-SECONDS = 60.0  # for what must happen
+SECONDS = 60.0  # deadline for events that must happen
 
 
 @pytest.fixture
-def waits() -> list[float]:
-    """What was reported."""
+def stalls() -> list[float]:
+    """The reported stalls, in seconds."""
     return []
 
 
@@ -34,26 +34,26 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
 
 
 @pytest.mark.parametrize(
-    ("took", "seconds", "late"),
+    ("elapsed", "seconds", "late"),
     [(0.1, 0.1, 0.0), (0.05, 0.1, 0.0), (0.7, 0.1, 0.6), (0.3, -0.5, 0.3)],
     ids=["in time", "early", "late", "nothing to wait for"],
 )
 def test_a_late_return_counts_as_a_stall(
-    clock: list[float], waits: list[float], took: float, seconds: float, late: float
+    clock: list[float], stalls: list[float], elapsed: float, seconds: float, late: float
 ) -> None:
-    clock += [5.0, 5.0 + took]
-    with cpu_starvation.watch([], seconds, waits.append):
+    clock += [5.0, 5.0 + elapsed]
+    with cpu_starvation.watch([], seconds, stalls.append):
         pass
-    assert waits == [pytest.approx(late, abs=5 * procfs.TICK)]  # less what this process used meanwhile
+    assert stalls == [pytest.approx(late, abs=5 * procfs.TICK)]  # less what this process used meanwhile
 
 
-def test_an_ended_process_does_not_count_as_stalled(clock: list[float], waits: list[float]) -> None:
+def test_an_ended_process_does_not_count_as_stalled(clock: list[float], stalls: list[float]) -> None:
     with subprocess.Popen([sys.executable, "-c", ""]) as ended:
         pass
     clock += [0.0, 0.0]
-    with cpu_starvation.watch([ended.pid], 0.0, waits.append):
+    with cpu_starvation.watch([ended.pid], 0.0, stalls.append):
         pass
-    assert waits == [0.0]
+    assert stalls == [0.0]
 
 
 @contextmanager
@@ -73,26 +73,26 @@ def spinning(nice: int, *, adopted: bool = False) -> Iterator[int]:
             os.kill(pid, signal.SIGKILL)
 
 
-def test_a_process_without_a_free_processor_counts_as_stalled(waits: list[float]) -> None:
+def test_a_process_without_a_free_processor_counts_as_stalled(stalls: list[float]) -> None:
     deadline = time.monotonic() + SECONDS
     with spinning(19) as pid, spinning(0, adopted=True):
-        while max(waits, default=0.0) < 0.2:
+        while max(stalls, default=0.0) < 0.2:
             assert time.monotonic() < deadline
-            with cpu_starvation.watch([pid], SECONDS, waits.append):
-                time.sleep(0.5)  # less than what is watched for: this is not late itself
+            with cpu_starvation.watch([pid], SECONDS, stalls.append):
+                time.sleep(0.5)  # shorter than the watch, so this process is not late itself
 
 
-def test_a_processor_that_the_submission_s_own_process_has_does_not_count(waits: list[float]) -> None:
+def test_a_processor_that_the_submission_s_own_process_has_does_not_count(stalls: list[float]) -> None:
     deadline = time.monotonic() + SECONDS
     waited = ran = 0.0
     with spinning(19) as pid, spinning(0) as other:
         while min(waited, ran) < 0.3:
             assert time.monotonic() < deadline
-            waits.clear()
+            stalls.clear()
             began_waiting = procfs.thread_times([pid])[pid].waited
-            with cpu_starvation.watch([pid], SECONDS, waits.append):
+            with cpu_starvation.watch([pid], SECONDS, stalls.append):
                 began_running = procfs.thread_times([other])[other].ran
                 time.sleep(0.5)
                 ran = procfs.thread_times([other])[other].ran - began_running
             waited = procfs.thread_times([pid])[pid].waited - began_waiting
-    assert waits[0] <= max(0.0, waited - ran) + 10 * procfs.TICK
+    assert stalls[0] <= max(0.0, waited - ran) + 10 * procfs.TICK

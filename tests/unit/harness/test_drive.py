@@ -14,7 +14,7 @@ WORLD = Simulation(World.from_segments(box(4.0, 3.0)), (RobotSpec(),))
 
 
 class Program:
-    """A process that has written something."""
+    """A process with its output."""
 
     def __init__(self, written: bytes) -> None:
         self.text = written
@@ -24,7 +24,7 @@ class Program:
 
 
 class Talking:
-    """A harness of one program, which writes one of its pieces at each step."""
+    """A harness with one program, which writes the next piece of its output at each step."""
 
     tick_ns = 100_000_000
 
@@ -38,7 +38,7 @@ class Talking:
         return round(self.seconds * 1e9)
 
     def publish(self, topic: str, message: Any) -> None:
-        """Show the program a message, which it does not look at."""
+        """Ignore the message, as the program does."""
 
     def messages(self, topic: str) -> list[Any]:
         return []
@@ -48,13 +48,13 @@ class Talking:
         self.processes[0].text += self._pieces.pop(0) if self._pieces else b""
 
 
-def heard(harness: Talking) -> tuple[tuple[float, str], ...]:
+def recorded_lines(harness: Talking) -> tuple[tuple[float, str], ...]:
     return drive(cast("Harness", harness), WORLD, 0.5).recording.said
 
 
 def test_each_line_has_the_instant_of_its_line_end() -> None:
     pieces = [b"hello\nhalf", b"", b" a line\n\xff\n", b"no end"]
-    assert heard(Talking(0.0, pieces, b"started\n")) == (
+    assert recorded_lines(Talking(0.0, pieces, b"started\n")) == (
         (0.1, "started"),
         (0.1, "hello"),
         (0.3, "half a line"),
@@ -63,7 +63,7 @@ def test_each_line_has_the_instant_of_its_line_end() -> None:
 
 
 def test_output_written_before_the_drive_is_ignored() -> None:
-    assert heard(Talking(7.0, [b"mine\n"], b"of another check\n")) == ((0.1, "mine"),)
+    assert recorded_lines(Talking(7.0, [b"mine\n"], b"of another check\n")) == ((0.1, "mine"),)
 
 
 @pytest.mark.parametrize(
@@ -76,4 +76,4 @@ def test_output_written_before_the_drive_is_ignored() -> None:
     ],
 )
 def test_a_line_is_shown_without_the_machines_time_and_without_terminal_codes(written: bytes, shown: str) -> None:
-    assert heard(Talking(0.0, [written + b"\n"])) == ((0.1, shown),)
+    assert recorded_lines(Talking(0.0, [written + b"\n"])) == ((0.1, shown),)

@@ -1,4 +1,4 @@
-"""A program that publishes without end fails with a sentence, before the messages fill the grader's memory."""
+"""A program that publishes without end fails with a reason, before its messages fill the grader's memory."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from autograder.harness.inflow import Inflow
 from autograder.run.sandbox.limits import RECEIVED, Received
 
 DOMAIN = 87
-SECONDS = 30.0  # of real time for what must happen
+SECONDS = 30.0  # of real time, as a deadline for events that must happen
 
 
-def flooded(inflow: Inflow, topic: str, size: int) -> str:
-    """Count a message that is too many; return the sentence."""
+def exceed_limit(inflow: Inflow, topic: str, size: int) -> str:
+    """Count one message more than allowed; return the sentence of the error."""
     with pytest.raises(StudentError) as caught:
         inflow.add(topic, size)
     assert caught.value.diagnosis.kind is Kind.FLOODED_OUTPUT
@@ -35,14 +35,14 @@ def test_one_message_too_many_names_the_topic_that_had_most() -> None:
     for topic in ("/loud", "/loud", "/quiet") * 3:
         inflow.add(topic, 8)
     inflow.add("/loud", 8)
-    assert "sent 7 messages of 0.0 MiB in all on /loud" in flooded(inflow, "/quiet", 8)
+    assert "sent 7 messages of 0.0 MiB in all on /loud" in exceed_limit(inflow, "/quiet", 8)
 
 
 def test_large_messages_are_bounded_in_all() -> None:
     inflow = Inflow()
     for _ in range(4):
         inflow.add("/map", RECEIVED.size // 4)
-    sentence = flooded(inflow, "/map", RECEIVED.size // 4)
+    sentence = exceed_limit(inflow, "/map", RECEIVED.size // 4)
     assert "5 messages of 80.0 MiB in all on /map" in sentence
     assert "100,000 messages and 64 MiB" in sentence
 
@@ -86,7 +86,7 @@ def test_the_grader_stops_taking_what_a_program_publishes_without_end(
     assert len(kept) == 50
 
 
-def test_bytes_that_are_no_message_of_the_type_are_left_out(programs_node: Node, grader: GraderNode) -> None:
+def test_bytes_that_are_not_a_message_of_the_type_are_ignored(programs_node: Node, grader: GraderNode) -> None:
     kept: list[str] = []
     grader.subscribe("/said", String, lambda message, _: kept.append(message.data), requested_qos([]))
     publisher = programs_node.create_publisher(String, "/said", 100)

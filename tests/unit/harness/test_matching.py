@@ -18,9 +18,9 @@ SCAN, ASK = "/scan T reliable volatile", "/ask T request"
 
 @pytest.fixture
 def grader_node(ros_domain: int) -> Iterator[GraderNode]:
-    made = GraderNode(ros_domain)
-    yield made
-    made.close()
+    node = GraderNode(ros_domain)
+    yield node
+    node.close()
 
 
 def _program(writers: int | None = None, readers: int | None = None, ready: bool | None = None, serves: bool = False):  # type: ignore[no-untyped-def]

@@ -18,7 +18,7 @@ REFUSAL = SetParametersAtomically.Response(result=SetParametersResult(successful
 
 
 @pytest.mark.parametrize(
-    ("message", "said"),
+    ("message", "text"),
     [
         (REQUEST, "parameters: [{name: 'speed', value: 0.35}]"),
         (REFUSAL, "result: {successful: False, reason: '<script>no'}"),
@@ -29,8 +29,8 @@ REFUSAL = SetParametersAtomically.Response(result=SetParametersResult(successful
         (CancelGoal.Request(), "goal_info: {stamp: {sec: 0, nanosec: 0}}"),
     ],
 )
-def test_a_message_is_formatted_as_one_line(message: Any, said: str) -> None:
-    assert format_message(message) == said
+def test_a_message_is_formatted_as_one_line(message: Any, text: str) -> None:
+    assert format_message(message) == text
 
 
 def test_a_long_text_is_cut() -> None:

@@ -13,7 +13,7 @@ STEADY = [0.1 * number for number in range(1, 21)]
     ("instants", "rate"),
     [
         pytest.param(STEADY, 10.0, id="steady"),
-        pytest.param(STEADY[:8] + STEADY[12:], 10.0, id="held up for half a second"),
+        pytest.param(STEADY[:8] + STEADY[12:], 10.0, id="stalled for half a second"),
         pytest.param(STEADY[::2], 5.0, id="half as often"),
         pytest.param(STEADY[:8], 4.0, id="it stopped after 0.8 s"),
         pytest.param([], 0.0, id="never"),

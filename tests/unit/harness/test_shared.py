@@ -14,7 +14,7 @@ from autograder.run.sandbox import ExitReason
 
 
 class Fake:
-    """Programs that end when they are told to."""
+    """A harness whose programs end when the test says so."""
 
     def __init__(self) -> None:
         self.processes: Any = (SimpleNamespace(exit_reason=None), SimpleNamespace(exit_reason=None))

@@ -39,7 +39,7 @@ def test_a_tick_hits_every_firing_of_the_timers(timers: list[int], tick: int) ->
         ([3 * MS], FINEST_TICK_NS),
         ([99 * MS + 1], 100 * MS),
     ],
-    ids=["nobody wakes", "later", "the first", "not at once", "so shortly before the end"],
+    ids=["no wake-up", "later", "the first", "not at once", "just before the end"],
 )
-def test_a_step_ends_early_where_a_program_wants_to_continue(wakes: list[int | None], instant: int) -> None:
+def test_a_step_ends_early_at_a_pending_wake_up(wakes: list[int | None], instant: int) -> None:
     assert next_instant(0, 100 * MS, wakes) == instant

@@ -1,4 +1,4 @@
-"""The turns of programs in lockstep: which there are, in which order, and which can be taken at once."""
+"""The turns of programs in lockstep: their order, and which of them can run at once."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_messages_of_earlier_programs_are_taken_in_the_same_round_and_those_of_l
     assert _turns(_program(earlier, later, number=1)) == [(199, {SCAN: 1}), (199, {WORD: 1}), (200, {})]
 
 
-def test_what_is_sent_at_the_end_of_the_step_is_taken_there() -> None:
+def test_messages_sent_at_the_end_of_a_step_are_taken_in_that_step() -> None:
     at_its_end = (Place(1, 0, 0), {WORD: 1})
     assert _turns(_program((GRADER, {SCAN: 1}), at_its_end, number=1)) == [(199, {SCAN: 1}), (200, {WORD: 1})]
 
@@ -89,11 +89,11 @@ def test_programs_are_in_an_order_in_which_each_gets_its_messages_from_earlier_o
     ],
     ids=["they answer each other", "one serves the other", "both publish on one topic"],
 )
-def test_there_is_no_such_order_where_messages_come_back_or_meet(one: dict[str, Any], other: dict[str, Any]) -> None:
+def test_programs_have_no_such_order_if_messages_come_back_or_meet(one: dict[str, Any], other: dict[str, Any]) -> None:
     assert flow([_program(**one), _program(number=1, **other)]) is None
 
 
-def test_who_reads_parameter_events_comes_after_the_others() -> None:
+def test_a_program_that_reads_parameter_events_comes_after_the_others() -> None:
     events = "/parameter_events rcl_interfaces/msg/ParameterEvent reliable volatile"
     reader, other = _program(readers=(((events,), 2),)), _program(number=1)
     assert flow([reader, other]) == [other, reader]

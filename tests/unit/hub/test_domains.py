@@ -27,9 +27,9 @@ except NoServerError as refused:
 @pytest.fixture
 def spawners() -> Iterator[list[CourseSpawner]]:
     """Spawners of three users; in the end their servers are stopped."""
-    made = [CourseSpawner(user=SimpleNamespace(name=name)) for name in NAMES]
-    yield made
-    for spawner in made:
+    created = [CourseSpawner(user=SimpleNamespace(name=name)) for name in NAMES]
+    yield created
+    for spawner in created:
         spawner.clear_state()
 
 

@@ -30,21 +30,21 @@ MIB = 1024 * 1024
 
 
 def understated_zip(packed: bytes, method: int) -> bytes:
-    """Return a zip with a notebook of 1,000 bytes, as it says; `packed` becomes far more."""
+    """Return a zip that states 1,000 bytes for its notebook, although `packed` unpacks to far more."""
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w") as archive:
         archive.writestr(f"{CHAPTER}.ipynb", packed)
     data = bytearray(file.getvalue())
-    for head, place, size in ((b"PK\x03\x04", 8, 22), (b"PK\x01\x02", 10, 24)):
-        struct.pack_into("<H", data, data.find(head) + place, method)
-        struct.pack_into("<I", data, data.find(head) + size, 1000)
+    for head, method_offset, size_offset in ((b"PK\x03\x04", 8, 22), (b"PK\x01\x02", 10, 24)):
+        struct.pack_into("<H", data, data.find(head) + method_offset, method)
+        struct.pack_into("<I", data, data.find(head) + size_offset, 1000)
     return bytes(data)
 
 
 def tar_of_zeros(size: int) -> bytes:
     file = io.BytesIO()
     with tarfile.open(fileobj=file, mode="w") as archive:
-        info = tarfile.TarInfo("build/zeros")  # which is never parsed; its bytes are skipped
+        info = tarfile.TarInfo("build/zeros")  # never parsed: its bytes are skipped
         info.size = size
         archive.addfile(info, io.BytesIO(bytes(size)))
     return bz2.compress(file.getvalue())
@@ -100,7 +100,7 @@ def test_a_submission_that_ends_its_reader_does_not_end_the_grading_of_a_class(
 
 
 def steps_of(work: Callable[[], object]) -> int:
-    """Count the lines of Python that some work takes."""
+    """Count the lines of Python that `work` executes."""
     count = 0
 
     def trace(frame: FrameType, event: str, argument: object) -> Callable[..., object]:
@@ -122,12 +122,12 @@ def test_nested_environments_are_found_in_time_proportional_to_the_names() -> No
         deep = "/".join(["conda-meta"] * depth)
         paths = [PurePosixPath(f"{deep}/{number}") for number in range(names)]
 
-        def look() -> None:
-            left_out = IgnoredPaths(paths)
-            assert all(path in left_out for path in paths)
+        def search() -> None:
+            ignored = IgnoredPaths(paths)
+            assert all(path in ignored for path in paths)
 
-        look()  # the parts of a path are found once
-        return steps_of(look)
+        search()  # pathlib caches the parts of each path
+        return steps_of(search)
 
     assert steps(400, 60) < 2.2 * steps(200, 60)
     assert steps(200, 60) < 1.2 * steps(200, 20)
@@ -152,13 +152,13 @@ def test_metadata_of_cells_do_not_stay_in_memory() -> None:
 
 
 @pytest.mark.parametrize(
-    ("cells", "told"),
+    ("cells", "message"),
     [
         (b'{"cell_type":"raw","metadata":{"a":[' + b"[]," * MAX_VALUES + b"1]}}", "more than 2,000,000 values"),
         (b",".join([b'{"cell_type":"raw"}'] * (MAX_CELLS + 1)), "more than 20,000 cells"),
     ],
     ids=["values", "cells"],
 )
-def test_a_notebook_that_exceeds_every_realistic_size_is_not_read(cells: bytes, told: str) -> None:
-    with pytest.raises(ValueError, match=told):
+def test_a_notebook_that_exceeds_every_realistic_size_is_not_read(cells: bytes, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
         read_cells(b'{"nbformat":4,"cells":[%b]}' % cells)

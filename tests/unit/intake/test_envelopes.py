@@ -1,4 +1,4 @@
-"""One right answer, handed in in every way that tools, systems and people wrap it: what is graded is the same.
+"""One correct answer, in each form in which tools, systems and people hand it in: the graded content is the same.
 
 The names come from what users of other tools reported: otter-grader and abc-classroom (renamed notebooks), jupytext
 (minor versions with ids), nbgrader ("WMS q3.ipynb"), submit50 (environments), canvas-unzipper (downloads of Canvas),
@@ -274,7 +274,7 @@ def stub_file(released: bytes) -> bytes:
     return next(text for text in texts if text.startswith(f"%%writefile {TARGET}\n")).partition("\n")[2].encode()
 
 
-def test_there_are_sixty_envelopes_and_more() -> None:
+def test_at_least_sixty_envelopes_are_tested() -> None:
     assert len(FOLDERS) + len(NOTEBOOKS) + len(ARCHIVES) + len(DOWNLOADS) >= 60
 
 
@@ -286,23 +286,23 @@ def test_there_are_sixty_envelopes_and_more() -> None:
 def test_a_folder_is_graded_as_the_plain_answer(
     envelope: str, answer: Answer, plain: Submission, tmp_path: Path
 ) -> None:
-    _is_same(read_submission(write(tmp_path / "ada", FOLDERS[envelope](answer)), CHAPTER), plain)
+    _expect_same(read_submission(write(tmp_path / "ada", FOLDERS[envelope](answer)), CHAPTER), plain)
 
 
 @pytest.mark.parametrize("change", NOTEBOOKS)
-@pytest.mark.parametrize("beside", ["alone", "in its folder"])
+@pytest.mark.parametrize("location", ["alone", "in its folder"])
 def test_a_notebook_is_graded_as_the_plain_answer(
-    change: str, beside: str, answer: Answer, plain: Submission, tmp_path: Path
+    change: str, location: str, answer: Answer, plain: Submission, tmp_path: Path
 ) -> None:
     book = {BOOK: answer.notebook(NOTEBOOKS[change])}
-    folder = write(tmp_path / "ada", book if beside == "alone" else {**answer.released, **book})
-    _is_same(read_submission(folder, CHAPTER), plain)
+    folder = write(tmp_path / "ada", book if location == "alone" else {**answer.released, **book})
+    _expect_same(read_submission(folder, CHAPTER), plain)
 
 
 @pytest.mark.parametrize("name", ARCHIVES)
 def test_a_file_is_graded_as_the_plain_answer(name: str, answer: Answer, plain: Submission, tmp_path: Path) -> None:
     (tmp_path / name).write_bytes(ARCHIVES[name](answer))
-    _is_same(read_submission(tmp_path / name, CHAPTER), plain)
+    _expect_same(read_submission(tmp_path / name, CHAPTER), plain)
 
 
 @pytest.mark.parametrize("name", DOWNLOADS)
@@ -312,11 +312,11 @@ def test_a_download_holds_the_plain_answer_of_its_student(
     (tmp_path / "roster.csv").write_text(ROSTER)
     (tmp_path / "scratch").mkdir()
     folder = write(tmp_path / "download", DOWNLOADS[name](answer))
-    found = collect(folder, read_roster(tmp_path / "roster.csv"), CHAPTER, tmp_path / "scratch")
-    assert found.unmatched == ()
-    assert next(iter(found.submissions)) == "jdoe3"
-    for path in found.submissions.values():
-        _is_same(read_submission(path, CHAPTER), plain)
+    collected = collect(folder, read_roster(tmp_path / "roster.csv"), CHAPTER, tmp_path / "scratch")
+    assert collected.unmatched == ()
+    assert next(iter(collected.submissions)) == "jdoe3"
+    for path in collected.submissions.values():
+        _expect_same(read_submission(path, CHAPTER), plain)
 
 
 def _package(submission: Submission) -> dict[str, bytes]:
@@ -324,12 +324,12 @@ def _package(submission: Submission) -> dict[str, bytes]:
     return {str(file.path): file.data for file in files if file.path.parts[0] == "my_robot_package"}
 
 
-def _is_same(found: Submission, plain: Submission) -> None:
-    assert found.packages is not None
+def _expect_same(submission: Submission, plain: Submission) -> None:
+    assert submission.packages is not None
     assert plain.packages is not None
-    assert _package(found) == _package(plain)
-    if found.notebook is not None:  # whose cells also write the packages that the chapter shows
-        assert found.graded_sha256 == plain.graded_sha256
+    assert _package(submission) == _package(plain)
+    if submission.notebook is not None:  # its cells also write the packages that the chapter shows
+        assert submission.graded_sha256 == plain.graded_sha256
 
 
 def test_a_link_outside_of_the_packages_is_left_out_and_named(
@@ -340,21 +340,21 @@ def test_a_link_outside_of_the_packages_is_left_out_and_named(
     (folder / ".venv" / "bin").mkdir(parents=True)
     (folder / ".venv" / "bin" / "python").symlink_to("/usr/bin/python3")
     os.mkfifo(folder / "pipe")
-    found = read_submission(folder, CHAPTER)
-    _is_same(found, plain)
-    assert found.unused == ("latest is a symbolic link", "pipe is not a regular file")
+    submission = read_submission(folder, CHAPTER)
+    _expect_same(submission, plain)
+    assert submission.unused == ("latest is a symbolic link", "pipe is not a regular file")
 
 
 @pytest.mark.promise("Screenshots, reports and readme files beside the answer are listed but not used.")
-def test_each_file_that_plays_no_part_is_named(answer: Answer, tmp_path: Path) -> None:
+def test_each_unused_file_is_named(answer: Answer, tmp_path: Path) -> None:
     files = {
         **answer.released,
         "02_nodes (1).ipynb": answer.files[BOOK],
         "report.pdf": b"",
         "old.rar": b"Rar!\x1a\x07\0",
     }
-    found = read_submission(write(tmp_path / "ada", files), CHAPTER)
-    assert found.unused == (
+    submission = read_submission(write(tmp_path / "ada", files), CHAPTER)
+    assert submission.unused == (
         BOOK,
         "report.pdf",
         "old.rar is a RAR archive, which the grader does not open: unpack it, and hand in the folder as a zip",
@@ -393,16 +393,16 @@ UNCLEAR: dict[str, tuple[Callable[[Answer], Files], str]] = {
 )
 @pytest.mark.parametrize("envelope", UNCLEAR)
 def test_an_unclear_file_that_may_contain_an_answer_has_a_remedy(envelope: str, answer: Answer, tmp_path: Path) -> None:
-    files, words = UNCLEAR[envelope]
+    files, message = UNCLEAR[envelope]
     with pytest.raises(StudentError) as caught:
         read_submission(write(tmp_path / "ada", files(answer)), CHAPTER)
     diagnosis = caught.value.diagnosis
-    assert words in diagnosis.sentence
+    assert message in diagnosis.sentence
     assert diagnosis.kind in (Kind.UNCLEAR, Kind.UNREADABLE, Kind.NOTHING_SUBMITTED)
     assert any(word in diagnosis.sentence.casefold() for word in ("hand in", "hand it in", "cannot be opened"))
 
 
 def test_an_untouched_release_is_graded(answer: Answer, tmp_path: Path) -> None:
-    found = read_submission(write(tmp_path / "ada", answer.released), CHAPTER)
-    assert found.packages is not None
-    assert TARGET.removeprefix("ws/src/") in {str(file.path) for file in found.packages}
+    submission = read_submission(write(tmp_path / "ada", answer.released), CHAPTER)
+    assert submission.packages is not None
+    assert TARGET.removeprefix("ws/src/") in {str(file.path) for file in submission.packages}

@@ -1,4 +1,4 @@
-"""Submissions are read, or refused with a sentence."""
+"""Submissions are read, or refused with a reason."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _names(entries: tuple[SubmittedFile, ...]) -> set[str]:
     return {str(entry.path) for entry in entries}
 
 
-def _refused(path: Path) -> tuple[Kind, str]:
+def _refusal(path: Path) -> tuple[Kind, str]:
     with pytest.raises(StudentError) as caught:
         read_submission(path, CHAPTER)
     return caught.value.diagnosis.kind, caught.value.diagnosis.sentence
@@ -77,44 +77,53 @@ def test_a_whole_folder_is_recognised_however_it_is_packed(tmp_path: Path, layou
     if layout.startswith("folder"):
         root = tmp_path / "alice"
         _write(root / CHAPTER if "in a" in layout else root, TREE)
-        taken = read_submission(root, CHAPTER)
+        submission = read_submission(root, CHAPTER)
     else:
         prefix = {"zip": "", "zip with a top folder": f"{CHAPTER}/", "zip by two": f"alice/{CHAPTER}/"}[layout]
-        taken = read_submission(_zip(tmp_path / "alice.zip", TREE, prefix), CHAPTER)
-    assert taken.notebook == NOTEBOOK
-    assert _names(taken.source) == SOURCE
-    assert _names(taken.extra) == {"notes.txt"}
+        submission = read_submission(_zip(tmp_path / "alice.zip", TREE, prefix), CHAPTER)
+    assert submission.notebook == NOTEBOOK
+    assert _names(submission.source) == SOURCE
+    assert _names(submission.extra) == {"notes.txt"}
 
 
 def test_a_lone_notebook_may_have_any_name(tmp_path: Path) -> None:
     (tmp_path / "my answer.ipynb").write_bytes(NOTEBOOK)
-    taken = read_submission(tmp_path / "my answer.ipynb", CHAPTER)
-    assert (taken.notebook, taken.source, taken.extra) == (NOTEBOOK, (), ())
+    submission = read_submission(tmp_path / "my answer.ipynb", CHAPTER)
+    assert (submission.notebook, submission.source, submission.extra) == (NOTEBOOK, (), ())
 
 
 @pytest.mark.promise(
     "A submission is the student's folder, a zip or tar archive of it, the notebook alone, or a source tree."
 )
 def test_a_bare_source_tree_has_no_notebook(tmp_path: Path) -> None:
-    taken = read_submission(_write(tmp_path / "bob", {"src/pkg/package.xml": b"x"}), CHAPTER)
-    assert taken.notebook is None
-    assert _names(taken.source) == {"pkg/package.xml"}
+    submission = read_submission(_write(tmp_path / "bob", {"src/pkg/package.xml": b"x"}), CHAPTER)
+    assert submission.notebook is None
+    assert _names(submission.source) == {"pkg/package.xml"}
 
 
 def test_ws_src_is_preferred_to_a_folder_called_src_beside_it(tmp_path: Path) -> None:
-    taken = read_submission(_write(tmp_path / "bob", {"ws/src/pkg/a": b"1", "src/pkg/a": b"2"}), CHAPTER)
-    assert [(str(entry.path), entry.data) for entry in taken.source] == [("pkg/a", b"1")]
+    submission = read_submission(_write(tmp_path / "bob", {"ws/src/pkg/a": b"1", "src/pkg/a": b"2"}), CHAPTER)
+    assert [(str(entry.path), entry.data) for entry in submission.source] == [("pkg/a", b"1")]
 
 
 @pytest.mark.promise("Folders named `build`, `install` and `log` are not needed")
 def test_files_that_colcon_and_python_generate_are_ignored(tmp_path: Path) -> None:
-    left = ["ws/build/x", "ws/install/lib/x", "ws/log/x", "ws/src/my_robot_package/__pycache__/x.pyc", ".git/config"]
-    plain, full = _write(tmp_path / "plain", TREE), _write(tmp_path / "full", {**TREE, **dict.fromkeys(left, b"x")})
+    generated = [
+        "ws/build/x",
+        "ws/install/lib/x",
+        "ws/log/x",
+        "ws/src/my_robot_package/__pycache__/x.pyc",
+        ".git/config",
+    ]
+    plain, full = (
+        _write(tmp_path / "plain", TREE),
+        _write(tmp_path / "full", {**TREE, **dict.fromkeys(generated, b"x")}),
+    )
     (full / "ws" / "install" / "link").symlink_to("/etc/passwd")
     assert read_submission(full, CHAPTER) == read_submission(plain, CHAPTER)
-    assert read_submission(_zip(tmp_path / "f.zip", {**TREE, **dict.fromkeys(left, b"x")}), CHAPTER) == read_submission(
-        plain, CHAPTER
-    )
+    assert read_submission(
+        _zip(tmp_path / "f.zip", {**TREE, **dict.fromkeys(generated, b"x")}), CHAPTER
+    ) == read_submission(plain, CHAPTER)
 
 
 def test_files_that_macos_adds_to_archives_are_ignored(tmp_path: Path) -> None:
@@ -125,7 +134,7 @@ def test_files_that_macos_adds_to_archives_are_ignored(tmp_path: Path) -> None:
 def test_an_empty_folder_and_a_folder_of_other_things_hold_nothing_to_grade(tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
     for folder in (tmp_path / "empty", _write(tmp_path / "essay", {"essay.pdf": b"%PDF"})):
-        kind, sentence = _refused(folder)
+        kind, sentence = _refusal(folder)
         assert kind is Kind.NOTHING_SUBMITTED
         assert "neither 02_nodes.ipynb nor a ws/src folder" in sentence
 
@@ -150,8 +159,8 @@ def test_the_digest_is_of_paths_and_contents_whatever_the_packing(tmp_path: Path
 
 def test_windows_line_ends_spaces_and_unicode_are_kept(tmp_path: Path) -> None:
     files = {"src/mein Paket/größe 漢字.py": b"a = 1\r\n"}
-    taken = read_submission(_zip(tmp_path / "a.zip", files), CHAPTER)
-    write_tree(taken.source, tmp_path / "out")
+    submission = read_submission(_zip(tmp_path / "a.zip", files), CHAPTER)
+    write_tree(submission.source, tmp_path / "out")
     assert (tmp_path / "out/mein Paket/größe 漢字.py").read_bytes() == b"a = 1\r\n"
 
 
@@ -162,14 +171,14 @@ def test_a_name_that_is_not_utf_8_is_kept(tmp_path: Path) -> None:
     assert (tmp_path / "out/pkg" / name).read_bytes() == b"x"
 
 
-# What is refused.
+# Refused submissions.
 
 
 @pytest.mark.parametrize(
     "name", ["../evil", "ws/../../evil", "/etc/cron.d/evil", "..\\evil", "C:\\evil", "\\\\host\\evil"]
 )
 def test_an_archive_that_points_outside_is_not_opened(tmp_path: Path, name: str) -> None:
-    kind, sentence = _refused(_zip(tmp_path / "a.zip", {**TREE, name: b"x"}))
+    kind, sentence = _refusal(_zip(tmp_path / "a.zip", {**TREE, name: b"x"}))
     assert kind is Kind.UNSAFE_ARCHIVE
     assert "points outside the archive" in sentence
 
@@ -184,13 +193,13 @@ def _special(path: Path, mode: int) -> Path:
 
 @pytest.mark.parametrize("kind", [stat.S_IFLNK, stat.S_IFIFO, stat.S_IFCHR, stat.S_IFBLK, stat.S_IFSOCK])
 def test_links_pipes_and_devices_in_an_archive_are_refused(tmp_path: Path, kind: int) -> None:
-    found, sentence = _refused(_special(tmp_path / "a.zip", kind | 0o777))
-    assert found is Kind.UNSAFE_ARCHIVE
+    refused_kind, sentence = _refusal(_special(tmp_path / "a.zip", kind | 0o777))
+    assert refused_kind is Kind.UNSAFE_ARCHIVE
     assert "ws/src/pkg/odd is not a regular file" in sentence
 
 
 @pytest.mark.parametrize(
-    ("make", "what"),
+    ("make", "problem"),
     [
         (lambda path: path.symlink_to("/etc/passwd"), "a symbolic link"),
         (lambda path: path.symlink_to("/", target_is_directory=True), "a symbolic link"),
@@ -198,11 +207,11 @@ def test_links_pipes_and_devices_in_an_archive_are_refused(tmp_path: Path, kind:
         (os.mkfifo, "not a regular file"),
     ],
 )
-def test_links_and_pipes_in_a_folder_are_refused(tmp_path: Path, make: Callable[[Path], None], what: str) -> None:
+def test_links_and_pipes_in_a_folder_are_refused(tmp_path: Path, make: Callable[[Path], None], problem: str) -> None:
     make(_write(tmp_path / "bob", TREE) / "ws/src/odd")
-    kind, sentence = _refused(tmp_path / "bob")
+    kind, sentence = _refusal(tmp_path / "bob")
     assert kind is Kind.UNSAFE_ARCHIVE
-    assert f"ws/src/odd is {what}" in sentence
+    assert f"ws/src/odd is {problem}" in sentence
     assert "without links" in sentence
 
 
@@ -210,17 +219,21 @@ def test_too_many_files_deep_folders_and_long_paths_are_rejected(tmp_path: Path)
     many = {f"src/pkg/{n}": b"" for n in range(intake.MAX_FILES + 1)}
     deep = {"src/" + "d/" * intake.MAX_DEPTH + "x": b""}
     long = {"src/" + "漢" * (intake.MAX_PATH_BYTES // 3): b""}  # 3 bytes each
-    for files, why in ((many, "more than 2000 files"), (deep, "nested more than 16 deep"), (long, "longer than 200")):
-        kind, sentence = _refused(_zip(tmp_path / "a.zip", files))
+    for files, reason in (
+        (many, "more than 2000 files"),
+        (deep, "nested more than 16 deep"),
+        (long, "longer than 200"),
+    ):
+        kind, sentence = _refusal(_zip(tmp_path / "a.zip", files))
         assert kind is Kind.UNSAFE_ARCHIVE
-        assert why in sentence
-    assert "more than 2000 files" in _refused(_write(tmp_path / "many", many))[1]
-    assert "nested more than 16 deep" in _refused(_write(tmp_path / "deep", deep))[1]
+        assert reason in sentence
+    assert "more than 2000 files" in _refusal(_write(tmp_path / "many", many))[1]
+    assert "nested more than 16 deep" in _refusal(_write(tmp_path / "deep", deep))[1]
 
 
 def test_folders_nested_without_a_file_are_refused_too(tmp_path: Path) -> None:
     (tmp_path / "bob" / Path(*["d"] * 40)).mkdir(parents=True)
-    assert "nested more than 16 deep" in _refused(tmp_path / "bob")[1]
+    assert "nested more than 16 deep" in _refusal(tmp_path / "bob")[1]
 
 
 def _nest(folder: Path, names: list[str]) -> None:
@@ -251,7 +264,7 @@ def test_a_file_that_is_too_large_is_never_read(tmp_path: Path) -> None:
     root = _write(tmp_path / "bob", TREE)
     with (root / "ws/src/huge").open("wb") as stream:
         stream.truncate(intake.MAX_FILE_BYTES + 1)  # sparse: no byte of it is on the disk
-    assert "ws/src/huge is larger than 16 MiB" in _refused(root)[1]
+    assert "ws/src/huge is larger than 16 MiB" in _refusal(root)[1]
 
 
 def test_files_that_are_too_large_together_are_refused(tmp_path: Path) -> None:
@@ -259,33 +272,33 @@ def test_files_that_are_too_large_together_are_refused(tmp_path: Path) -> None:
     for number in range(5):
         with (root / f"ws/src/{number}").open("wb") as stream:
             stream.truncate(intake.MAX_FILE_BYTES)
-    assert "larger than 64 MiB in all" in _refused(root)[1]
+    assert "larger than 64 MiB in all" in _refusal(root)[1]
 
 
 def test_a_zip_bomb_is_refused_by_the_size_that_it_states(tmp_path: Path) -> None:
     bomb = _zip(tmp_path / "a.zip", {"ws/src/bomb": b"\0" * (intake.MAX_FILE_BYTES + 1)})
     assert bomb.stat().st_size < 100_000
-    assert "ws/src/bomb is larger than 16 MiB" in _refused(bomb)[1]
+    assert "ws/src/bomb is larger than 16 MiB" in _refusal(bomb)[1]
 
 
 def test_a_zip_with_a_wrong_size_is_unreadable(tmp_path: Path) -> None:
     data = bytearray(_zip(tmp_path / "a.zip", {"src/x": b"\0" * 100_000}).read_bytes())
-    at = data.rindex(b"PK\x01\x02") + 24
-    assert struct.unpack("<I", data[at : at + 4]) == (100_000,)
-    data[at : at + 4] = struct.pack("<I", 10)
+    offset = data.rindex(b"PK\x01\x02") + 24
+    assert struct.unpack("<I", data[offset : offset + 4]) == (100_000,)
+    data[offset : offset + 4] = struct.pack("<I", 10)
     (tmp_path / "lie.zip").write_bytes(data)
-    kind, sentence = _refused(tmp_path / "lie.zip")
+    kind, sentence = _refusal(tmp_path / "lie.zip")
     assert kind is Kind.UNREADABLE
     assert "hand in one of these" in sentence
 
 
 def test_damaged_bytes_are_unreadable_and_named(tmp_path: Path) -> None:
-    whole = bytearray(_zip(tmp_path / "a.zip", {"src/x": os.urandom(500) + b"text " * 900}).read_bytes())
-    flipped, cut = bytearray(whole), whole[:200]
+    intact = bytearray(_zip(tmp_path / "a.zip", {"src/x": os.urandom(500) + b"text " * 900}).read_bytes())
+    flipped, cut = bytearray(intact), intact[:200]
     flipped[60:90] = bytes(byte ^ 0xFF for byte in flipped[60:90])
     for name, data in {"flipped.zip": flipped, "cut.zip": cut, "essay.pdf": b"%PDF-1.7", "empty.zip": b""}.items():
         (tmp_path / name).write_bytes(data)
-        kind, sentence = _refused(tmp_path / name)
+        kind, sentence = _refusal(tmp_path / name)
         assert kind is Kind.UNREADABLE
         assert f"{name} is not a folder, a notebook or a readable zip or tar archive" in sentence
 
@@ -295,7 +308,7 @@ def test_an_encrypted_archive_is_unreadable(tmp_path: Path) -> None:
     for header, flags in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
         data[data.index(header) + flags] |= 1
     (tmp_path / "locked.zip").write_bytes(data)
-    kind, sentence = _refused(tmp_path / "locked.zip")
+    kind, sentence = _refusal(tmp_path / "locked.zip")
     assert kind is Kind.UNREADABLE
     assert "password" in sentence
 
@@ -315,13 +328,15 @@ def _member(name: str, kind: bytes = tarfile.REGTYPE, size: int = 0) -> tarfile.
 
 @pytest.mark.parametrize("name", ["../evil", "/etc/cron.d/evil", "ws/../../evil"])
 def test_a_tar_that_points_outside_is_not_opened(tmp_path: Path, name: str) -> None:
-    assert "points outside the archive" in _refused(_tar(tmp_path / "a.tgz", _member("src/p/x"), _member(name)))[1]
+    assert "points outside the archive" in _refusal(_tar(tmp_path / "a.tgz", _member("src/p/x"), _member(name)))[1]
 
 
 @pytest.mark.parametrize("kind", [tarfile.SYMTYPE, tarfile.LNKTYPE, tarfile.CHRTYPE, tarfile.FIFOTYPE])
 def test_links_pipes_and_devices_in_a_tar_are_refused(tmp_path: Path, kind: bytes) -> None:
-    found, sentence = _refused(_tar(tmp_path / "a.tar", _member("src/p/x"), _member("src/p/odd", kind), mode="w"))
-    assert found is Kind.UNSAFE_ARCHIVE
+    refused_kind, sentence = _refusal(
+        _tar(tmp_path / "a.tar", _member("src/p/x"), _member("src/p/odd", kind), mode="w")
+    )
+    assert refused_kind is Kind.UNSAFE_ARCHIVE
     assert "src/p/odd is" in sentence
 
 
@@ -332,37 +347,37 @@ def test_a_tar_that_unpacks_to_too_much_is_not_read_to_its_end(
     monkeypatch.setattr(archives, "MAX_READ_BYTES", 2**21)
     bomb = _tar(tmp_path / "a.tar", _member("src/p/x"), _member("beside", size=2**22), mode=mode)
     assert bomb.stat().st_size < 20_000
-    assert "it is larger than 2 MiB when it is unpacked" in _refused(bomb)[1]
+    assert "it is larger than 2 MiB when it is unpacked" in _refusal(bomb)[1]
 
 
 def test_a_truncated_tar_is_unreadable(tmp_path: Path) -> None:
     for mode in ("w:gz", "w:bz2", "w:xz"):
-        whole = _tar(tmp_path / "a.tar", _member("src/p/x", size=9000), mode=mode).read_bytes()
-        (tmp_path / "cut.tar.gz").write_bytes(whole[: len(whole) // 2])
-        assert _refused(tmp_path / "cut.tar.gz")[0] is Kind.UNREADABLE
+        intact = _tar(tmp_path / "a.tar", _member("src/p/x", size=9000), mode=mode).read_bytes()
+        (tmp_path / "cut.tar.gz").write_bytes(intact[: len(intact) // 2])
+        assert _refusal(tmp_path / "cut.tar.gz")[0] is Kind.UNREADABLE
 
 
 def test_xz_that_asks_for_too_much_memory_is_unreadable(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(archives, "MAX_DICTIONARY", 2**20)
-    assert _refused(_tar(tmp_path / "a.tar.xz", _member("src/p/x"), mode="w:xz"))[0] is Kind.UNREADABLE
+    assert _refusal(_tar(tmp_path / "a.tar.xz", _member("src/p/x"), mode="w:xz"))[0] is Kind.UNREADABLE
 
 
 def test_endlessly_nested_archives_and_too_many_archives_are_not_opened(tmp_path: Path) -> None:
     data = _zip(tmp_path / "0.zip", TREE).read_bytes()
     for number in range(reading.MAX_NESTING + 2):
         data = _zip(tmp_path / "n.zip", {f"{number}.zip": data}).read_bytes()
-    assert "lies in 3 archives or more: hand in the folder as one zip" in _refused(tmp_path / "n.zip")[1]
+    assert "lies in 3 archives or more: hand in the folder as one zip" in _refusal(tmp_path / "n.zip")[1]
     empty = _zip(tmp_path / "e.zip", {}).read_bytes()
     many = _zip(tmp_path / "many.zip", {f"{number}.zip": empty for number in range(reading.MAX_ARCHIVES + 1)})
-    assert "is one of more than 20 archives" in _refused(many)[1]
+    assert "is one of more than 20 archives" in _refusal(many)[1]
 
 
 def test_a_zip_with_an_endless_list_of_files_is_refused_before_it_is_read(tmp_path: Path) -> None:
     data = bytearray(_zip(tmp_path / "a.zip", TREE).read_bytes())
-    at = data.rindex(b"PK\x05\x06") + 12
-    data[at : at + 4] = struct.pack("<I", archives.MAX_DIRECTORY + 1)
+    offset = data.rindex(b"PK\x05\x06") + 12
+    data[offset : offset + 4] = struct.pack("<I", archives.MAX_DIRECTORY + 1)
     (tmp_path / "long.zip").write_bytes(data)
-    assert "it holds too many files" in _refused(tmp_path / "long.zip")[1]
+    assert "it holds too many files" in _refusal(tmp_path / "long.zip")[1]
 
 
 def test_outputs_are_dropped_only_of_a_notebook_that_parses_to_few_values() -> None:
@@ -376,7 +391,7 @@ def test_two_files_of_one_name_or_a_file_that_is_a_folder_are_refused(tmp_path: 
     twice = tmp_path / "twice.zip"
     twice.write_bytes(_zip(tmp_path / "a.zip", {"src/x": b"1", "src/y": b"2"}).read_bytes().replace(b"src/y", b"src/x"))
     for path in (twice, _zip(tmp_path / "both.zip", {"src/x": b"", "src/x/y": b""})):
-        kind, sentence = _refused(path)
+        kind, sentence = _refusal(path)
         assert kind is Kind.UNSAFE_ARCHIVE
         assert "two of its files or folders have the same path" in sentence
 
@@ -386,7 +401,7 @@ def test_two_files_of_one_name_or_a_file_that_is_a_folder_are_refused(tmp_path: 
 def test_any_bytes_are_read_or_refused(tmp_path_factory: pytest.TempPathFactory, noise: bytes) -> None:
     path = tmp_path_factory.getbasetemp() / "noise.zip"
     path.write_bytes(noise)
-    assert _refused(path)[0] in (Kind.UNREADABLE, Kind.NOTHING_SUBMITTED)
+    assert _refusal(path)[0] in (Kind.UNREADABLE, Kind.NOTHING_SUBMITTED)
 
 
 @pytest.mark.fuzz
@@ -396,16 +411,16 @@ def test_files_of_any_names_are_written_below_the_folder_or_the_archive_is_refus
 ) -> None:
     root = tmp_path_factory.mktemp("names")
     try:
-        taken = read_submission(_zip(root / "a.zip", dict(files)), CHAPTER)
+        submission = read_submission(_zip(root / "a.zip", dict(files)), CHAPTER)
     except StudentError as error:
         event(error.diagnosis.kind.value)
         return
-    write_tree(taken.source, root / "out" / "source")
+    write_tree(submission.source, root / "out" / "source")
     assert {path.name for path in root.iterdir()} <= {"a.zip", "out"}
     assert {path.name for path in (root / "out").iterdir()} == {"source"}
 
 
-def test_an_answer_counts_and_not_one_in_a_folder_below_it() -> None:
+def test_an_answer_is_preferred_to_one_in_a_folder_below_it() -> None:
     old, new = (
         NOTEBOOK.replace(
             b"[]",
@@ -418,9 +433,9 @@ def test_an_answer_counts_and_not_one_in_a_folder_below_it() -> None:
         SubmittedFile(PurePosixPath(f"a/old/{CHAPTER}.ipynb"), old),
         SubmittedFile(PurePosixPath(f"a/{CHAPTER}.ipynb"), new),
     ]
-    found = detect_layout(entries, CHAPTER)
-    assert found.notebook == new
-    assert found.unused == (f"a/old/{CHAPTER}.ipynb",)
+    layout = detect_layout(entries, CHAPTER)
+    assert layout.notebook == new
+    assert layout.unused == (f"a/old/{CHAPTER}.ipynb",)
 
 
 # Files that a notebook leaves behind.

@@ -46,12 +46,12 @@ def start(cache: Path, log: Path, after: str = "") -> subprocess.Popen[str]:
     )
 
 
-def hear(process: subprocess.Popen[str]) -> str:
+def read_line(process: subprocess.Popen[str]) -> str:
     assert process.stdout is not None
     return process.stdout.readline().strip()
 
 
-def say(process: subprocess.Popen[str]) -> None:
+def send_line(process: subprocess.Popen[str]) -> None:
     assert process.stdin is not None
     process.stdin.write("\n")
     process.stdin.flush()
@@ -64,19 +64,19 @@ def fill(folder: Path) -> None:
 def test_two_processes_that_need_the_same_entry_build_it_once(tmp_path: Path) -> None:
     log = tmp_path / "log"
     with start(tmp_path / "cache", log, "wait") as first:
-        assert hear(first) == "making"
+        assert read_line(first) == "making"
         with start(tmp_path / "cache", log) as second:
-            say(first)
-            assert [hear(first), hear(second)] == ["got", "got"]
+            send_line(first)
+            assert [read_line(first), read_line(second)] == ["got", "got"]
             assert log.read_text() == "made\n"
-            say(first)
-            say(second)
+            send_line(first)
+            send_line(second)
     assert (first.returncode, second.returncode) == (0, 0)
 
 
 def test_a_killed_build_leaves_no_entry_and_the_next_one_makes_it(tmp_path: Path) -> None:
     with start(tmp_path / "cache", tmp_path / "log", "wait") as process:
-        assert hear(process) == "making"
+        assert read_line(process) == "making"
         process.send_signal(signal.SIGKILL)
     assert not (tmp_path / "cache" / A).exists()
     entry = Cache(tmp_path / "cache").get(A, lambda folder: (folder / "whole").touch())
@@ -84,11 +84,11 @@ def test_a_killed_build_leaves_no_entry_and_the_next_one_makes_it(tmp_path: Path
 
 
 def test_files_that_a_killed_build_left_are_removed_later(tmp_path: Path) -> None:
-    left = tmp_path / ".aaaa-left"
-    left.mkdir()
-    os.utime(left, (0, 0))
+    leftover = tmp_path / ".aaaa-left"
+    leftover.mkdir()
+    os.utime(leftover, (0, 0))
     Cache(tmp_path).get(A, lambda folder: None)
-    assert not left.exists()
+    assert not leftover.exists()
 
 
 def test_a_build_that_fails_leaves_nothing(tmp_path: Path) -> None:
@@ -116,12 +116,12 @@ def test_the_limit_on_entries_holds_even_if_many_are_created_at_once(tmp_path: P
     assert len(list(tmp_path.rglob("file"))) == 2
 
 
-def test_an_entry_that_is_in_use_is_not_evicted_and_one_that_was_is(tmp_path: Path) -> None:
+def test_an_entry_is_evicted_only_when_no_longer_in_use(tmp_path: Path) -> None:
     cache = Cache(tmp_path, limit=1)
-    with cache.use(A, fill) as entry, cache.use(A, fill) as again:
+    with cache.use(A, fill) as entry, cache.use(A, fill) as same_entry:
         cache.get(B, fill)
         assert (entry / "file").is_file()
-        assert again == entry
+        assert same_entry == entry
     cache.get(C, fill)
     assert not (tmp_path / A).exists()
 

@@ -16,7 +16,7 @@ from autograder.building.interfaces.definitions import DefinitionError, packages
 from autograder.probes import interfaces
 
 
-def test_a_definition_loses_its_comments_and_names_what_it_uses() -> None:
+def test_comments_of_a_definition_are_removed_and_its_uses_are_listed() -> None:
     (definition,) = read(
         "my_msgs", {"msg/A.msg": "# */ evil\n\nstd_msgs/Header header  # \\\nint32 X=3\r\nint32[] y\n"}
     )
@@ -24,7 +24,7 @@ def test_a_definition_loses_its_comments_and_names_what_it_uses() -> None:
     assert definition.uses == (("std_msgs", "Header", "std_msgs/Header header"),)
 
 
-def test_the_text_is_rewritten_and_means_the_same() -> None:
+def test_the_text_is_normalised_without_changing_its_meaning() -> None:
     lines = {
         "int32   X  =  0x10": "int32 X=16",
         "bool ON=1": "bool ON=true",
@@ -51,14 +51,14 @@ WRONG = {
     "no name": ("msg/A.msg", "int32\n", "int32", "a field is written"),
     "a name in capitals": ("msg/A.msg", "bool ok\nint32 Speed\n", "int32 Speed", "invalid field name"),
     "a constant out of range": ("msg/A.msg", "uint8 MAX=256\n", "uint8 MAX=256", "<= 255"),
-    "a name that is there twice": ("msg/A.msg", "int32 a\nbool a\n", "bool a", "a is there twice"),
+    "a duplicate name": ("msg/A.msg", "int32 a\nbool a\n", "bool a", "a is there twice"),
     "a word of Python": ("msg/A.msg", "int32 lambda\n", "int32 lambda", "word of C or Python"),
     "a word of C": ("msg/A.msg", "int32 default\n", "int32 default", "word of C or Python"),
     "ROS 1's time": ("msg/A.msg", "time stamp\n", "time stamp", "builtin_interfaces/Time"),
-    "a message that is not there": ("msg/A.msg", "B b\n", "B b", "no msg/B.msg in my_msgs"),
+    "a missing message": ("msg/A.msg", "B b\n", "B b", "no msg/B.msg in my_msgs"),
     "a message in itself": ("msg/A.msg", "A a\n", "", "contains itself"),
     "a gigantic array": ("msg/A.msg", "int8[2000000000] a\n", "int8[2000000000] a", "unbounded array"),
-    "a value that is no number": ("msg/A.msg", "float64 X=nan\n", "float64 X=nan", "finite"),
+    "a value that is not a number": ("msg/A.msg", "float64 X=nan\n", "float64 X=nan", "finite"),
     "a backslash": ("msg/A.msg", 'string X="\\n"\n', 'string X="\\n"', "backslash"),
     "letters beyond ASCII": ("msg/A.msg", "string X=“a”\n", "'string X=", "ASCII"),
     "a hidden line": ("msg/A.msg", "int32 a\x0bint32 b\n", "'int32 a", "ASCII"),
@@ -89,7 +89,7 @@ def test_arrays_are_counted_through_nested_messages() -> None:
 
 
 @pytest.mark.parametrize("name", ["", "../x", "My_msgs", "a__b", "a_", "class", "a/b", "a" * 200])
-def test_a_package_name_that_ros_would_not_take_is_refused(name: str) -> None:
+def test_a_package_name_that_ros_would_not_accept_is_refused(name: str) -> None:
     with pytest.raises(DefinitionError, match="not a package name"):
         read(name, {"msg/A.msg": "int32 a\n"})
 
@@ -103,7 +103,7 @@ def test_too_many_definitions_none_and_two_that_differ_in_capitals_are_refused()
         read("my_msgs", {"msg/Ab.msg": "int32 a\n", "msg/AB.msg": "int32 a\n"})
 
 
-def test_a_message_of_another_package_must_be_there() -> None:
+def test_a_message_of_another_package_must_exist() -> None:
     definitions = read("my_msgs", {"msg/A.msg": "std_msgs/Headr header\n"})
     with pytest.raises(DefinitionError, match="std_msgs has no message Headr"):
         require_uses(definitions, lambda package, message: message is None)
@@ -135,8 +135,8 @@ LINE = st.lists(st.sampled_from([*WORDS, "---", "#", "\\"]) | st.text(max_size=4
 def test_any_text_is_a_definition_or_refused(path: str, text: str) -> None:
     with contextlib.suppress(DefinitionError):
         (definition,) = read("my_msgs", {path: text})
-        (again,) = read("my_msgs", {path: definition.text})
-        assert again.sections == definition.sections
+        (reread,) = read("my_msgs", {path: definition.text})
+        assert reread.sections == definition.sections
 
 
 LONG = {
@@ -159,5 +159,5 @@ def test_a_long_line_is_read_in_a_moment(line: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["A", "AB", "A_B", "A1_2", "A_", "A__B", "aB", "_A", "Ab", "", "A_B_"])
-def test_a_constants_name_is_right_for_rosidl_where_it_is_right_here(name: str) -> None:
+def test_rosidl_accepts_the_same_names_of_constants(name: str) -> None:
     assert bool(rosidl.CONSTANT_NAME.match(name)) == bool(re.match("^[A-Z]([A-Z0-9_]?[A-Z0-9]+)*$", name))

@@ -1,4 +1,4 @@
-"""Classes of plain values: what they hold, what they refuse, and what is read of bytes that anybody may have sent."""
+"""Classes of plain messages: their fields, the values that they refuse, and how untrusted bytes are read."""
 
 from __future__ import annotations
 
@@ -76,11 +76,11 @@ def test_a_missing_part_of_a_definition_is_the_students_error(make: Any, sentenc
 
 def test_bytes_that_do_not_fit_the_type_are_refused() -> None:
     kinds = package().msg
-    right = to_bytes(kinds.Outer(many=[kinds.Inner(word="abc")] * 3, few=[0.5]))
-    assert from_bytes(kinds.Outer, right).many[2].word == "abc"
-    for wrong in (right[:-1], b"", struct.pack("<iI", 0, 0) + b"\xff" * 4, bytes(MAX_BYTES + 1)):
+    valid = to_bytes(kinds.Outer(many=[kinds.Inner(word="abc")] * 3, few=[0.5]))
+    assert from_bytes(kinds.Outer, valid).many[2].word == "abc"
+    for invalid in (valid[:-1], b"", struct.pack("<iI", 0, 0) + b"\xff" * 4, bytes(MAX_BYTES + 1)):
         with pytest.raises(ValueError, match=r"too early|KiB"):
-            from_bytes(kinds.Outer, wrong)
+            from_bytes(kinds.Outer, invalid)
     unbounded = package({**TEXTS, "msg/Outer.msg": TEXTS["msg/Outer.msg"].replace("<=2", "")}).msg.Outer
     with pytest.raises(ValueError, match="too long"):
         from_bytes(kinds.Outer, to_bytes(unbounded(few=[1.0] * 3)))

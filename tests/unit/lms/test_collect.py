@@ -38,7 +38,7 @@ def download(folder: Path, *names: str) -> Path:
     return folder
 
 
-def found(folder: Path, table: str) -> tuple[CollectedSubmissions, dict[str, str]]:
+def collect_entries(folder: Path, table: str) -> tuple[CollectedSubmissions, dict[str, str]]:
     roster = folder.parent / "roster.csv"
     roster.write_text(table, encoding="utf-8-sig")
     collected = collect(folder, read_roster(roster), CHAPTER, Path(tempfile.mkdtemp(dir=folder.parent)))
@@ -46,7 +46,7 @@ def found(folder: Path, table: str) -> tuple[CollectedSubmissions, dict[str, str
 
 
 def located(path: Path, folder: Path) -> str:
-    """Return where a submission lies in a download; the names of its files, where they were brought together."""
+    """Return the path of a submission in a download, or the names of its files if they were gathered."""
     if path.is_relative_to(folder):
         return str(path.relative_to(folder))
     return " + ".join(sorted(child.name for child in path.iterdir()))
@@ -61,7 +61,7 @@ def test_a_moodle_download_with_folders_is_assigned_to_students(tmp_path: Path) 
         "Jane Doe_102_assignsubmission_file_/ws/src/p/package.xml",
         "Eve Stranger_999_assignsubmission_file_/answer.zip",
     )
-    collected, entries = found(folder, MOODLE)
+    collected, entries = collect_entries(folder, MOODLE)
     assert entries == {
         "zoe@example.edu": "Zoë Müller-Żak_101_assignsubmission_file_/my answer.zip",
         "jane@example.edu": "Jane Doe_102_assignsubmission_file_",
@@ -82,7 +82,7 @@ def test_the_files_of_a_moodle_submission_without_folders_come_together(tmp_path
         "jane doe_102_assignsubmission_file_report-1.pdf",
         "jane doe_102_assignsubmission_file_report.pdf",
     )
-    collected, entries = found(folder, MOODLE)
+    collected, entries = collect_entries(folder, MOODLE)
     assert entries["zoe@example.edu"] == "Zoë Müller-Żak_101_assignsubmission_file_a_b.zip"
     assert entries["jane@example.edu"] == "1.zip + report-1.pdf + report.pdf"
     assert (collected.older, collected.unmatched) == ((), ())
@@ -90,7 +90,7 @@ def test_the_files_of_a_moodle_submission_without_folders_come_together(tmp_path
 
 def test_the_name_of_a_moodle_file_cannot_make_it_another_students(tmp_path: Path) -> None:
     name = "Jane Doe_102_assignsubmission_file_x_101_assignsubmission_file_a.zip"
-    collected, entries = found(download(tmp_path / "d", name), MOODLE)
+    collected, entries = collect_entries(download(tmp_path / "d", name), MOODLE)
     assert entries == {"jane@example.edu": name}
     assert collected.missing == ("zoe@example.edu", "bob@example.edu")
 
@@ -107,7 +107,7 @@ def test_a_canvas_download_names_attempts_and_late_submissions(tmp_path: Path) -
         "mllerzo_7002_9002_02_nodes.ipynb",
         "testsome_7003_9003_x.zip",
     )
-    collected, entries = found(folder, CANVAS)
+    collected, entries = collect_entries(folder, CANVAS)
     assert entries == {"jdoe": "doejane_LATE_7001_9005_answer-1.zip", "zoe": "mllerzo_7002_9002_02_nodes.ipynb"}
     assert (collected.late, collected.older) == (("jdoe",), ("doejane_7001_9001_answer.zip",))
     assert [name for name, _ in collected.unmatched] == ["testsome_7003_9003_x.zip"]
@@ -121,7 +121,7 @@ def test_the_files_of_a_canvas_attempt_come_together_whatever_their_numbers(tmp_
         "mllerzo_7002_9003_part-1.zip",
         "mllerzo_7002_9004_part-2.zip",
     )
-    collected, entries = found(folder, CANVAS)
+    collected, entries = collect_entries(folder, CANVAS)
     assert entries == {"jdoe": "screenshot.png + work.zip", "zoe": "part-1.zip + part-2.zip"}
     assert (collected.older, collected.unmatched) == ((), ())
 
@@ -135,7 +135,7 @@ def test_the_files_of_a_late_canvas_attempt_replace_those_of_one_in_time(tmp_pat
         "doejane_LATE_7001_9005_final.zip",
         "doejane_LATE_7001_9006_notes-1.pdf",
     )
-    collected, entries = found(folder, CANVAS)
+    collected, entries = collect_entries(folder, CANVAS)
     assert entries == {"jdoe": "final.zip + notes-1.pdf"}
     assert collected.older == ("doejane_7001_9001_draft.zip", "doejane_7001_9002_notes.pdf")
 
@@ -175,7 +175,7 @@ def test_a_blackboard_download_holds_attempts_and_a_receipt_for_each(tmp_path: P
         "No_zpoe_attempt_2014-04-30-21-02-38_a.zip",
     )
     receipts(folder, C="jdoe3", B="b_roe", Z="zpoe", E="eve_zpoe")
-    collected, entries = found(folder, BLACKBOARD)
+    collected, entries = collect_entries(folder, BLACKBOARD)
     assert entries == {
         "jdoe3": "answer_2.zip + notes.pdf",
         "b_roe": "Bb_nodes_b_roe_attempt_2014-04-30-21-02-38_x_jdoe3_attempt_2015-01-01-00-00-00_a.zip",
@@ -214,7 +214,7 @@ def test_a_brightspace_download_names_the_student_and_the_time_in_folders_or_fil
         "13394-80553 - Eve Stranger - 29 März 2018 - a.zip",
         "13394-80554 - Zoë Poe - Eve Stranger - Mar 29, 2018 1155 PM - a.zip",
     )
-    collected, entries = found(folder, BRIGHTSPACE)
+    collected, entries = collect_entries(folder, BRIGHTSPACE)
     assert entries == {
         "msmith": "397063-2557369 - Mary-Ann Smith - Sep 24, 2024 926 PM/answer.zip",
         "jdoe": "397063-2557369 - Group 1 - John Doe - Sep 24, 2024 926 PM/02_nodes.ipynb",
@@ -256,7 +256,7 @@ def test_a_sakai_download_has_a_folder_for_each_student_or_group(tmp_path: Path)
         "Lab 00/Text, Tom(typist)/Text, Tom(typist)_submissionText.html",
         "Lab 00/Stranger, Eve(eve)/Submission attachment(s)/a.zip",
     )
-    collected, entries = found(folder, SAKAI)
+    collected, entries = collect_entries(folder, SAKAI)
     answer = "Lab 00/Late, Laura(llate2); Speedy, Sam (Sammy)(sspeedy2)/Submission attachment(s)/answer.zip"
     assert entries == {"llate2": answer, "sspeedy2": answer}
     assert collected.missing == ("nobody", "typist")
@@ -276,7 +276,7 @@ def test_a_sakai_download_without_folders_has_folder_names_in_its_file_names(tmp
         "Speedy, Sam(sspeedy2)_Submission attachment(s)_x(nobody)_Submission attachment(s)_a.zip",
         "Text, Tom(typist)__submissionText.html",
     )
-    collected, entries = found(folder, SAKAI)
+    collected, entries = collect_entries(folder, SAKAI)
     assert entries == {
         "llate2": "report.pdf + work.zip",
     }
@@ -293,7 +293,7 @@ def test_a_name_that_resembles_a_download_does_not_replace_another_student(tmp_p
     moodle = 'Identifier,Full name\nParticipant 1,Ada Lovelace\nParticipant 2,"{}"\n'
     brightspace = 'OrgDefinedId,Name\n1,Ada Lovelace\n2,"{}"\n'
     sakai = 'Display ID,Last Name,First Name\nada,Lovelace,Ada\neve,"{}",\n'
-    tries = [  # a table, Ada's item, Eve's name, Eve's item, and whether it is clearly hers
+    cases = [  # a table, Ada's item, Eve's name, Eve's item, and whether it is clearly hers
         (
             moodle,
             "Ada Lovelace_1_assignsubmission_file_/",
@@ -351,15 +351,16 @@ def test_a_name_that_resembles_a_download_does_not_replace_another_student(tmp_p
             False,
         ),
     ]
-    for number, (table, theirs, name, item, is_plain) in enumerate(tries):
-        own = item.format(name)
+    for number, (table, ada_item, name, pattern, is_plain) in enumerate(cases):
+        eve_item = pattern.format(name)
         folder = download(
-            tmp_path / f"{number}" / "d", *(f"{path}answer.zip" if path[-1] == "/" else path for path in (theirs, own))
+            tmp_path / f"{number}" / "d",
+            *(f"{path}answer.zip" if path[-1] == "/" else path for path in (ada_item, eve_item)),
         )
-        _, entries = found(folder, table.format(name))
-        ada = entries.pop(next(student for student, path in entries.items() if path.startswith(theirs[:-1])))
-        assert ada.startswith(theirs), number
-        assert [path.startswith(own) for path in entries.values()] == [True] * is_plain, number
+        _, entries = collect_entries(folder, table.format(name))
+        ada = entries.pop(next(student for student, path in entries.items() if path.startswith(ada_item[:-1])))
+        assert ada.startswith(ada_item), number
+        assert [path.startswith(eve_item) for path in entries.values()] == [True] * is_plain, number
 
 
 @pytest.mark.parametrize(
@@ -367,11 +368,11 @@ def test_a_name_that_resembles_a_download_does_not_replace_another_student(tmp_p
 )
 def test_a_student_whose_folder_conflicts_with_a_file_is_named(tmp_path: Path, name: str) -> None:
     folder = download(tmp_path / "d", "Ada_1_assignsubmission_file_a.zip", "Eve_2_assignsubmission_file_a.zip")
-    collected, entries = found(folder, f"Identifier,Username\nParticipant 1,ada\nParticipant 2,{name}\n")
+    collected, entries = collect_entries(folder, f"Identifier,Username\nParticipant 1,ada\nParticipant 2,{name}\n")
     assert list(entries) == ["ada"]
-    (why,) = collected.unmatched
-    assert why[0] == "Eve_2_assignsubmission_file_a.zip"
-    assert why[1].endswith("in roster.csv")
+    (unmatched,) = collected.unmatched
+    assert unmatched[0] == "Eve_2_assignsubmission_file_a.zip"
+    assert unmatched[1].endswith("in roster.csv")
 
 
 def test_each_member_of_a_gradescope_group_has_the_submission(tmp_path: Path) -> None:
@@ -381,7 +382,7 @@ def test_each_member_of_a_gradescope_group_has_the_submission(tmp_path: Path) ->
         "    :sid: '201'\n  - :name: Guest\n    :sid: '9'\n  :created_at: 2026-01-03 09:00:00 Z\n"
         "submission_3:\n  :submitters:\n  - :name: Pair Two\n    :sid: '201'\n"
     )
-    collected, entries = found(folder, "Name,SID,Email\nPair One,200,one@x.edu\nPair Two,201,two@x.edu\n")
+    collected, entries = collect_entries(folder, "Name,SID,Email\nPair One,200,one@x.edu\nPair Two,201,two@x.edu\n")
     assert entries == {"200": "submission_1", "201": "submission_1"}
     assert collected.missing == ()
     assert collected.unmatched == (
@@ -406,7 +407,7 @@ def test_the_list_of_a_gradescope_download_names_student_and_time_of_each_folder
             for n, sid, when in rows
         )
     )
-    collected, entries = found(folder, "Name,SID,Email\nJane,S1,j@x.edu\nZoë,S2,z@x.edu\n")
+    collected, entries = collect_entries(folder, "Name,SID,Email\nJane,S1,j@x.edu\nZoë,S2,z@x.edu\n")
     assert entries == {"S1": "assignment_1_export/submission_2", "S2": "assignment_1_export/submission_3"}
     assert collected.older == ("submission_1",)
     assert [name for name, _ in collected.unmatched] == ["submission_4"]
@@ -419,7 +420,7 @@ def test_a_github_classroom_clone_is_assigned_by_the_account_in_its_name(tmp_pat
     names = ("02-nodes-jane-doe/ws/src/p/x", "02-nodes-Zoe/ws/src/p/x", "02-nodes-doe/ws/src/p/x", "02-nodes-eve/x")
     folder = download(tmp_path / "02-nodes-submissions", *names)
     table = "identifier,github_username,github_id,name\njane,jane-doe,1,\nzoë,zoe,2,\ndoe,doe,3,\n"
-    collected, entries = found(folder, table)
+    collected, entries = collect_entries(folder, table)
     assert entries == {"jane": "02-nodes-jane-doe", "zoë": "02-nodes-Zoe", "doe": "02-nodes-doe"}
     assert [name for name, _ in collected.unmatched] == ["02-nodes-eve"]
 
@@ -440,21 +441,21 @@ GITHUB = "identifier,github_username,github_id,name\nbob,bob,1,\neve,eve,2,\nzo�
             ["hw-ada-bob"],
             {},
             {"hw-ada-bob": "it matches no student in roster.csv"},
-            id="the folder says it",
+            id="the folder names the assignment",
         ),
         pytest.param(
             "clones",
             ["hw-ada-bob", "hw-eve"],
             {"eve": "hw-eve"},
             {"hw-ada-bob": "it matches no student in roster.csv"},
-            id="most clones begin so",
+            id="most clones have this prefix",
         ),
         pytest.param(
             "clones",
             ["hw-1-bob", "hw-1-eve", "hw-1-ada-zoe", "my-notes"],
             {"bob": "hw-1-bob", "eve": "hw-1-eve", "zoë": "hw-1-ada-zoe"},
             {"my-notes": "it matches no student in roster.csv"},
-            id="two accounts follow",
+            id="two accounts follow the prefix",
         ),
         pytest.param(
             "clones",
@@ -472,22 +473,24 @@ GITHUB = "identifier,github_username,github_id,name\nbob,bob,1,\neve,eve,2,\nzo�
             ["hw-ada-bob", "hw-ada-zoe"],
             {},
             {"hw-ada-bob": "unclear: bob", "hw-ada-zoe": "unclear: ada-zoe"},
-            id="as many fit after either",
+            id="either prefix fits as many",
         ),
     ],
 )
 def test_a_clone_is_not_assigned_by_the_end_of_an_account_alone(
     tmp_path: Path, folder: str, names: list[str], entries: dict[str, str], strangers: dict[str, str]
 ) -> None:
-    collected, given = found(download(tmp_path / folder, *(f"{name}/ws/src/p/x" for name in names)), GITHUB)
-    assert given == entries
+    collected, assigned = collect_entries(
+        download(tmp_path / folder, *(f"{name}/ws/src/p/x" for name in names)), GITHUB
+    )
+    assert assigned == entries
     assert dict(collected.unmatched).keys() == strangers.keys()
-    assert all(why in dict(collected.unmatched)[name] for name, why in strangers.items())
+    assert all(reason in dict(collected.unmatched)[name] for name, reason in strangers.items())
 
 
 def test_the_layout_of_nbgrader_and_plain_names_are_assigned_to_students(tmp_path: Path) -> None:
     folder = download(tmp_path / "submitted", f"jane/{CHAPTER}/{CHAPTER}.ipynb", "Jo Bloggs.zip")
-    _, entries = found(folder, "id,first_name,last_name,email\njane,,,\nJo Bloggs,,,\n")
+    _, entries = collect_entries(folder, "id,first_name,last_name,email\njane,,,\nJo Bloggs,,,\n")
     assert entries == {"jane": f"jane/{CHAPTER}", "Jo Bloggs": "Jo Bloggs.zip"}
 
 
@@ -495,7 +498,9 @@ def test_a_zip_is_unpacked_and_a_zip_with_paths_outside_its_folder_is_refused(tm
     with zipfile.ZipFile(tmp_path / "good.zip", "w") as archive:
         archive.writestr("Zoë Müller-Żak_101_assignsubmission_file_/a.zip", "x")
     with unpacked(tmp_path / "good.zip") as folder:
-        assert found(folder, MOODLE)[1] == {"zoe@example.edu": "Zoë Müller-Żak_101_assignsubmission_file_/a.zip"}
+        assert collect_entries(folder, MOODLE)[1] == {
+            "zoe@example.edu": "Zoë Müller-Żak_101_assignsubmission_file_/a.zip"
+        }
     with zipfile.ZipFile(tmp_path / "bad.zip", "w") as archive:
         archive.writestr("../x", "x")
     with pytest.raises(UsageError, match=r"bad.zip: not a folder, and not a readable zip: ../x points outside"):
@@ -504,16 +509,16 @@ def test_a_zip_is_unpacked_and_a_zip_with_paths_outside_its_folder_is_refused(tm
 
 
 @pytest.mark.parametrize(
-    ("table", "why"),
+    ("table", "reason"),
     [
         ("", "the table is empty"),
         ("Nachname,Note\nDoe,1\n", "no column identifies the students; the known headings are"),
         ("id,name\njane,a\njane,b\n", "two students are called jane"),
     ],
 )
-def test_a_table_without_students_is_a_usage_error(tmp_path: Path, table: str, why: str) -> None:
+def test_a_table_without_students_is_a_usage_error(tmp_path: Path, table: str, reason: str) -> None:
     (tmp_path / "roster.csv").write_text(table)
-    with pytest.raises(UsageError, match=why):
+    with pytest.raises(UsageError, match=reason):
         read_roster(tmp_path / "roster.csv")
 
 
@@ -523,7 +528,7 @@ def test_the_times_of_submissions_are_those_of_the_newest_attempts(tmp_path: Pat
         "submission_1:\n  :submitters: [{':sid': '101'}]\n  :created_at: 2026-05-04 18:00:00.5 -05:00\n"
         "submission_2:\n  :submitters: [{':sid': '102'}]\n"
     )
-    collected, _ = found(folder, "SID,Name\n101,Ada\n102,Bob\n")
+    collected, _ = collect_entries(folder, "SID,Name\n101,Ada\n102,Bob\n")
     assert collected.times == {"101": "2026-05-04 18:00:00.500000-05:00"}
     folder = download(
         tmp_path / "gradebook",
@@ -533,9 +538,9 @@ def test_the_times_of_submissions_are_those_of_the_newest_attempts(tmp_path: Pat
         "C_jdoe3_attempt_2014-05-01-08-00-00.txt",
     )
     receipts(folder, C="jdoe3")
-    assert found(folder, BLACKBOARD)[0].times == {"jdoe3": "2014-05-01 08:00:00"}
+    assert collect_entries(folder, BLACKBOARD)[0].times == {"jdoe3": "2014-05-01 08:00:00"}
     folder = download(tmp_path / "d2l", "1-2 - Jane Doe - Nov 9, 2025 1205 AM - a.zip")
-    assert found(folder, BLACKBOARD)[0].times == {"jdoe3": "2025-11-09 00:05"}
+    assert collect_entries(folder, BLACKBOARD)[0].times == {"jdoe3": "2025-11-09 00:05"}
 
 
 @pytest.mark.parametrize(
@@ -550,6 +555,6 @@ def test_the_times_of_submissions_are_those_of_the_newest_attempts(tmp_path: Pat
 )
 def test_moodles_table_says_how_late_a_submission_is(tmp_path: Path, status: str, late_by: int | None) -> None:
     folder = download(tmp_path / "moodle", "Zoë Müller-Żak_101_assignsubmission_file_/a.zip")
-    collected, _ = found(folder, MOODLE.replace("Submitted for grading,", f'"{status}",', 1))
+    collected, _ = collect_entries(folder, MOODLE.replace("Submitted for grading,", f'"{status}",', 1))
     assert collected.late_by == ({} if late_by is None else {"zoe@example.edu": late_by})
     assert collected.late == (() if late_by is None else ("zoe@example.edu",))

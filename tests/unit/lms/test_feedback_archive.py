@@ -1,6 +1,6 @@
 """The zips of feedback that Moodle and Canvas take back, read as these systems read them.
 
-`moodle_reads` and `canvas_reads` do what the systems' own code does with the names of files: Moodle's
+`moodle_reads` and `canvas_reads` parse the names of files as the systems' own code does: Moodle's
 mod/assign/feedback/file/importziplib.php (`is_valid_filename_for_import`), and Canvas's
 app/models/abstract_assignment.rb (`infer_comment_context_from_filename`).
 """
@@ -80,10 +80,10 @@ def test_moodle_gives_each_page_to_its_participant(tmp_path: Path, make_result: 
         make_result("bob@example.edu", status=Status.NOT_GRADED, checks=()),
         make_result("eve@example.edu"),
     )
-    done = export(tmp_path, "moodle-feedback", roster)
-    assert done.exit_code == 1
-    assert "Left out: bob@example.edu: not graded" in done.output
-    assert "Left out: eve@example.edu: roster.csv has no identifier" in done.output
+    completed = export(tmp_path, "moodle-feedback", roster)
+    assert completed.exit_code == 1
+    assert "Left out: bob@example.edu: not graded" in completed.output
+    assert "Left out: eve@example.edu: roster.csv has no identifier" in completed.output
     with zipfile.ZipFile(tmp_path / "feedback.zip") as archive:
         assert archive.testzip() is None
         texts = {moodle_reads(name, {101, 102, 103}): archive.read(name).decode() for name in archive.namelist()}
@@ -143,7 +143,7 @@ def in_notebook(data: bytes) -> bytes:
     "Canvas shows it under the name of the student's own file",
 )
 @pytest.mark.parametrize(
-    ("name", "opened"),
+    ("name", "read_page"),
     [
         ("mllerzo_7002_9002_answer.zip", in_zip),
         ("mllerzo_LATE_7002_9002_02_nodes (1).ZIP", in_zip),
@@ -153,21 +153,21 @@ def in_notebook(data: bytes) -> bytes:
     ],
 )
 def test_canvas_gives_each_student_a_file_of_the_kind_that_they_handed_in(
-    tmp_path: Path, make_result: MakeResult, name: str, opened: Callable[[bytes], bytes]
+    tmp_path: Path, make_result: MakeResult, name: str, read_page: Callable[[bytes], bytes]
 ) -> None:
     store(tmp_path, make_result("zoe"))
     download = canvas_download(tmp_path, name, "doejane_7001_9001_answer.zip")
-    done = export(tmp_path, "canvas-feedback", CANVAS, "--download", str(download))
-    assert done.exit_code == 0, done.output
+    completed = export(tmp_path, "canvas-feedback", CANVAS, "--download", str(download))
+    assert completed.exit_code == 0, completed.output
     with zipfile.ZipFile(tmp_path / "feedback.zip") as archive:
         assert archive.namelist() == [name]
         content = archive.read(name)
     assert canvas_reads(name) == ("7002", "9002")
-    assert b"it kept driving: 0.08 m from the north wall" in opened(content)
+    assert b"it kept driving: 0.08 m from the north wall" in read_page(content)
 
 
 @pytest.mark.promise("A student who submitted nothing of this kind is listed, and the exit status is 1.")
-def test_of_several_files_the_newest_attempts_one_that_opens_easiest_is_taken(
+def test_of_several_files_the_easiest_to_open_of_the_newest_attempt_is_used(
     tmp_path: Path, make_result: MakeResult
 ) -> None:
     store(tmp_path, make_result("zoe"), make_result("jdoe"))
@@ -180,9 +180,9 @@ def test_of_several_files_the_newest_attempts_one_that_opens_easiest_is_taken(
         "doejane_7001_9005_my_link.zip",  # Canvas takes it for a link
         "doejane_7001_text.html",
     )
-    done = export(tmp_path, "canvas-feedback", CANVAS, "--download", str(download))
-    assert done.exit_code == 1
-    assert "Left out: jdoe: the download has no page, archive or notebook of theirs" in done.output
+    completed = export(tmp_path, "canvas-feedback", CANVAS, "--download", str(download))
+    assert completed.exit_code == 1
+    assert "Left out: jdoe: the download has no page, archive or notebook of theirs" in completed.output
     with zipfile.ZipFile(tmp_path / "feedback.zip") as archive:
         assert archive.namelist() == ["mllerzo_LATE_7002_9002_answer-1.zip"]
 
@@ -190,23 +190,23 @@ def test_of_several_files_the_newest_attempts_one_that_opens_easiest_is_taken(
 def test_a_dry_run_lists_the_names_and_writes_no_zip(tmp_path: Path, make_result: MakeResult) -> None:
     store(tmp_path, make_result("zoe"))
     download = canvas_download(tmp_path, "mllerzo_7002_9002_answer.zip")
-    done = export(tmp_path, "canvas-feedback", CANVAS, "--download", str(download), "--dry-run")
-    assert done.exit_code == 0
-    assert ["zoe", "mllerzo_7002_9002_answer.zip"] in [line.split() for line in done.output.splitlines()]
+    completed = export(tmp_path, "canvas-feedback", CANVAS, "--download", str(download), "--dry-run")
+    assert completed.exit_code == 0
+    assert ["zoe", "mllerzo_7002_9002_answer.zip"] in [line.split() for line in completed.output.splitlines()]
     assert not (tmp_path / "feedback.zip").exists()
 
 
 @pytest.mark.parametrize(
-    ("form", "roster", "why"),
+    ("form", "roster", "reason"),
     [
         ("canvas-feedback", CANVAS, "needs --download: the zip of the submissions"),
         ("moodle-feedback", CANVAS, "the column 'identifier' is missing; give the grading worksheet of Moodle"),
     ],
 )
-def test_what_a_zip_of_feedback_lacks_is_named(
-    tmp_path: Path, make_result: MakeResult, form: str, roster: str, why: str
+def test_missing_input_for_a_zip_of_feedback_is_named(
+    tmp_path: Path, make_result: MakeResult, form: str, roster: str, reason: str
 ) -> None:
     store(tmp_path, make_result("zoe"))
-    done = export(tmp_path, form, roster)
-    assert isinstance(done.exception, UsageError)
-    assert why in str(done.exception)
+    completed = export(tmp_path, form, roster)
+    assert isinstance(completed.exception, UsageError)
+    assert reason in str(completed.exception)

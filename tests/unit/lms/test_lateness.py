@@ -24,7 +24,7 @@ HOUR, DAY = timedelta(hours=1), timedelta(days=1)
 DAILY = LatePolicy(per_day=10, floor=40, grace=HOUR, due=DUE)
 
 
-def came(after: timedelta) -> Delivery:
+def delivered(after: timedelta) -> Delivery:
     return Delivery(time=DUE + after)
 
 
@@ -45,13 +45,13 @@ def came(after: timedelta) -> Delivery:
 def test_a_day_that_has_begun_counts_from_the_deadline_and_the_floor_stays(
     after: timedelta, days: int, kept: float
 ) -> None:
-    assert DAILY.judge("ada", came(after)) == Lateness(pytest.approx(kept), days)
+    assert DAILY.judge("ada", delivered(after)) == Lateness(pytest.approx(kept), days)
 
 
 def test_a_penalty_is_the_same_for_each_delay_and_takes_no_more_than_all() -> None:
     policy = LatePolicy(flat=20, due=DUE)
-    assert [policy.judge("ada", came(after)).kept for after in (HOUR, 9 * DAY)] == [0.8, 0.8]
-    assert LatePolicy(per_day=30, due=DUE).judge("ada", came(9 * DAY)).kept == 0.0
+    assert [policy.judge("ada", delivered(after)).kept for after in (HOUR, 9 * DAY)] == [0.8, 0.8]
+    assert LatePolicy(per_day=30, due=DUE).judge("ada", delivered(9 * DAY)).kept == 0.0
 
 
 @pytest.mark.promise(
@@ -66,14 +66,14 @@ def test_a_penalty_is_the_same_for_each_delay_and_takes_no_more_than_all() -> No
         (Extension(days=3 * DAY), 0),
         (Extension(until=DUE + 2 * DAY), 1),
         (Extension(until=DUE - 2 * DAY), 5),  # a deadline may also be an earlier one
-        (Extension(submitted=DUE + 2 * HOUR), 1),  # what a person says goes before what the system says
+        (Extension(submitted=DUE + 2 * HOUR), 1),  # a person's entry overrides the system's time
         (Extension(days=DAY, submitted=DUE + DAY), 0),
     ],
 )
-def test_a_row_of_the_table_goes_before_the_due_time_and_the_systems_time(extension: Extension, days: int) -> None:
+def test_a_row_of_the_table_overrides_the_due_time_and_the_systems_time(extension: Extension, days: int) -> None:
     policy = LatePolicy(per_day=10, due=DUE, extensions={"ada": extension})
-    assert policy.judge("ada", came(3 * DAY)).days == days
-    assert policy.judge("bob", came(3 * DAY)).days == 3
+    assert policy.judge("ada", delivered(3 * DAY)).days == days
+    assert policy.judge("bob", delivered(3 * DAY)).days == 3
 
 
 def test_moodles_delay_counts_without_a_due_time_and_days_are_taken_from_it() -> None:
@@ -85,16 +85,16 @@ def test_moodles_delay_counts_without_a_due_time_and_days_are_taken_from_it() ->
     assert known.judge("eve", late).days == 1
 
 
-def test_a_time_goes_before_the_systems_word_and_the_word_is_enough_for_a_flat_penalty_alone() -> None:
-    word = Delivery(late=True)
-    assert LatePolicy(flat=25).judge("ada", word) == Lateness(0.75, None)
+def test_a_time_overrides_the_systems_late_flag_which_alone_suffices_only_for_a_flat_penalty() -> None:
+    late_flag = Delivery(late=True)
+    assert LatePolicy(flat=25).judge("ada", late_flag) == Lateness(0.75, None)
     assert LatePolicy(flat=25, due=DUE).judge("ada", Delivery(late=True, time=DUE)) == Lateness()
     for policy in (
         LatePolicy(per_day=10, due=DUE),
         LatePolicy(flat=10, grace=HOUR),
         LatePolicy(flat=10, due=DUE, extensions={"ada": Extension(days=DAY)}),
     ):
-        assert "'submitted'" in policy.judge("ada", word).unclear
+        assert "'submitted'" in policy.judge("ada", late_flag).unclear
         assert policy.judge("ada", Delivery()) == Lateness()
 
 
@@ -131,11 +131,11 @@ CANVAS = """Student,ID,SIS Login ID,Section,02 Nodes (55)
 
 @pytest.fixture
 def graded(tmp_path: Path, make_result: MakeResult) -> Path:
-    """Write results with 4 of 10 points each, and what was found of their times."""
+    """Write results with 4 of 10 points each, and the known times of their submissions."""
     for student in ("jane", "zoe", "bob"):
         write_json(tmp_path / "results" / student / "result.json", make_result(student).to_json())
-    told = {"late": ["jane"], "times": {"zoe": "2026-05-06 17:00:00", "bob": "2026-05-04 15:00:00+00:00"}}
-    write_json(tmp_path / "results" / "handed_in.json", told)
+    handed_in = {"late": ["jane"], "times": {"zoe": "2026-05-06 17:00:00", "bob": "2026-05-04 15:00:00+00:00"}}
+    write_json(tmp_path / "results" / "handed_in.json", handed_in)
     (tmp_path / "roster.csv").write_text(CANVAS, encoding="utf-8")
     return tmp_path
 
@@ -158,25 +158,25 @@ def cells(folder: Path, key: str, name: str) -> dict[str, str]:
     "`--late-floor 40` leaves 40 % in any case",
     "If nothing says how late a submission is, it has no mark, is listed, and the exit status is 1.",
 )
-def test_export_takes_the_table_of_extensions_and_names_whose_time_nobody_knows(graded: Path) -> None:
+def test_export_applies_the_table_of_extensions_and_names_students_without_a_known_time(graded: Path) -> None:
     options = ("--due", "2026-05-04T18:00+02:00", "--late-per-day", "10", "--grace", "1", "--late-floor", "40")
-    done = export(graded, *options)
-    assert done.exit_code == 1
-    assert "Left out: jane: it is late, and nothing says by how much" in done.output
+    completed = export(graded, *options)
+    assert completed.exit_code == 1
+    assert "Left out: jane: it is late, and nothing says by how much" in completed.output
     # zoe's time has no zone, so it is that of --due: 1 day and 23 hours late. bob came in time, in another zone.
     assert cells(graded, "SIS Login ID", "02 Nodes (55)") == {"jane": "", "zoe": "3.20", "bob": "4.00"}
 
     (graded / "extensions.csv").write_text(
         'student,days,until,submitted\nzoe,1,,\njane,,2026-05-08,2026-05-09 12:00\n"Roe, Bob",,2026-05-01T12:00Z,\n'
     )
-    done = export(graded, *options, "--extensions", str(graded / "extensions.csv"))
-    assert done.exit_code == 0, done.output
+    completed = export(graded, *options, "--extensions", str(graded / "extensions.csv"))
+    assert completed.exit_code == 0, completed.output
     assert cells(graded, "SIS Login ID", "02 Nodes (55)") == {"jane": "3.60", "zoe": "3.60", "bob": "2.40"}
 
 
 def test_a_csv_file_has_the_late_days_and_the_mark_beside_the_score(graded: Path) -> None:
-    done = export(graded, "--due", "2026-05-04T18:00+00:00", "--late-per-day", "10", form="csv")
-    assert done.exit_code == 1
+    completed = export(graded, "--due", "2026-05-04T18:00+00:00", "--late-per-day", "10", form="csv")
+    assert completed.exit_code == 1
     assert cells(graded, "student", "late_days") == {"bob": "0", "jane": "", "zoe": "2"}
     assert cells(graded, "student", "mark") == {"bob": "4.0", "jane": "", "zoe": "3.2"}
     assert set(cells(graded, "student", "score").values()) == {"4.0"}
@@ -185,7 +185,7 @@ def test_a_csv_file_has_the_late_days_and_the_mark_beside_the_score(graded: Path
 
 
 @pytest.mark.parametrize(
-    ("text", "why"),
+    ("text", "reason"),
     [
         ("student,day\nzoe,1\n", "extensions.csv, line 1: it needs one of the columns days, until, submitted"),
         ("days\n1\n", "extensions.csv, line 1: the column 'student' is missing"),
@@ -198,23 +198,23 @@ def test_a_csv_file_has_the_late_days_and_the_mark_beside_the_score(graded: Path
         ("student,days\nzoe,1\nzoe,2\n", "extensions.csv, line 3: zoe is in .*, line 2, too"),
     ],
 )
-def test_a_wrong_table_of_extensions_is_an_error_that_names_the_line(graded: Path, text: str, why: str) -> None:
+def test_a_wrong_table_of_extensions_is_an_error_that_names_the_line(graded: Path, text: str, reason: str) -> None:
     (graded / "extensions.csv").write_text(text)
-    done = export(graded, "--extensions", str(graded / "extensions.csv"))
-    with pytest.raises(UsageError, match=why):
-        raise done.exception or AssertionError(done.output)
+    completed = export(graded, "--extensions", str(graded / "extensions.csv"))
+    with pytest.raises(UsageError, match=reason):
+        raise completed.exception or AssertionError(completed.output)
     assert not (graded / "out.csv").exists()
 
 
 @pytest.mark.parametrize(
-    ("options", "why"),
+    ("options", "reason"),
     [
         (("--late-penalty", "10", "--late-per-day", "10"), "give one of the two"),
         (("--due", "tomorrow"), "--due: 'tomorrow' is not a time in ISO 8601"),
     ],
 )
-def test_options_that_contradict_each_other_are_an_error(graded: Path, options: tuple[str, ...], why: str) -> None:
-    assert why in str(export(graded, *options).exception)
+def test_options_that_contradict_each_other_are_an_error(graded: Path, options: tuple[str, ...], reason: str) -> None:
+    assert reason in str(export(graded, *options).exception)
 
 
 def test_late_options_are_an_error_where_no_mark_would_change(graded: Path) -> None:
@@ -222,7 +222,7 @@ def test_late_options_are_an_error_where_no_mark_would_change(graded: Path) -> N
 
 
 def test_a_dry_run_says_what_late_submissions_lose(graded: Path) -> None:
-    done = export(graded, "--due", "2026-05-04T18:00+02:00", "--late-per-day", "10", "--dry-run")
-    assert ["zoe", "3.20"] in [line.split() for line in done.output.splitlines()]
+    completed = export(graded, "--due", "2026-05-04T18:00+02:00", "--late-per-day", "10", "--dry-run")
+    assert ["zoe", "3.20"] in [line.split() for line in completed.output.splitlines()]
     assert not (graded / "out.csv").exists()
     assert json.loads((graded / "results" / "handed_in.json").read_text())["late"] == ["jane"]

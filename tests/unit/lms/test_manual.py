@@ -33,7 +33,7 @@ GRADEBOOK = """Student,ID,SIS Login ID,Section,09 Assessment (77)
 
 @pytest.fixture
 def assessed(tmp_path: Path, make_result: MakeResult, make_check: MakeCheck) -> Path:
-    """Write results of 09 in which everybody has all 46 points that programs give."""
+    """Write results of 09 in which each student has all 46 points that programs give."""
     for student in ("zoe@x.edu", "jane@x.edu"):
         check = CheckResult.of(make_check("all", "Everything works.", 46, "nodes"), Outcome.PASSED)
         result = make_result(student, assignment="09_assessment", checks=(check,), max_score=46.0)
@@ -77,26 +77,24 @@ def test_the_cells_that_a_person_grades_are_those_of_the_courses_notebook() -> N
 def test_the_points_of_a_person_are_added_so_that_all_of_52_can_be_reached(
     assessed: Path, form: str, roster: str, name: str, marks: list[str]
 ) -> None:
-    done = with_points(
-        assessed, "student,q2-answer\nzoe@x.edu,6\n  Doe Jane ,4.5\n".replace("  Doe Jane ", "jane@x.edu"), form, roster
-    )
-    assert done.exit_code == 0, done.output
+    completed = with_points(assessed, "student,q2-answer\nzoe@x.edu,6\njane@x.edu,4.5\n", form, roster)
+    assert completed.exit_code == 0, completed.output
     assert column(assessed / "out.csv", name) == marks
 
 
 @pytest.mark.promise("with `--roster`, by anything in the roster")
 def test_students_are_named_by_anything_in_the_roster(assessed: Path) -> None:
-    done = with_points(assessed, "student,q2-answer\nZoë  müller,6\nParticipant 102,0\nBob Roe,\n")
-    assert done.exit_code == 0, done.output
+    completed = with_points(assessed, "student,q2-answer\nZoë  müller,6\nParticipant 102,0\nBob Roe,\n")
+    assert completed.exit_code == 0, completed.output
     assert column(assessed / "out.csv", "Grade") == ["52.00", "46.00", ""]
 
 
 @pytest.mark.promise("A student whom nobody has marked yet has no mark, is listed, and the exit status is 1.")
-def test_who_is_not_marked_by_a_person_yet_gets_no_mark_and_is_listed(assessed: Path) -> None:
+def test_a_student_whom_no_person_has_marked_yet_gets_no_mark_and_is_listed(assessed: Path) -> None:
     for text in ("student,q2-answer\nzoe@x.edu,6\n", "student,q2-answer\nzoe@x.edu,6\njane@x.edu,\n"):
-        done = with_points(assessed, text)
-        assert done.exit_code == 1
-        assert "Left out: jane@x.edu: A person has not marked q2-answer yet." in done.output
+        completed = with_points(assessed, text)
+        assert completed.exit_code == 1
+        assert "Left out: jane@x.edu: A person has not marked q2-answer yet." in completed.output
         assert column(assessed / "out.csv", "Grade") == ["52.00", "", ""]
 
 
@@ -116,23 +114,23 @@ def test_points_and_the_comment_of_a_person_are_on_the_feedback_page_and_in_the_
 
 
 @pytest.mark.promise("`--manual` works here, too: students who have not been marked yet are left out.")
-def test_the_zip_of_feedback_has_the_points_of_a_person_and_leaves_out_who_has_none(assessed: Path) -> None:
-    done = with_points(assessed, "student,q2-answer\nzoe@x.edu,6\n", "moodle-feedback")
-    assert done.exit_code == 1
-    assert "Left out: jane@x.edu: A person has not marked q2-answer yet." in done.output
+def test_the_zip_of_feedback_has_the_points_of_a_person_and_leaves_out_students_without_them(assessed: Path) -> None:
+    completed = with_points(assessed, "student,q2-answer\nzoe@x.edu,6\n", "moodle-feedback")
+    assert completed.exit_code == 1
+    assert "Left out: jane@x.edu: A person has not marked q2-answer yet." in completed.output
     with zipfile.ZipFile(assessed / "out.csv") as archive:
         assert archive.namelist() == ["Zoë Müller_101_assignsubmission_file_/feedback.html"]
         assert "of 52 points" in archive.read(archive.namelist()[0]).decode()
 
 
 def test_without_the_option_the_missing_points_are_named(assessed: Path) -> None:
-    done = export(assessed, "csv")
-    assert done.exit_code == 0
-    assert "09_assessment has 6 points that a person gives (q2-answer), which are missing here" in done.output
+    completed = export(assessed, "csv")
+    assert completed.exit_code == 0
+    assert "09_assessment has 6 points that a person gives (q2-answer), which are missing here" in completed.output
 
 
 @pytest.mark.parametrize(
-    ("text", "why"),
+    ("text", "reason"),
     [
         ("student,points\nzoe@x.edu,6\n", "manual.csv, line 1: the column 'q2-answer' is missing"),
         ("student;q2-answer\nzoe@x.edu;6\n", "manual.csv, line 1: the column 'student' is missing; commas separate"),
@@ -150,20 +148,20 @@ def test_without_the_option_the_missing_points_are_named(assessed: Path) -> None
     ],
 )
 def test_a_wrong_table_of_points_is_an_error_that_names_the_line_and_writes_nothing(
-    assessed: Path, text: str, why: str
+    assessed: Path, text: str, reason: str
 ) -> None:
-    done = with_points(assessed, text)
-    assert isinstance(done.exception, UsageError)
-    with pytest.raises(UsageError, match=why):
-        raise done.exception
+    completed = with_points(assessed, text)
+    assert isinstance(completed.exception, UsageError)
+    with pytest.raises(UsageError, match=reason):
+        raise completed.exception
     assert not (assessed / "out.csv").exists()
 
 
 def test_an_assignment_without_such_cells_takes_no_table_of_points(tmp_path: Path, make_result: MakeResult) -> None:
     write_json(tmp_path / "results" / "zoe" / "result.json", make_result("zoe").to_json())
     (tmp_path / "manual.csv").write_text("student,q2-answer\nzoe,6\n")
-    done = export(tmp_path, "csv", "--manual", str(tmp_path / "manual.csv"))
-    assert "02_nodes has no cell that a person grades" in str(done.exception)
+    completed = export(tmp_path, "csv", "--manual", str(tmp_path / "manual.csv"))
+    assert "02_nodes has no cell that a person grades" in str(completed.exception)
 
 
 @pytest.mark.promise("`--dry-run` writes nothing and lists")
@@ -174,23 +172,23 @@ def test_a_dry_run_lists_the_marks_and_writes_nothing(assessed: Path, make_resul
     (assessed / "manual.csv").write_text("student,q2-answer\nzoe@x.edu,6\njane@x.edu,3\neve,1\n")
     before = sorted(assessed.rglob("*"))
     options = ("--roster", str(assessed / "worksheet.csv"), "--manual", str(assessed / "manual.csv"), "--dry-run")
-    done = export(assessed, "moodle", *options)
-    assert done.exit_code == 1
-    said = [line.split() for line in done.output.splitlines()]
-    assert ["zoe@x.edu", "52.00"] in said
-    assert ["jane@x.edu", "12.00", "49.00"] in said
-    assert "Nothing was written." in done.output
+    completed = export(assessed, "moodle", *options)
+    assert completed.exit_code == 1
+    rows = [line.split() for line in completed.output.splitlines()]
+    assert ["zoe@x.edu", "52.00"] in rows
+    assert ["jane@x.edu", "12.00", "49.00"] in rows
+    assert "Nothing was written." in completed.output
     assert sorted(assessed.rglob("*")) == before
     for form in ("csv", "html", "gradescope", "junit", "markdown"):
-        done = export(assessed, form, *options)
-        assert (done.exit_code, sorted(assessed.rglob("*"))) == (0, before), form
-        assert ["zoe@x.edu", "52"] in [line.split() for line in done.output.splitlines()]
+        completed = export(assessed, form, *options)
+        assert (completed.exit_code, sorted(assessed.rglob("*"))) == (0, before), form
+        assert ["zoe@x.edu", "52"] in [line.split() for line in completed.output.splitlines()]
 
 
-def test_what_has_no_mark_gets_none_by_points_of_a_person(assessed: Path, make_result: MakeResult) -> None:
+def test_points_of_a_person_give_no_mark_to_an_ungraded_result(assessed: Path, make_result: MakeResult) -> None:
     broken = make_result("jane@x.edu", assignment="09_assessment", status=Status.NOT_GRADED, checks=())
     write_json(assessed / "results" / "jane@x.edu" / "result.json", broken.to_json())
-    done = with_points(assessed, "student,q2-answer\nzoe@x.edu,6\njane@x.edu,6\n")
-    assert done.exit_code == 1
-    assert "Left out: jane@x.edu: not graded" in done.output
+    completed = with_points(assessed, "student,q2-answer\nzoe@x.edu,6\njane@x.edu,6\n")
+    assert completed.exit_code == 1
+    assert "Left out: jane@x.edu: not graded" in completed.output
     assert column(assessed / "out.csv", "Grade") == ["52.00", "", ""]

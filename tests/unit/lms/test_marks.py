@@ -89,7 +89,7 @@ def test_canvas_gets_a_new_column_if_no_column_is_that_of_the_assignment(
 
 
 @pytest.mark.parametrize(
-    ("system", "text", "why"),
+    ("system", "text", "reason"),
     [
         ("moodle", "Identifier,Full name\nParticipant 1,Z\n", "the column 'grade' is missing"),
         ("moodle", MOODLE.replace("100.00", "many"), "'many' is not a number of points"),
@@ -98,11 +98,11 @@ def test_canvas_gets_a_new_column_if_no_column_is_that_of_the_assignment(
     ],
 )
 def test_a_table_of_another_shape_is_a_usage_error(
-    tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult, system: str, text: str, why: str
+    tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult, system: str, text: str, reason: str
 ) -> None:
     roster = read_roster(table(text))
     stored = [make_result(student.id) for student in roster.students]
-    with pytest.raises(UsageError, match=why):
+    with pytest.raises(UsageError, match=reason):
         mark_table(stored, system, roster)
 
 
@@ -114,6 +114,6 @@ def test_export_applies_the_late_penalty_to_late_students(
     write_json(tmp_path / "results" / "handed_in.json", {"late": ["zoe"]})
     command = ["export", str(tmp_path / "results"), "--format", "canvas", "--out", str(tmp_path / "out.csv")]
     assert isinstance(CliRunner().invoke(group, command).exception, UsageError)
-    done = CliRunner().invoke(group, [*command, "--roster", str(table(CANVAS)), "--late-penalty", "50"])
-    assert done.exit_code == 0, done.output
+    completed = CliRunner().invoke(group, [*command, "--roster", str(table(CANVAS)), "--late-penalty", "50"])
+    assert completed.exit_code == 0, completed.output
     assert rows(tmp_path / "out.csv")[2]["02 Nodes (55)"] == "2.00"

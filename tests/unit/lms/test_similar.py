@@ -64,9 +64,9 @@ def test_without_copydetect_the_command_says_how_to_install_it(
 @pytest.mark.promise("Code from the student release is excluded, and renaming does not hide a copy.")
 def test_a_renamed_copy_is_found_and_given_code_is_ignored() -> None:
     codes = {name: GIVEN + text for name, text in {"alice": OWN, "bob": RENAMED, "carol": OTHER}.items()}
-    (found,) = compare(codes, GIVEN, 0.5).groups
-    assert found.names == ("alice", "bob")
-    (pair,) = found.pairs
+    (group,) = compare(codes, GIVEN, 0.5).groups
+    assert group.names == ("alice", "bob")
+    (pair,) = group.pairs
     assert pair.names == (("alice",), ("bob",))
     assert pair.shares == pytest.approx((1.0, 1.0))
     assert pair.texts is not None
@@ -76,8 +76,8 @@ def test_a_renamed_copy_is_found_and_given_code_is_ignored() -> None:
 
 
 def test_unchanged_releases_are_not_similar() -> None:
-    found = compare({"alice": GIVEN, "bob": GIVEN, "carol": ""}, GIVEN, 0.0)
-    assert (found.groups, found.without_own) == ((), ("alice", "bob", "carol"))
+    comparison = compare({"alice": GIVEN, "bob": GIVEN, "carol": ""}, GIVEN, 0.0)
+    assert (comparison.groups, comparison.without_own) == ((), ("alice", "bob", "carol"))
 
 
 def test_seven_equal_copies_are_one_group_with_one_pair_of_texts() -> None:
@@ -134,11 +134,11 @@ def test_similar_compares_a_class_and_names_unreadable_submissions(
     with pytest.raises(SystemExit) as ended:
         main(["similar", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out")])
     assert ended.value.code == 1  # one could not be read
-    told = capsys.readouterr()
-    assert "alice and bob: 100 % and 100 % of their own text alike" in told.out
-    assert "3 compared, 1 group to read" in told.out
-    assert "carol" not in told.out
-    assert "Not compared: dave: dave.zip is not a folder" in told.err
+    captured = capsys.readouterr()
+    assert "alice and bob: 100 % and 100 % of their own text alike" in captured.out
+    assert "3 compared, 1 group to read" in captured.out
+    assert "carol" not in captured.out
+    assert "Not compared: dave: dave.zip is not a folder" in captured.err
 
 
 def in_a_zip(text: str) -> bytes:
@@ -193,14 +193,14 @@ def test_members_of_a_group_with_one_submission_are_not_alike(
 
 
 @pytest.mark.parametrize(
-    ("texts", "why"),
+    ("texts", "reason"),
     [
         ({"ada": OWN}, "of 1 submissions, 1 has own code"),
         ({"ada": "", "bob": "x = 1"}, "of 2 submissions, 0 has own code"),
     ],
 )
 def test_without_two_comparable_submissions_the_command_says_so_and_exits_1(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], texts: dict[str, str], why: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], texts: dict[str, str], reason: str
 ) -> None:
     for name, text in texts.items():
         (tmp_path / "class" / name / "src").mkdir(parents=True)
@@ -208,9 +208,9 @@ def test_without_two_comparable_submissions_the_command_says_so_and_exits_1(
     with pytest.raises(SystemExit) as ended:
         main(["similar", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out")])
     assert ended.value.code == 1
-    said = capsys.readouterr()
-    assert f"nothing was compared: {why}" in said.err
-    assert "groups" not in said.out
+    captured = capsys.readouterr()
+    assert f"nothing was compared: {reason}" in captured.err
+    assert "groups" not in captured.out
     assert not (tmp_path / "out").exists()
 
 
@@ -233,26 +233,28 @@ HARD = (
 
 @pytest.mark.promise("the command lists students whose code is longer")
 def test_only_the_start_of_a_long_text_is_compared_which_is_reported() -> None:
-    told: dict[str, str] = {}
+    notices: dict[str, str] = {}
     long = "".join(f"{OWN}# {number}" for number in range(2_000))
-    (found,) = compare({"alice": long, "bob": "a\n" * 700_000 + OTHER, "carol": OWN}, "", 0.5, told.__setitem__).groups
-    assert found.names == ("alice", "carol")
-    assert set(told) == {"alice", "bob"}
-    assert told["alice"] == "the first 100,000 characters of its code; please check the rest yourself"
-    (pair,) = found.pairs
+    (group,) = compare(
+        {"alice": long, "bob": "a\n" * 700_000 + OTHER, "carol": OWN}, "", 0.5, notices.__setitem__
+    ).groups
+    assert group.names == ("alice", "carol")
+    assert set(notices) == {"alice", "bob"}
+    assert notices["alice"] == "the first 100,000 characters of its code; please check the rest yourself"
+    (pair,) = group.pairs
     assert pair.texts is not None
     assert len(pair.texts[0].striptags()) <= similar.MAX_CHARACTERS
 
 
 @pytest.mark.parametrize("part", HARD)
 def test_lexing_and_comparing_take_time_proportional_to_the_text(part: str) -> None:
-    """What is counted is what they ask for: the places of a text that the lexer tries, and those that are compared."""
+    """Counts the positions of a text that the lexer tries, and those that are compared."""
 
     def steps(length: int) -> tuple[int, int]:
         text = similar._dense(part * (length // len(part)))
-        looked = sum(len(match) + 1 for match in re.findall(r"(?m)^(?=(\s*))", text))  # the lexer's first rules
-        found = similar._fingerprint(text)
-        return looked, sum(map(len, found.hash_idx.values()))
+        tried = sum(len(match) + 1 for match in re.findall(r"(?m)^(?=(\s*))", text))  # the lexer's first rules
+        fingerprint = similar._fingerprint(text)
+        return tried, sum(map(len, fingerprint.hash_idx.values()))
 
     short, long = steps(1000), steps(4000)
     assert all(more <= 5 * few + 100 for few, more in zip(short, long, strict=True))
@@ -262,9 +264,9 @@ def test_lexing_and_comparing_take_time_proportional_to_the_text(part: str) -> N
 def test_only_the_texts_of_the_most_similar_pairs_are_shown(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(similar, "MAX_PAIRS", 3)
     codes = {name: f"{OWN}{OTHER}# {name}" for name in "abcdef"} | {"g": OWN}
-    found = compare(codes, "", 0.0)
-    (group,) = found.groups
+    comparison = compare(codes, "", 0.0)
+    (group,) = comparison.groups
     assert group.names == tuple("abcdefg")
     assert [pair.texts is not None for pair in group.pairs] == [True] * 3 + [False] * 3
-    page = write_page(found, tmp_path).read_text()
+    page = write_page(comparison, tmp_path).read_text()
     assert (page.count("<details"), page.count("the texts are not shown")) == (3, 3)

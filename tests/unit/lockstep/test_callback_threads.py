@@ -10,20 +10,20 @@ from autograder.run.lockstep.lockstep_host.callback_threads import CallbackThrea
 
 
 class Task:
-    """A callback as rclpy's task holds it: called once, then done, with what it raised."""
+    """A callback like a task of rclpy: called once, then done, with the exception that it raised."""
 
     def __init__(self, callback: Any) -> None:
-        self._callback, self._over, self._error = callback, False, None
+        self._callback, self._done, self._error = callback, False, None
 
     def __call__(self) -> None:
         try:
             self._callback()
         except ValueError as error:
             self._error = error
-        self._over = True
+        self._done = True
 
     def done(self) -> bool:
-        return self._over
+        return self._done
 
     def result(self) -> None:
         if self._error is not None:
@@ -31,7 +31,7 @@ class Task:
 
 
 def wait(ready: Any) -> None:
-    """Wait in the present worker."""
+    """Wait in the current worker thread."""
     import threading
 
     worker = threading.current_thread()
@@ -40,9 +40,9 @@ def wait(ready: Any) -> None:
 
 
 def test_a_callback_that_does_not_wait_is_done_at_once() -> None:
-    threads, done = CallbackThreads(None), []
-    threads.start(Task(lambda: done.append(1)))
-    assert done == [1]
+    threads, calls = CallbackThreads(None), []
+    threads.start(Task(lambda: calls.append(1)))
+    assert calls == [1]
     assert not threads.waiting
     assert not threads.resume()
 

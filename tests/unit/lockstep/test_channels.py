@@ -30,9 +30,9 @@ PROFILES = [
 def node(ros_domain: int) -> Iterator[Any]:
     context = Context()
     rclpy.init(args=[], context=context, domain_id=ros_domain)
-    made = Node("channels", namespace="/here", context=context)
-    yield made
-    made.destroy_node()
+    created = Node("channels", namespace="/here", context=context)
+    yield created
+    created.destroy_node()
     context.try_shutdown()
 
 

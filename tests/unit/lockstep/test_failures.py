@@ -1,4 +1,4 @@
-"""Why a program came to an end, in sentences that a student can act on."""
+"""Why a program ended, in sentences that a student can act on."""
 
 from __future__ import annotations
 

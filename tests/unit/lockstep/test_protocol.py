@@ -93,8 +93,8 @@ def test_an_event_with_a_field_of_another_type_is_refused(event: dict[str, Any],
 
 
 def test_changed_accepts_only_true() -> None:
-    found = [protocol.parse(_line(**{**DONE, "changed": value}))[1].changed for value in (True, 1, "true", [0], None)]
-    assert found == [True, *[False] * 4]
+    parsed = [protocol.parse(_line(**{**DONE, "changed": value}))[1].changed for value in (True, 1, "true", [0], None)]
+    assert parsed == [True, *[False] * 4]
 
 
 def test_a_description_says_what_the_program_reads() -> None:

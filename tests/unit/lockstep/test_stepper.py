@@ -59,7 +59,7 @@ signal.pause()
 
 
 @pytest.mark.parametrize("sent", ["[]", "[{}, {}]"], ids=["no event", "more events than it was given"])
-def test_a_reply_that_tells_of_other_events_than_were_given_is_refused(host: Open, sent: str) -> None:
+def test_a_reply_to_another_number_of_events_is_refused(host: Open, sent: str) -> None:
     program = host(f"os.write(write, b'{DONE}'.replace(b'[{{\"/cmd_vel\": 3}}]', b'{sent}'))\nsignal.pause()")
     assert _kind(lambda: program.step([(1, {})])) is Kind.STUCK
 

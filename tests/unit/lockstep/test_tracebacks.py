@@ -1,4 +1,4 @@
-"""A student sees in a traceback only the student's own files, under the paths that the student knows."""
+"""A traceback shows students only their own files, under the paths that they know."""
 
 from __future__ import annotations
 
@@ -59,8 +59,8 @@ def test_a_traceback_of_a_syntax_error_keeps_the_wrong_line() -> None:
 
 
 def test_a_traceback_without_a_file_of_the_student_is_unchanged() -> None:
-    whole = f"{LOADER}ImportError: no such entry point\n"
-    assert own_frames(whole) == whole
+    traceback = f"{LOADER}ImportError: no such entry point\n"
+    assert own_frames(traceback) == traceback
 
 
 def test_files_that_rosidl_generated_are_not_shown_as_the_students() -> None:

@@ -58,7 +58,7 @@ def source_notebook() -> NotebookNode:
 
 @dataclass
 class Graded:
-    """What the grader answers, and the notebook that it leaves beside it."""
+    """A result of the grader, and the notebook that it writes beside the result."""
 
     result: Result
     notebook: NotebookNode | None
@@ -85,12 +85,12 @@ class Course:
         return folder
 
     def autograde(self, student: str, **options: Any) -> dict[str, Any]:
-        done: dict[str, Any] = self.api.autograde(ASSIGNMENT, student, **options)
-        return done
+        response: dict[str, Any] = self.api.autograde(ASSIGNMENT, student, **options)
+        return response
 
     def feedback(self, student: str) -> str:
-        done = self.api.generate_feedback(ASSIGNMENT, student)
-        assert done["success"], done
+        response = self.api.generate_feedback(ASSIGNMENT, student)
+        assert response["success"], response
         return (self.root / "feedback" / student / ASSIGNMENT / f"{ASSIGNMENT}.html").read_text(encoding="utf-8")
 
     def autograded(self, student: str) -> NotebookNode:
@@ -122,30 +122,30 @@ def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         # nbgrader starts `alembic` by name to make its database.
         patch.setenv("PATH", os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]))
-        done = course_in(root).api.generate_assignment(ASSIGNMENT)
-    assert done["success"], done
+        response = course_in(root).api.generate_assignment(ASSIGNMENT)
+    assert response["success"], response
     return root
 
 
 @pytest.fixture
 def course(generated: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Course:
     """A copy of the generated course, with the grader replaced by what the test sets as `grade`."""
-    made = course_in(Path(shutil.copytree(generated, tmp_path / "course")))
+    created = course_in(Path(shutil.copytree(generated, tmp_path / "course")))
 
     def grade(job: Job) -> Result:
-        graded = made.grade(job)
+        graded = created.grade(job)
         job.out.mkdir(parents=True, exist_ok=True)
         if graded.notebook is not None:
             nbformat.write(graded.notebook, job.out / NOTEBOOK)
         return replace(graded.result, student=job.student)
 
     monkeypatch.setattr(autograder.grade.batch, "grade_submission", grade)
-    return made
+    return created
 
 
 @pytest.fixture
 def verdict(make_check: Callable[..., Check], make_result: Callable[..., Result]) -> Callable[..., Graded]:
-    """Make what the grader answers: 3 of 3 points in `graph`, 1 of 4 in `reaction`."""
+    """Make a result of the grader: 3 of 3 points in `graph`, 1 of 4 in `reaction`."""
 
     def make(notebook: NotebookNode | None = None, **fields: Any) -> Graded:
         checks = (

@@ -23,7 +23,7 @@ pytestmark = [
     pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning"),
 ]
 
-BOOKED = {"grade-graph": (3.0, 3.0, False), "grade-reaction": (1.0, 4.0, False)}
+RECORDED = {"grade-graph": (3.0, 3.0, False), "grade-reaction": (1.0, 4.0, False)}
 
 
 def cell(notebook: NotebookNode, id: str) -> NotebookNode:
@@ -39,18 +39,18 @@ def test_the_release_holds_the_stub_and_not_the_solution(course: Any) -> None:
 
 
 def test_the_score_of_each_group_is_recorded(course: Any, verdict: Callable[..., Any]) -> None:
-    seen: list[Job] = []
+    jobs: list[Job] = []
 
     def grade(job: Job) -> Any:
-        seen.append(job)
+        jobs.append(job)
         return verdict()
 
     course.grade = grade
     folder = course.submit("alice", course.released)
     assert course.autograde("alice")["success"]
-    assert course.grades("alice") == BOOKED
+    assert course.grades("alice") == RECORDED
     out = course.root / ".build" / "nbgrader" / "tiny" / "alice"
-    assert seen == [Job(folder, "tiny", "alice", DEFAULT_SEED, out)]
+    assert jobs == [Job(folder, "tiny", "alice", DEFAULT_SEED, out)]
     assert (out / "feedback.html").is_file()
 
 
@@ -103,7 +103,7 @@ def test_forged_outputs_and_metadata_earn_no_points(course: Any, verdict: Callab
     course.grade = lambda job: verdict(notebook)
     course.submit("mallory", notebook)
     assert course.autograde("mallory")["success"]
-    assert course.grades("mallory") == BOOKED
+    assert course.grades("mallory") == RECORDED
 
 
 def drop(notebook: NotebookNode) -> None:
@@ -163,9 +163,9 @@ def test_a_tampered_notebook_neither_gains_points_nor_shrinks_the_maximum(
     tamper(notebook)
     course.grade = lambda job: verdict()
     course.submit("mallory", notebook)
-    done = course.autograde("mallory")
-    assert done["success"], done
-    assert course.grades("mallory") == BOOKED
+    response = course.autograde("mallory")
+    assert response["success"], response
+    assert course.grades("mallory") == RECORDED
     assert "(Score: 4.0 / 7.0)" in course.feedback("mallory")
     assert "SECRET" not in course.feedback("mallory")
 
@@ -180,17 +180,17 @@ def test_a_file_that_is_not_a_notebook_gets_the_graders_verdict(
 ) -> None:
     course.grade = lambda job: verdict()
     course.submit("bob", data)
-    done = course.autograde("bob")
-    assert done["success"], done
-    assert course.grades("bob") == BOOKED
+    response = course.autograde("bob")
+    assert response["success"], response
+    assert course.grades("bob") == RECORDED
 
 
 def test_an_ungraded_submission_fails_and_no_score_is_recorded(course: Any, verdict: Callable[..., Any]) -> None:
     course.grade = lambda job: verdict(status=Status.NOT_GRADED, checks=())
     course.submit("carol", course.released)
-    done = course.autograde("carol")
-    assert not done["success"]
-    assert "carol: not graded, no score was recorded." in done["log"]
+    response = course.autograde("carol")
+    assert not response["success"]
+    assert "carol: not graded, no score was recorded." in response["log"]
     assert course.grades("carol") == {"grade-graph": (None, 3.0, True), "grade-reaction": (None, 4.0, True)}
     assert not (course.root / "autograded" / "carol" / "tiny").exists()
 
@@ -206,28 +206,28 @@ def test_when_the_grader_fails_the_old_score_stays_and_manual_grading_is_request
         raise IsolationError("this machine cannot isolate submissions")
 
     course.grade = fail
-    done = course.autograde("dave", force=True)
-    assert not done["success"]
-    assert "this machine cannot isolate submissions" in done["log"]
-    assert course.grades("dave") == {name: (*grade[:2], True) for name, grade in BOOKED.items()}
+    response = course.autograde("dave", force=True)
+    assert not response["success"]
+    assert "this machine cannot isolate submissions" in response["log"]
+    assert course.grades("dave") == {name: (*grade[:2], True) for name, grade in RECORDED.items()}
     course.grade = lambda job: verdict()
     assert course.autograde("dave", force=True)["success"]
-    assert course.grades("dave") == BOOKED
+    assert course.grades("dave") == RECORDED
 
 
-def test_groups_that_do_not_fit_the_cells_are_refused(
+def test_groups_that_do_not_match_the_cells_are_refused(
     course: Any, verdict: Callable[..., Any], make_check: Callable[..., Check]
 ) -> None:
     checks = (CheckResult.of(make_check("starts", "It starts.", 3, "graph"), Outcome.PASSED),)
     course.grade = lambda job: verdict(checks=checks, max_score=3.0)
     course.submit("erin", course.released)
-    done = course.autograde("erin")
-    assert not done["success"]
-    assert "have the groups ['graph', 'reaction'], but its suite has ['graph']" in done["log"]
+    response = course.autograde("erin")
+    assert not response["success"]
+    assert "have the groups ['graph', 'reaction'], but its suite has ['graph']" in response["log"]
     assert course.grades("erin")["grade-reaction"] == (None, 4.0, True)
 
 
-def test_points_that_do_not_fit_the_cell_are_refused(
+def test_points_that_do_not_match_the_cell_are_refused(
     course: Any, verdict: Callable[..., Any], make_check: Callable[..., Check]
 ) -> None:
     checks = tuple(
@@ -235,9 +235,9 @@ def test_points_that_do_not_fit_the_cell_are_refused(
     )
     course.grade = lambda job: verdict(checks=checks, max_score=10.0)
     course.submit("frank", course.released)
-    done = course.autograde("frank")
-    assert not done["success"]
-    assert "the cell of group 'graph' is worth 3 points, but its checks 5" in done["log"]
+    response = course.autograde("frank")
+    assert not response["success"]
+    assert "the cell of group 'graph' is worth 3 points, but its checks 5" in response["log"]
 
 
 def test_code_in_a_students_notebook_does_not_run_in_feedback(course: Any, verdict: Callable[..., Any]) -> None:

@@ -39,8 +39,8 @@ def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ]
     nbformat.write(notebook, source / f"{ASSIGNMENT}.ipynb")
     shutil.copy(ROOT / "nbgrader_config.py", root)
-    done = course_in(root).api.generate_assignment(ASSIGNMENT)
-    assert done["success"], done
+    response = course_in(root).api.generate_assignment(ASSIGNMENT)
+    assert response["success"], response
     return root
 
 

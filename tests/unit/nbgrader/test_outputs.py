@@ -130,7 +130,7 @@ def test_the_first_verdict_also_shows_the_diagnosis(broken_result: Result) -> No
 
 
 @pytest.mark.parametrize(
-    ("markdown", "kept", "gone"),
+    ("markdown", "kept", "removed"),
     [
         ("# Head\n\n**bold** `code`", "<strong>bold</strong> <code>code</code>", "&lt;"),
         ("|a|\n|-|\n|1|", "<td>1</td>", "&lt;"),
@@ -160,10 +160,10 @@ def test_the_first_verdict_also_shows_the_diagnosis(broken_result: Result) -> No
         ("<svg onload=y()></svg>", "&lt;svg", "<svg"),
     ],
 )
-def test_markdown_keeps_its_form_and_loses_what_could_run(markdown: str, kept: str, gone: str) -> None:
+def test_markdown_keeps_its_structure_and_loses_active_content(markdown: str, kept: str, removed: str) -> None:
     html = sanitized_markdown(None, markdown)  # type: ignore[arg-type]
     assert kept in html
-    assert gone not in html
+    assert removed not in html
 
 
 class Loaded(HTMLParser):
@@ -171,17 +171,17 @@ class Loaded(HTMLParser):
 
     def __init__(self) -> None:
         super().__init__()
-        self.found: list[str] = []
+        self.addresses: list[str] = []
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Keep each attribute that may hold an address; a link waits for a click."""
-        self.found += [
+        """Collect each attribute that may hold an address, except in links, which load only on a click."""
+        self.addresses += [
             f"{tag} {name}={value}" for name, value in attrs if tag != "a" and "host.example" in (value or "")
         ]
 
 
 @pytest.mark.parametrize("template", ["classic", "lab"])
-def test_a_page_of_a_students_cells_asks_no_other_host(template: str) -> None:
+def test_a_page_of_a_students_cells_requests_nothing_from_other_hosts(template: str) -> None:
     attack = "<img src=http://host.example/1><style>@import 'http://host.example/2'</style>"
     cells = [new_markdown_cell(attack), new_raw_cell(attack, metadata={"raw_mimetype": "text/html"})]
     notebook = restored(new_notebook(cells=[*cells, new_code_cell(f"'{attack}'")]), new_notebook())
@@ -196,5 +196,5 @@ def test_a_page_of_a_students_cells_asks_no_other_host(template: str) -> None:
     assert html.count("host.example") > 5
     page = Loaded()
     page.feed(html)
-    assert page.found == []
+    assert page.addresses == []
     assert not re.search(r"<style>[^<]*host\.example", html)

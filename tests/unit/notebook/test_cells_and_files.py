@@ -71,8 +71,8 @@ def test_nothing_is_reported_if_the_file_is_intended(
 def test_a_file_that_differs_from_its_cell_is_named(
     tmp_path: Path, cell: str, file: str, last: str | None, saved_later: bool
 ) -> None:
-    (said,) = write(tmp_path, cell, file, last, saved_later=saved_later)
-    assert said.startswith(DIFFERS)
+    (notice,) = write(tmp_path, cell, file, last, saved_later=saved_later)
+    assert notice.startswith(DIFFERS)
 
 
 def test_a_cell_that_was_never_run_is_named(tmp_path: Path) -> None:
@@ -85,7 +85,7 @@ def test_a_file_of_a_later_exercise_is_not_compared(tmp_path: Path, file: str | 
     assert differences("02_nodes", tmp_path / "ws", ("robot",), later=(f"ws/{FILE}",)) == ()
 
 
-def test_a_package_that_is_not_checked_and_a_broken_notebook_say_nothing(tmp_path: Path) -> None:
+def test_a_package_that_is_not_checked_and_a_broken_notebook_give_no_notice(tmp_path: Path) -> None:
     write(tmp_path, "a = 1", "a = 0\n")
     assert differences("02_nodes", tmp_path / "ws", ("other",)) == ()
     (tmp_path / "02_nodes.ipynb").write_text("{")

@@ -1,4 +1,4 @@
-"""The exercises of a notebook, and whose the checks are."""
+"""The exercises of a notebook, and the checks that belong to each."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from autograder.suite import suites
 
 
 def _ids(assignment: str, name: str) -> tuple[str, ...]:
-    there = exercises(assignment)
+    parts = exercises(assignment)
     kind, number = name.split()
-    return checks_of(find_exercise(assignment, there, kind, int(number)), there, suites.visible(assignment).checks)
+    return checks_of(find_exercise(assignment, parts, kind, int(number)), parts, suites.visible(assignment).checks)
 
 
 @pytest.mark.parametrize("assignment", suites.checkable_assignments())
@@ -35,7 +35,7 @@ def test_each_visible_check_belongs_to_one_exercise_and_each_exercise_has_one(as
     [
         ("01_package_structure", "exercise 2", ("alarm_builds", "alarm_runs", "alarm_dependencies", "alarm_facts")),
         ("03_interfaces", "exercise 1", ("robot_status", "check_trip", "drive_distance", "builds")),
-        # Its sentences are in exercise 1. The method that it judges is written in exercise 2, with its group's.
+        # The sentences of one check are in exercise 1, but students write the method that it judges in exercise 2.
         ("05_parameters", "exercise 2", ("contradiction", "together", "rate", "refused_whole", "lets_pass")),
         ("08_capstone", "step 2", ("starts", "sees", "moves", "enable", "watches")),
         ("08_capstone", "step 7", ("quality",)),
@@ -62,7 +62,7 @@ def test_a_number_that_the_notebook_does_not_have_is_answered_with_those_that_it
     assert part_of("08_capstone", None, None, None) == Part("08_capstone")
 
 
-def _held(source: str, *sentences: str, **more: str) -> NotebookNode:
+def _contract_cell(source: str, *sentences: str, **more: str) -> NotebookNode:
     return new_markdown_cell(source, metadata={"course": {"contract": dict.fromkeys(sentences, "a text")}}, **more)
 
 
@@ -74,14 +74,14 @@ def chapter(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return path
 
 
-def test_an_exercise_ends_with_the_next_heading_of_its_rank_and_no_heading_is_one_in_code(chapter: Path) -> None:
+def test_an_exercise_ends_at_the_next_heading_of_its_level_and_headings_in_code_do_not_count(chapter: Path) -> None:
     cells = [
-        _held("# Exercise of the mind\n\nBefore.", "before"),
-        _held("## Exercise: the *only* `one`\n\n```\n## Exercise 7: a comment\n```", "first"),
+        _contract_cell("# Exercise of the mind\n\nBefore.", "before"),
+        _contract_cell("## Exercise: the *only* `one`\n\n```\n## Exercise 7: a comment\n```", "first"),
         new_code_cell("## Exercise 8: a comment", metadata={"course": {"contract": {"second": "a text"}}}),
-        _held("### More of it", "third"),
-        _held("## Check it", "after"),
-        _held("## Question 2: in your own words"),
+        _contract_cell("### More of it", "third"),
+        _contract_cell("## Check it", "after"),
+        _contract_cell("## Question 2: in your own words"),
     ]
     write(new_notebook(cells=cells), chapter)
     assert exercises("x") == (Exercise("exercise", 1, "the only one", ("first", "second", "third")),)
@@ -90,19 +90,19 @@ def test_an_exercise_ends_with_the_next_heading_of_its_rank_and_no_heading_is_on
 def test_the_files_that_only_cells_after_a_part_write_are_later(chapter: Path) -> None:
     cells = [
         new_code_cell("%%writefile ws/given.py\na = 0"),
-        _held("## Exercise 1", "first"),
+        _contract_cell("## Exercise 1", "first"),
         new_code_cell("%%writefile ws/one.py\na = 1"),
         new_markdown_cell("## Between"),
         new_code_cell("%%writefile ws/between.py\na = 2"),
         new_code_cell("%%writefile ws/one.py\na = 3"),
-        _held("## Exercise 2", "second"),
+        _contract_cell("## Exercise 2", "second"),
         new_code_cell("%%writefile ws/two.py\na = 4"),
     ]
     write(new_notebook(cells=cells), chapter)
-    there = exercises("x")
-    assert [each.later for each in there] == [("ws/between.py", "ws/two.py"), ()]
-    assert Part("x", "exercise 1", there).later == ("ws/between.py", "ws/two.py")
-    assert Part("x", "", there).later == ()
+    parts = exercises("x")
+    assert [each.later for each in parts] == [("ws/between.py", "ws/two.py"), ()]
+    assert Part("x", "exercise 1", parts).later == ("ws/between.py", "ws/two.py")
+    assert Part("x", "", parts).later == ()
 
 
 @pytest.mark.parametrize("text", ['{"cells": [{"cell_type": "mark', "[]", '{"cells": [1], "metadata": {}}'])

@@ -26,15 +26,15 @@ def test_the_graph_shows_the_running_nodes_and_topics() -> None:
     reporter.create_subscription(Twist, "/robot1/cmd_vel", print, 10)
     reporter.create_publisher(String, "status", 10)
     try:
-        seen = graph(30.0)
+        shown = graph(30.0)
     finally:
         rclpy.try_shutdown(context=context)
-    assert isinstance(seen, Graph)
-    assert seen.nodes == ("/reporter", "/robot1/driver")
-    assert seen.topics == {"/robot1/cmd_vel": "geometry_msgs/msg/Twist", "/status": "std_msgs/msg/String"}
-    assert seen.published == {("/robot1/driver", "/robot1/cmd_vel"), ("/reporter", "/status")}
-    assert seen.subscribed == {("/robot1/cmd_vel", "/reporter")}
-    assert repr(seen).splitlines()[0] == "2 nodes: /reporter, /robot1/driver"
+    assert isinstance(shown, Graph)
+    assert shown.nodes == ("/reporter", "/robot1/driver")
+    assert shown.topics == {"/robot1/cmd_vel": "geometry_msgs/msg/Twist", "/status": "std_msgs/msg/String"}
+    assert shown.published == {("/robot1/driver", "/robot1/cmd_vel"), ("/reporter", "/status")}
+    assert shown.subscribed == {("/robot1/cmd_vel", "/reporter")}
+    assert repr(shown).splitlines()[0] == "2 nodes: /reporter, /robot1/driver"
 
 
 def test_the_drawing_has_a_box_for_each_node_and_topic_and_an_arrow_for_each_pair() -> None:

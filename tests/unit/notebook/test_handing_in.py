@@ -1,3 +1,5 @@
+"""Handing in from a notebook: the answer that is sent, and the receipt or notice that is shown."""
+
 from __future__ import annotations
 
 import io
@@ -30,9 +32,9 @@ def answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_without_a_hub_a_notice_says_so(answer: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(SERVICE)
-    said = submit(CHAPTER, answer)
-    assert isinstance(said, Notice)
-    assert "This hub does not grade submissions" in said.sentence
+    notice = submit(CHAPTER, answer)
+    assert isinstance(notice, Notice)
+    assert "This hub does not grade submissions" in notice.sentence
 
 
 def test_an_assignment_that_does_not_exist_is_named() -> None:
@@ -42,32 +44,32 @@ def test_an_assignment_that_does_not_exist_is_named() -> None:
 
 def test_a_folder_without_an_answer_is_named_before_anything_is_sent(answer: Path, tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
-    said = submit(CHAPTER, tmp_path / "empty")
-    assert isinstance(said, Notice)
-    assert said.sentence == "Nothing was handed in."
-    assert said.detail
+    notice = submit(CHAPTER, tmp_path / "empty")
+    assert isinstance(notice, Notice)
+    assert notice.sentence == "Nothing was handed in."
+    assert notice.detail
 
 
 def test_an_answer_that_is_too_large_is_not_sent(answer: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(handing_in, "MAX_ANSWER", 10)
-    said = submit(CHAPTER, answer)
-    assert isinstance(said, Notice)
-    assert "Move large files" in said.detail
+    notice = submit(CHAPTER, answer)
+    assert isinstance(notice, Notice)
+    assert "Move large files" in notice.detail
 
 
-def test_where_no_reply_comes_the_same_answer_keeps_its_key(answer: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_reply_the_same_answer_keeps_its_key(answer: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     keys: list[str] = []
 
-    def note(service: str, token: str, assignment: str, key: str, data: bytes) -> Receipt:
+    def record_key(service: str, token: str, assignment: str, key: str, data: bytes) -> Receipt:
         keys.append(key)
         return hand_in(service, token, assignment, key, data)
 
-    monkeypatch.setattr(handing_in, "hand_in", note)
+    monkeypatch.setattr(handing_in, "hand_in", record_key)
     for _ in range(2):
-        said = submit(CHAPTER, answer)
-        assert isinstance(said, Notice)
-        assert said.sentence == handing_in.UNSURE
-        assert "The service does not answer" in said.detail
+        notice = submit(CHAPTER, answer)
+        assert isinstance(notice, Notice)
+        assert notice.sentence == handing_in.UNSURE
+        assert "The service does not answer" in notice.detail
     (answer / "ws" / "src" / "my_robot_package" / "more.txt").write_text("more")
     submit(CHAPTER, answer)
     assert keys[0] == keys[1] != keys[2]
@@ -84,7 +86,7 @@ def test_equal_files_make_equal_zips_and_keep_their_modes() -> None:
         assert [info.external_attr >> 16 for info in archive.infolist()] == [0o100644, 0o100755]
 
 
-def test_what_is_packed_is_read_as_the_folder_is(answer: Path, tmp_path: Path) -> None:
+def test_a_packed_answer_is_read_like_its_folder(answer: Path, tmp_path: Path) -> None:
     files = read_files(answer, CHAPTER)
     (tmp_path / "answer.zip").write_bytes(packed(files))
     assert sorted(read_files(tmp_path / "answer.zip", CHAPTER), key=str) == sorted(files, key=str)
@@ -100,6 +102,6 @@ def test_a_receipt_says_what_comes_next() -> None:
 
 
 @pytest.mark.parametrize("reply", [b"<html>", b"[]", b'{"number": "x"}', b'{"number": 1, "handed_in": 5}'])
-def test_a_reply_of_something_else_is_no_receipt(reply: bytes) -> None:
+def test_a_reply_of_another_program_is_not_a_receipt(reply: bytes) -> None:
     with pytest.raises(HandInError, match="The reply is not from the grading service"):
         handing_in._receipt(CHAPTER, reply)

@@ -24,10 +24,10 @@ from autograder.suite import Outcome, suites
 pytestmark = pytest.mark.slow
 CHAPTER, PACKAGE = "08_capstone", "robot_navigation_tutorial"
 CHECKS = Path("autograder/checks/ch08_capstone")
-# What counts of a course, a change to which has to be seen: by what it is, its path.
+# Files of the course and the grader that results depend on: what each file is, and its path.
 COURSE = {
     "a visible check": CHECKS / "visible/behaviour.py",
-    "what visible checks share": CHECKS / "support/contract.py",
+    "the support of visible checks": CHECKS / "support/contract.py",
     "a check of another chapter that they import": Path("autograder/checks/ch02_nodes/support/scans.py"),
     "the grader's version": Path("autograder/suite/fingerprint.py"),
     "the harness": Path("autograder/harness/stepped.py"),
@@ -48,7 +48,7 @@ ANSWER = {
 
 
 class Machine:
-    """A copy of the course with a workspace, in which the runs of a worker are counted."""
+    """A copy of the course with a workspace, which records the runs of workers."""
 
     def __init__(self, root: Path) -> None:
         self.root, self.workspace = root, root / "chapters" / CHAPTER / "ws"
@@ -60,10 +60,10 @@ class Machine:
         return self.root / "chapters" / CHAPTER / f"{CHAPTER}.ipynb"
 
     def change_cell(self, **fields: object) -> None:
-        found = json.loads(self.notebook.read_text())
-        code = next(cell for cell in found["cells"] if cell["cell_type"] == "code")
+        content = json.loads(self.notebook.read_text())
+        code = next(cell for cell in content["cells"] if cell["cell_type"] == "code")
         code.update(fields)
-        self.notebook.write_text(json.dumps(found))
+        self.notebook.write_text(json.dumps(content))
 
     @contextmanager
     def run(self, verb: str, workspace: Path, **arguments: Any) -> Iterator[tuple[dict[str, Any], Path]]:
@@ -86,7 +86,7 @@ class Machine:
         return run_part(part_of(CHAPTER, None, step, None), self.workspace, fresh=fresh)
 
     def has_run(self, step: int | None = None) -> bool:
-        """Check, and return whether a worker ran. The report says so."""
+        """Check, and return whether a worker ran. The report must say the same."""
         before = len(self.runs)
         report = self.check(step)
         assert report.passed
@@ -96,7 +96,7 @@ class Machine:
 
 @pytest.fixture(scope="module")
 def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the course and of the grader. Each test keeps its results elsewhere, and leaves the copy in order."""
+    """A copy of the course and of the grader. Each test keeps its results elsewhere, and leaves the copy usable."""
     root = tmp_path_factory.mktemp("course")
     for name in ("autograder", "sim", "assets/worlds", f"chapters/{CHAPTER}"):
         shutil.copytree(course_paths.ROOT / name, root / name, ignore=course_paths.NOT_COPIED)
@@ -119,7 +119,7 @@ def machine(copied: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Ma
     return copy
 
 
-def test_a_change_of_any_file_lets_the_checks_run_again_and_only_then(machine: Machine) -> None:
+def test_checks_run_again_only_after_a_change_of_a_file(machine: Machine) -> None:
     paths = {name: machine.root / path for name, path in COURSE.items()}
     paths |= {name: machine.workspace / "src" / path for name, path in ANSWER.items()}
     assert machine.has_run()
@@ -130,7 +130,7 @@ def test_a_change_of_any_file_lets_the_checks_run_again_and_only_then(machine: M
     assert not machine.has_run()
 
 
-def test_a_file_that_comes_goes_or_becomes_a_program_lets_them_run_again(machine: Machine) -> None:
+def test_checks_run_again_after_a_file_is_added_removed_or_made_executable(machine: Machine) -> None:
     package = machine.workspace / "src" / PACKAGE
     assert machine.has_run()
     (package / "launch/more.launch.py").touch()
@@ -145,7 +145,7 @@ def test_a_file_that_comes_goes_or_becomes_a_program_lets_them_run_again(machine
     assert not machine.has_run()
 
 
-def test_a_cell_lets_them_run_again_and_what_it_has_shown_does_not(machine: Machine) -> None:
+def test_checks_run_again_after_a_changed_cell_but_not_after_changed_outputs(machine: Machine) -> None:
     assert machine.has_run()
     machine.change_cell(source="print('another one')")
     assert machine.has_run()
@@ -158,7 +158,7 @@ def test_a_cell_lets_them_run_again_and_what_it_has_shown_does_not(machine: Mach
     assert machine.has_run()
 
 
-def test_another_environment_lets_them_run_again(
+def test_checks_run_again_in_another_environment(
     machine: Machine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     installed = tmp_path / "site-packages"
@@ -183,13 +183,13 @@ def test_each_exercise_and_the_chapter_have_a_result_of_their_own(machine: Machi
 
 
 @pytest.mark.promise("With `fresh=True` it runs the checks anyway.")
-def test_they_run_again_if_one_asks_for_it(machine: Machine) -> None:
+def test_checks_run_again_on_request(machine: Machine) -> None:
     assert machine.has_run()
     assert not machine.check(fresh=True).since
     assert len(machine.runs) == 2
 
 
-def test_a_result_is_not_kept_if_a_file_was_written_meanwhile_even_to_what_it_was(machine: Machine) -> None:
+def test_a_result_is_not_kept_if_a_file_was_written_during_the_run_even_with_the_same_text(machine: Machine) -> None:
     path = machine.workspace / "src" / PACKAGE / "setup.py"
     text = path.read_text()
 
@@ -204,7 +204,7 @@ def test_a_result_is_not_kept_if_a_file_was_written_meanwhile_even_to_what_it_wa
     assert not machine.has_run()
 
 
-def test_what_a_link_leads_to_may_change_so_nothing_is_kept(machine: Machine, tmp_path: Path) -> None:
+def test_no_result_is_kept_for_a_workspace_with_a_link(machine: Machine, tmp_path: Path) -> None:
     (tmp_path / "elsewhere.py").touch()
     link = machine.workspace / "src" / PACKAGE / "linked.py"
     link.symlink_to(tmp_path / "elsewhere.py")
@@ -214,7 +214,7 @@ def test_what_a_link_leads_to_may_change_so_nothing_is_kept(machine: Machine, tm
 
 
 @pytest.mark.parametrize("text", ["", "[]", '{"": 1}', '{"": {"digest": "a"}}'])
-def test_a_kept_file_that_is_damaged_counts_as_none(text: str, machine: Machine, tmp_path: Path) -> None:
+def test_a_damaged_kept_result_is_ignored(text: str, machine: Machine, tmp_path: Path) -> None:
     assert machine.has_run()
     (kept,) = (tmp_path / "cache").rglob("*.json")
     kept.write_text(text)

@@ -1,4 +1,4 @@
-"""What a function of the notebook lets a drive publish, step by step."""
+"""Messages that a notebook's function publishes during a drive, step by step."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def test_messages_arrive_at_their_steps_as_they_were(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("returned", "said"),
+    ("returned", "message"),
     [
         ("fast", r"at 0.1 s, each_step returned 'fast': return messages by topic, such as {'/mode': String\(\)}"),
         ({"/mode": "fast"}, r"each_step returned 'fast' for /mode: return a message, such as String\(data='fast'\)"),
@@ -32,8 +32,8 @@ def test_messages_arrive_at_their_steps_as_they_were(tmp_path: Path) -> None:
         ({"a b": String()}, "each_step names the topic '/a b', which is not a valid topic name"),
     ],
 )
-def test_what_cannot_be_published_is_named(tmp_path: Path, returned: Any, said: str) -> None:
-    with pytest.raises(UsageError, match=said):
+def test_a_value_that_cannot_be_published_is_named(tmp_path: Path, returned: Any, message: str) -> None:
+    with pytest.raises(UsageError, match=message):
         planned(lambda t: returned, 1.0, tmp_path)
 
 

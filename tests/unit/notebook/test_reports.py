@@ -31,7 +31,7 @@ LINES = (
 )
 
 
-def test_trouble_is_shown_unless_a_part_of_the_chapter_passed_in_spite_of_it() -> None:
+def test_a_notice_of_trouble_is_shown_unless_the_requested_part_passed() -> None:
     trouble = Notice("There is no package lab.")
 
     def shown(lines: tuple[CheckResult, ...], part: str) -> set[bool]:
@@ -139,4 +139,4 @@ def test_a_report_lists_the_hidden_checks_if_all_visible_checks_passed() -> None
 
 def test_a_report_lists_no_hidden_checks_if_a_visible_check_failed() -> None:
     report = CheckReport("02_nodes", LINES, later=LATER)
-    assert "hand in" not in repr(report) + report._repr_html_()
+    assert "After you submit" not in repr(report) + report._repr_html_()

@@ -20,7 +20,7 @@ ROOM = World.from_segments(
 
 
 @pytest.fixture(autouse=True)
-def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def _separate_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
@@ -29,7 +29,7 @@ def drive(speed: float, world: World = ROOM) -> DriveReport:
     return DriveReport(run(simulation, lambda state, scans: Command(linear=speed), 10.0), "", ())
 
 
-def test_the_first_instant_in_the_goal_counts_and_the_way_until_then() -> None:
+def test_the_first_arrival_at_the_goal_and_the_distance_until_then_count() -> None:
     fast = score_of(drive(0.5).recording, "fast")  # 2.5 m to the circle; it ends at the wall, which no longer counts
     assert fast.arrived == pytest.approx(2.5 / 0.5, abs=0.6)  # it speeds up first
     assert (fast.left, fast.metres) == (0.0, pytest.approx(2.5, abs=0.06))

@@ -43,20 +43,22 @@ def test_a_simulation_has_no_track_before_its_end() -> None:
 @pytest.mark.slow
 def test_each_robots_run_is_recorded_with_its_events(capsys: pytest.CaptureFixture[str]) -> None:
     context = Context()
-    heard: list[Any] = []
+    odometry: list[Any] = []
     rclpy.init(context=context)
     node = Node("driver", context=context)
-    node.create_subscription(Odometry, "right/odom", heard.append, 10)
+    node.create_subscription(Odometry, "right/odom", odometry.append, 10)
     forward = node.create_publisher(Twist, "right/cmd_vel", 10)
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
     deadline = time.monotonic() + 60.0
     with simulator("lab", speed=4.0, robots=["left", "right"]) as robots:
-        while not (heard and heard[-1].twist.twist.linear.x > 0.1) and time.monotonic() < deadline:
+        while not (odometry and odometry[-1].twist.twist.linear.x > 0.1) and time.monotonic() < deadline:
             forward.publish(Twist(linear=Vector3(x=0.2)))
             executor.spin_once(timeout_sec=0.02)
-        stopped = len(heard)
-        while not (len(heard) > stopped and heard[-1].twist.twist.linear.x == 0.0) and time.monotonic() < deadline:
+        stopped = len(odometry)
+        while (
+            not (len(odometry) > stopped and odometry[-1].twist.twist.linear.x == 0.0) and time.monotonic() < deadline
+        ):
             executor.spin_once(timeout_sec=0.1)
     node.destroy_node()
     rclpy.try_shutdown(context=context)
@@ -67,9 +69,9 @@ def test_each_robots_run_is_recorded_with_its_events(capsys: pytest.CaptureFixtu
     assert [(event.robot, event.kind) for event in robots.recording.events] == [("right", "watchdog")]
     assert all(len(log.rows) for log in robots.recording.scans)
     assert "the lab" in repr(robots.track)
-    said = capsys.readouterr().out
-    assert "world 'the lab', 2 robot(s), speed 4" in said
-    assert said.count("right had no new command for 0.5 s and stops") == 1
+    output = capsys.readouterr().out
+    assert "world 'the lab', 2 robot(s), speed 4" in output
+    assert output.count("right had no new command for 0.5 s and stops") == 1
 
 
 def test_invalid_settings_are_reported_in_the_cell(capsys: pytest.CaptureFixture[str]) -> None:
@@ -78,6 +80,6 @@ def test_invalid_settings_are_reported_in_the_cell(capsys: pytest.CaptureFixture
     ) as robots:
         pass
     assert isinstance(robots.track, Notice)
-    said = capsys.readouterr().out
-    assert "9 robots, but the world 'empty room' has" in said
-    assert "[exit status 1]" in said
+    output = capsys.readouterr().out
+    assert "9 robots, but the world 'empty room' has" in output
+    assert "[exit status 1]" in output

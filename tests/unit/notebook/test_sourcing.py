@@ -58,15 +58,15 @@ def test_no_workspace_is_sourced_while_the_notebook_is_graded(monkeypatch: pytes
 def test_interfaces_built_beside_a_kernel_can_be_imported_and_sent_and_old_ones_are_reported(tmp_path: Path) -> None:
     prefix = tmp_path / "install" / "course_words"
     prefix.parent.mkdir()
-    # As colcon lays it out: the generated libraries are in lib, which no loader of a running process knows.
-    made = build("course_words", {"msg/Word.msg": "string text\n"})
+    # The layout of colcon: the generated libraries are in lib, where a running process does not look for them.
+    built = build("course_words", {"msg/Word.msg": "string text\n"})
     (prefix / "share/course_words/msg").mkdir(parents=True)
     (prefix / "share/course_words/msg/Word.msg").write_text("string text\n")
-    (prefix / "lib").symlink_to(made / "lib")
-    ran = subprocess.run(
+    (prefix / "lib").symlink_to(built / "lib")
+    completed = subprocess.run(
         [sys.executable, "-c", KERNEL, str(tmp_path)], capture_output=True, text=True, env=os.environ, timeout=120
     )
-    assert ran.returncode == 0, ran.stderr
-    first, second, third = (line for line in ran.stdout.splitlines() if "kernel" in line)
+    assert completed.returncode == 0, completed.stderr
+    first, second, third = (line for line in completed.stdout.splitlines() if "kernel" in line)
     assert first == second == "This kernel can use course_words."
     assert third.startswith("This kernel still uses the old course_words: choose Kernel, Restart")

@@ -1,4 +1,4 @@
-"""Commands in a notebook: their output, their end, and the end of the programs that they started."""
+"""Commands in a notebook: their output, how they end, and how the programs that they started end."""
 
 from __future__ import annotations
 
@@ -61,9 +61,9 @@ def test_a_build_of_unwritten_files_is_not_run(ws: Path, capsys: pytest.CaptureF
     (ws / "src" / "mine" / "setup.py").write_text(f"raise NotImplementedError('{STILL_TO_BE_WRITTEN}')\n")
     for command in ("colcon build", "X=1 colcon --log-level error build --packages-select given mine | tail -n 1"):
         shell(f"true && {command}", workspace=ws)
-        said = capsys.readouterr().out
+        output = capsys.readouterr().out
         assert (
-            said
+            output
             == "src/mine/setup.py is still to be written: replace the line raise NotImplementedError(...) with yours.\n"
         )
     for command in ("echo colcon build --packages-select given", "echo colcon test"):

@@ -28,10 +28,10 @@ def test_a_stub_of_releases_contains_the_text_that_writefile_looks_for() -> None
 
 @pytest.fixture(scope="module")
 def shell() -> InteractiveShell:
-    made = start_ipython() or InteractiveShell.instance()
-    register(made)
-    register(made)
-    return made
+    interpreter = start_ipython() or InteractiveShell.instance()
+    register(interpreter)
+    register(interpreter)
+    return interpreter
 
 
 @pytest.fixture
@@ -50,7 +50,7 @@ def run(
 
 
 @pytest.mark.parametrize(
-    ("cell", "on_disk", "written", "said"),
+    ("cell", "on_disk", "written", "notice"),
     [
         (UNSOLVED, None, None, "Writing"),
         (UNSOLVED, UNSOLVED, None, "Overwriting"),
@@ -67,16 +67,16 @@ def run(
     ],
 )
 def test_a_file_is_written_kept_or_copied_first(
-    run: Run, cell: str, on_disk: str | None, written: str | None, said: str
+    run: Run, cell: str, on_disk: str | None, written: str | None, notice: str
 ) -> None:
     if written is not None:
         run(written)
     if on_disk is not None:
         Path(FILE).write_text(on_disk)
-    told = run(cell)
-    assert said in told
-    assert ("was kept" in told, "was changed" in told) == ("was kept" in said, "was changed" in said)
-    assert Path(FILE).read_text() == (on_disk if "was kept" in said else cell)
+    output = run(cell)
+    assert notice in output
+    assert ("was kept" in output, "was changed" in output) == ("was kept" in notice, "was changed" in notice)
+    assert Path(FILE).read_text() == (on_disk if "was kept" in notice else cell)
 
 
 @pytest.mark.promise("It writes a file of a real ROS package into `ws/src`, beside the notebook.")
@@ -98,9 +98,9 @@ def test_a_changed_file_is_copied_before_a_cell_replaces_it(run: Run) -> None:
     run(SOLVED)
     for number, text in enumerate((OTHER, OTHER + "# more\n"), 1):
         Path(FILE).write_text(text)
-        said = run(SOLVED)
+        output = run(SOLVED)
         copy = Path("ws", REPLACED, "src/pkg", f"node.py.{number}")
-        assert f"Its old text was copied to {copy}." in said
+        assert f"Its old text was copied to {copy}." in output
         assert copy.read_text() == text
     assert Path(FILE).read_text() == SOLVED
     assert Path("ws", REPLACED, "COLCON_IGNORE").is_file()

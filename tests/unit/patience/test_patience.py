@@ -1,4 +1,4 @@
-"""How long a submission may keep the grader waiting, in all."""
+"""The total time that a submission may keep the grader waiting."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from autograder.run.sandbox.launcher import launch
 
 @pytest.fixture(autouse=True)
 def account(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Give each test an account of its own, and none to those that follow."""
+    """Restore the account of waiting time after each test."""
     for name in ("deadline", "total", "held"):
         monkeypatch.setattr(patience._Account, name, getattr(patience._Account, name))
 

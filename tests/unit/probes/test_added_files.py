@@ -1,4 +1,4 @@
-"""Files that are added to a copy of a student's package meet what the student has put in their place."""
+"""Files added to a copy of a student's package can conflict with the student's own files."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from autograder.ros import activate
 
 
 @pytest.mark.parametrize(
-    ("mine", "added"), [("test/__init__.py/a", "test/__init__.py"), ("wheels/new", "wheels/new/a.py")]
+    ("existing", "added"), [("test/__init__.py/a", "test/__init__.py"), ("wheels/new", "wheels/new/a.py")]
 )
 def test_a_folder_in_a_file_s_place_and_a_file_in_a_folder_s_are_the_student_s_fault(
-    mine: str, added: str, tmp_path: Path
+    existing: str, added: str, tmp_path: Path
 ) -> None:
     package = tmp_path / "ws" / "src" / "wheels"
-    (package / mine).parent.mkdir(parents=True)
-    (package / mine).write_text("")
+    (package / existing).parent.mkdir(parents=True)
+    (package / existing).write_text("")
     (package / "package.xml").write_text("<package><name>wheels</name></package>")
     workspace = Workspace(tmp_path / "ws", activate(), tmp_path)
     with pytest.raises(StudentError, match=f"wheels/{added} cannot be read: .* A file of that name was to be added"):

@@ -25,7 +25,7 @@ FILES = {
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
-    """A package that imports some things."""
+    """A package with imports of several kinds."""
     for name, text in FILES.items():
         path = tmp_path / "lamp" / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -33,8 +33,8 @@ def package(tmp_path: Path) -> Path:
     return tmp_path / "lamp"
 
 
-def _names(found: tuple[imports.Import, ...]) -> list[str]:
-    return [each.module for each in found]
+def _names(found_imports: tuple[imports.Import, ...]) -> list[str]:
+    return [each.module for each in found_imports]
 
 
 def test_only_imports_from_outside_the_package_count(package: Path) -> None:
@@ -46,7 +46,7 @@ def test_a_folder_called_launch_is_not_the_module_launch(package: Path) -> None:
     assert _names(imports.imported(package, without=("launch", "test"))) == ["numpy", "rclpy", "yaml"]
 
 
-def test_an_import_has_its_place_and_the_dependency_that_declares_it(package: Path) -> None:
+def test_an_import_has_its_files_and_the_dependency_that_declares_it(package: Path) -> None:
     numpy = imports.imported(package)[1]
     assert numpy.files == ("lamp/nodes/lamp_node.py", "test/test_lamp.py")
     assert numpy.keys[0] == "python3-numpy"
@@ -64,17 +64,17 @@ def test_a_module_is_declared_by_its_rosdep_key_or_as_a_ros_package(module: str,
 
 
 def test_the_pip_name_of_a_module_is_not_a_rosdep_key(package: Path) -> None:
-    found = imports.undeclared(imports.imported(package), {"numpy", "rclpy", "launch", "python3-yaml"})
-    assert _names(found) == ["numpy", "pytest"]
+    found_imports = imports.undeclared(imports.imported(package), {"numpy", "rclpy", "launch", "python3-yaml"})
+    assert _names(found_imports) == ["numpy", "pytest"]
 
 
 def test_run_imports_need_a_run_dependency_and_test_imports_a_test_dependency(package: Path) -> None:
     text = """<package format="3"><name>lamp</name><version>0.1.0</version><description>x</description>
       <maintainer email="a@example.com">A</maintainer><license>MIT</license>
       <depend>rclpy</depend><build_depend>launch</build_depend><test_depend>python3-numpy</test_depend></package>"""
-    found = imports.missing(package, manifest.parse(text))
-    assert _names(found["exec"]) == ["launch", "numpy", "yaml"]
-    assert _names(found["test"]) == ["pytest"]
+    found_imports = imports.missing(package, manifest.parse(text))
+    assert _names(found_imports["exec"]) == ["launch", "numpy", "yaml"]
+    assert _names(found_imports["test"]) == ["pytest"]
 
 
 def test_the_reference_packages_declare_what_they_import() -> None:

@@ -44,24 +44,24 @@ def install(tmp_path: Path) -> Path:
 
 
 def test_all_installed_parts_of_a_package_are_listed(install: Path) -> None:
-    found = installed.look(install, "lamp")
-    assert found.executables == ("lamp",)
-    assert found.misplaced == ("stray",)
-    assert found.modules == {"lamp", "lamp.nodes", "lamp.nodes.lamp", "test"}
-    assert found.marker
-    assert found.shared == ("package.xml", "config/lamp.yaml")
-    assert found.recorded == {"share/lamp/package.xml"}
-    assert found.extras == {"test": ("pytest",), "doc": ("sphinx",)}
-    assert found.programs == {"lamp": "lamp.nodes.lamp"}
-    assert found.classifiers == ("A", "B")
-    assert (found.metadata["Version"], found.metadata["License"]) == ("0.1.0", "MIT")
-    assert found.read("config/lamp.yaml") == b"a: 1\n"
+    contents = installed.look(install, "lamp")
+    assert contents.executables == ("lamp",)
+    assert contents.misplaced == ("stray",)
+    assert contents.modules == {"lamp", "lamp.nodes", "lamp.nodes.lamp", "test"}
+    assert contents.marker
+    assert contents.shared == ("package.xml", "config/lamp.yaml")
+    assert contents.recorded == {"share/lamp/package.xml"}
+    assert contents.extras == {"test": ("pytest",), "doc": ("sphinx",)}
+    assert contents.programs == {"lamp": "lamp.nodes.lamp"}
+    assert contents.classifiers == ("A", "B")
+    assert (contents.metadata["Version"], contents.metadata["License"]) == ("0.1.0", "MIT")
+    assert contents.read("config/lamp.yaml") == b"a: 1\n"
 
 
 def test_a_package_that_was_not_installed_has_nothing(tmp_path: Path) -> None:
-    found = installed.look(tmp_path / "install", "lamp")
-    assert (found.executables, found.modules, found.marker, found.shared) == ((), frozenset(), False, ())
-    assert found.read("package.xml") is None
+    contents = installed.look(tmp_path / "install", "lamp")
+    assert (contents.executables, contents.modules, contents.marker, contents.shared) == ((), frozenset(), False, ())
+    assert contents.read("package.xml") is None
 
 
 def test_a_record_behind_a_link_is_not_read(install: Path, tmp_path: Path) -> None:
@@ -83,11 +83,11 @@ def test_links_are_neither_listed_nor_read(install: Path, tmp_path: Path) -> Non
     (share / "config/link.yaml").symlink_to(secret / "key.yaml")
     (share / "folder").symlink_to(secret)
     (install / "lamp/lib/lamp/link").symlink_to("/bin/sh")
-    found = installed.look(install, "lamp")
-    assert found.shared == ("package.xml", "config/lamp.yaml")
-    assert found.executables == ("lamp",)
-    assert found.read("config/link.yaml") is None
-    assert found.read("folder/key.yaml") is None
+    contents = installed.look(install, "lamp")
+    assert contents.shared == ("package.xml", "config/lamp.yaml")
+    assert contents.executables == ("lamp",)
+    assert contents.read("config/link.yaml") is None
+    assert contents.read("folder/key.yaml") is None
 
 
 def test_a_file_too_large_is_not_read(install: Path) -> None:

@@ -1,4 +1,4 @@
-"""Definitions against a contract: what is wrong is named, near misses are told apart, and nothing else is said."""
+"""Definitions are compared with a contract: each difference is reported once, and near misses are recognised."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PATH = "srv/Fetch.srv"
 REQUEST = "float64 MOST = 5.0\nfloat64[<=8] legs\nint32 reserve 20\n"
 RESPONSE = "bool possible\nstring<=80 reason\n"
 TEXT = f"{REQUEST}---\n{RESPONSE}"
-WANTED = Interface(
+EXPECTED = Interface(
     PATH,
     (
         Part((Field("float64[<=8]", "legs"), Field("int32", "reserve", 20)), (Constant("float64", "MOST", 5.0),)),
@@ -31,13 +31,13 @@ WANTED = Interface(
 )
 
 
-def said(text: str) -> list[tuple[Aspect, str]]:
+def differences_of(text: str) -> list[tuple[Aspect, str]]:
     """Return the differences between a text and the contract."""
-    return [(found.aspect, found.sentence) for found in compare(WANTED, parse("pkg", PATH, text))]
+    return [(difference.aspect, difference.sentence) for difference in compare(EXPECTED, parse("pkg", PATH, text))]
 
 
 def test_a_text_is_read_with_types_defaults_bounds_and_constants() -> None:
-    assert parse("pkg", PATH, TEXT) == WANTED
+    assert parse("pkg", PATH, TEXT) == EXPECTED
 
 
 def test_messages_of_the_own_package_and_texts_are_read_as_they_are_written() -> None:
@@ -52,7 +52,7 @@ def test_an_action_has_three_parts() -> None:
 
 
 def test_comments_more_constants_and_empty_defaults_do_not_count_as_differences() -> None:
-    assert said(f"# hello\nint8 OWN = 1\n{REQUEST}---\nbool possible false\nstring<=80 reason  # why\n") == []
+    assert differences_of(f"# hello\nint8 OWN = 1\n{REQUEST}---\nbool possible false\nstring<=80 reason  # why\n") == []
 
 
 @pytest.mark.parametrize(
@@ -88,32 +88,32 @@ def test_comments_more_constants_and_empty_defaults_do_not_count_as_differences(
 def test_each_difference_of_a_definition_is_reported_in_one_sentence(
     old: str, new: str, aspect: Aspect, sentence: str
 ) -> None:
-    assert said(TEXT.replace(old, new)) == [(aspect, f"{PATH}, {sentence}")]
+    assert differences_of(TEXT.replace(old, new)) == [(aspect, f"{PATH}, {sentence}")]
 
 
 def test_another_order_is_named_once() -> None:
     text = f"{REQUEST}---\nstring<=80 reason\nbool possible\n"
     order = f"{PATH}, response: the order of the fields is reason, possible, it should be possible, reason."
-    assert said(text) == [(Aspect.FIELDS, order)]
+    assert differences_of(text) == [(Aspect.FIELDS, order)]
 
 
 def test_a_field_or_constant_in_the_wrong_part_is_named_once() -> None:
     field = f"{REQUEST}bool possible\n---\nstring<=80 reason\n"
-    assert said(field) == [(Aspect.FIELDS, f"{PATH}, response: possible is in the request, it belongs here.")]
+    assert differences_of(field) == [(Aspect.FIELDS, f"{PATH}, response: possible is in the request, it belongs here.")]
     constant = "float64[<=8] legs\nint32 reserve 20\n---\nfloat64 MOST = 5.0\n" + RESPONSE
     sentence = f"{PATH}, request: the constant MOST is in the response, it belongs here."
-    assert said(constant) == [(Aspect.CONSTANTS, sentence)]
+    assert differences_of(constant) == [(Aspect.CONSTANTS, sentence)]
 
 
-def test_the_share_that_is_right_counts_fields_and_constants() -> None:
-    assert share(WANTED, ()) == 1.0
-    wrong = compare(WANTED, parse("pkg", PATH, TEXT.replace("legs", "leg")))
-    assert share(WANTED, wrong) == pytest.approx(0.8)
-    assert share(WANTED, wrong * 9) == 0.0
+def test_the_correct_share_counts_fields_and_constants() -> None:
+    assert share(EXPECTED, ()) == 1.0
+    wrong = compare(EXPECTED, parse("pkg", PATH, TEXT.replace("legs", "leg")))
+    assert share(EXPECTED, wrong) == pytest.approx(0.8)
+    assert share(EXPECTED, wrong * 9) == 0.0
 
 
 @pytest.mark.parametrize(
-    ("text", "why"),
+    ("text", "reason"),
     [
         (REQUEST, "one line --- parts the request from the response"),
         (f"float legs\n---\n{RESPONSE}", "'float' is an invalid message name"),
@@ -124,11 +124,11 @@ def test_the_share_that_is_right_counts_fields_and_constants() -> None:
         ("#" * (MAX_BYTES + 1), "far larger than a definition"),
     ],
 )
-def test_a_definition_that_the_build_would_reject_is_rejected_with_the_reason(text: str, why: str) -> None:
+def test_a_definition_that_the_build_would_reject_is_rejected_with_the_reason(text: str, reason: str) -> None:
     with pytest.raises(Unreadable) as caught:
         parse("pkg", PATH, text)
     assert PATH in str(caught.value)
-    assert why in str(caught.value)
+    assert reason in str(caught.value)
 
 
 def test_an_action_without_its_parts_is_refused() -> None:

@@ -132,7 +132,7 @@ def test_the_failure_names_the_process_that_died_and_the_cause() -> None:
 
 
 @pytest.mark.parametrize(
-    ("output", "what"),
+    ("output", "cause"),
     [
         (CAUGHT + "executable 'a' not found on the libexec directory '/w' \n", "executable 'a' not found on the"),
         (
@@ -144,10 +144,10 @@ def test_the_failure_names_the_process_that_died_and_the_cause() -> None:
         ("", ""),
     ],
 )
-def test_the_failure_is_the_error_that_ended_the_launch(output: str, what: str) -> None:
-    found = launch_probe.failure(output)
-    assert what in found
-    assert bool(found) is bool(what)
+def test_the_failure_is_the_error_that_ended_the_launch(output: str, cause: str) -> None:
+    failure = launch_probe.failure(output)
+    assert cause in failure
+    assert bool(failure) is bool(cause)
 
 
 def test_an_unwritten_part_is_reported_as_unwritten() -> None:

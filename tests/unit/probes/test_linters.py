@@ -1,4 +1,4 @@
-"""Linters check a package, whatever the student's tests with the names of linters do."""
+"""Linters check a package, whatever the student's tests named after linters do."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ pytestmark = pytest.mark.slow  # each run is a pytest of its own
 TIDY = '"""Halves."""\n\n\ndef half(x):\n    """Return a half of x."""\n    return x / 2\n'
 SILENT = "def test_flake8():\n    pass\n\n\ndef test_pep257():\n    pass\n"
 TESTS = ("test_flake8::test_flake8", "test_pep257::test_pep257")
-EMPTIES = (
+EMPTYING_CONFTEST = (
     '"""Lets no test run."""\n\n\ndef pytest_collection_modifyitems(items):\n    """Run none."""\n    items.clear()\n'
 )
 
 
 @pytest.fixture
 def workspace(tmp_path: Path) -> Workspace:
-    """A workspace with a package `half`, whose own tests of the style say nothing."""
+    """A workspace with a package `half`, whose own style tests check nothing."""
     folder = tmp_path / "ws/src/half"
     for path, text in {
         "package.xml": "<package/>",
         "half.py": TIDY,
         "test/test_flake8.py": SILENT,
         "test/test_pep257.py": SILENT,
-        "test/conftest.py": EMPTIES,
+        "test/conftest.py": EMPTYING_CONFTEST,
     }.items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_text(text)
@@ -49,9 +49,9 @@ def test_each_linter_names_its_first_finding_even_if_the_students_tests_report_n
 ) -> None:
     untidy = TIDY.replace("half of x.", "half of x").replace("x / 2", "x/ 2")
     (workspace.root / "src/half/half.py").write_text(untidy)
-    said = objections(workspace, take(workspace, "half"))
-    assert said["test_flake8"] == "half.py:6:13: E225 missing whitespace around operator"
-    assert said["test_pep257"].startswith("half.py:5 in public function `half`: D400: ")
+    findings = objections(workspace, take(workspace, "half"))
+    assert findings["test_flake8"] == "half.py:6:13: E225 missing whitespace around operator"
+    assert findings["test_pep257"].startswith("half.py:5 in public function `half`: D400: ")
     with pytest.raises(
         CheckFailed, match=r"test_flake8 passes, but its linter finds .*: half\.py:6:13: E225"
     ) as caught:
@@ -72,10 +72,10 @@ def test_the_tests_of_ros2_pkg_create_find_an_inserted_fault_and_empty_tests_do_
 
 
 def test_the_linters_ignore_a_conftest_and_check_it_like_any_other_file(workspace: Workspace) -> None:
-    (workspace.root / "src/half/test/conftest.py").write_text(EMPTIES.replace("Run none.", "Run none"))
-    said = objections(workspace, take(workspace, "half"))
-    assert list(said) == ["test_pep257"]
-    assert said["test_pep257"].startswith("test/conftest.py:")
+    (workspace.root / "src/half/test/conftest.py").write_text(EMPTYING_CONFTEST.replace("Run none.", "Run none"))
+    findings = objections(workspace, take(workspace, "half"))
+    assert list(findings) == ["test_pep257"]
+    assert findings["test_pep257"].startswith("test/conftest.py:")
 
 
 UNUSED = TIDY.replace("\n\n\ndef", "\n\nimport os{}\n\n\ndef")

@@ -1,4 +1,4 @@
-"""package.xml is read as ROS reads it, and what ROS refuses is refused in words."""
+"""package.xml is read as ROS reads it, and refused with a reason if ROS refuses it."""
 
 from __future__ import annotations
 
@@ -30,21 +30,21 @@ TEXT = """<package format="3">
 
 
 def test_a_manifest_is_read_with_name_and_dependencies() -> None:
-    found = manifest.parse(TEXT)
-    assert (found.name, found.version, found.description, found.format) == ("lamp", "0.1.0", "A lamp", 3)
-    assert found.licences == ("MIT", "Apache-2.0")
-    assert found.maintainers == (("A", "a@example.com"),)
-    assert found.build_type == "ament_python"
-    assert found.groups == {"rosidl_interface_packages"}
+    parsed = manifest.parse(TEXT)
+    assert (parsed.name, parsed.version, parsed.description, parsed.format) == ("lamp", "0.1.0", "A lamp", 3)
+    assert parsed.licences == ("MIT", "Apache-2.0")
+    assert parsed.maintainers == (("A", "a@example.com"),)
+    assert parsed.build_type == "ament_python"
+    assert parsed.groups == {"rosidl_interface_packages"}
 
 
 def test_a_plain_depend_is_for_the_build_and_for_the_run() -> None:
-    found = manifest.parse(TEXT)
-    assert found.needs("exec") == {"rclpy", "launch"}
-    assert found.needs("build") == {"rclpy", "eigen"}
-    assert found.needs("test") == {"python3-pytest"}
-    assert found.needs("exec", "test") == {"rclpy", "launch", "python3-pytest"}
-    assert found.needs() == {"rclpy", "launch", "python3-pytest", "eigen", "ament_cmake"}
+    parsed = manifest.parse(TEXT)
+    assert parsed.needs("exec") == {"rclpy", "launch"}
+    assert parsed.needs("build") == {"rclpy", "eigen"}
+    assert parsed.needs("test") == {"python3-pytest"}
+    assert parsed.needs("exec", "test") == {"rclpy", "launch", "python3-pytest"}
+    assert parsed.needs() == {"rclpy", "launch", "python3-pytest", "eigen", "ament_cmake"}
 
 
 def test_a_dependency_counts_if_its_condition_holds_in_jazzy() -> None:
@@ -54,21 +54,21 @@ def test_a_dependency_counts_if_its_condition_holds_in_jazzy() -> None:
 
 
 def test_a_build_type_and_a_group_count_if_their_conditions_hold_in_jazzy() -> None:
-    there = "<build_type>ament_python</build_type>"
+    own_type = "<build_type>ament_python</build_type>"
     other = '<build_type condition="$ROS_VERSION == 1">catkin</build_type>'
-    assert manifest.parse(TEXT.replace(there, other + there)).build_type == "ament_python"
+    assert manifest.parse(TEXT.replace(own_type, other + own_type)).build_type == "ament_python"
     member = '<member_of_group condition="$ROS_VERSION == {}">lamps</member_of_group>'
     text = TEXT.replace("<export>", f"{member}<export>")
     assert "lamps" in manifest.parse(text.format(2)).groups
     assert "lamps" not in manifest.parse(text.format(1)).groups
 
 
-def test_a_manifest_without_a_build_type_says_so() -> None:
+def test_a_manifest_without_a_build_type_has_an_empty_one() -> None:
     assert manifest.parse(TEXT.replace("<build_type>ament_python</build_type>", "")).build_type == ""
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "words"),
+    ("before", "after", "message"),
     [
         ("a@example.com", "a@b", 'Invalid email "a@b"'),
         ("<name>lamp</name>", "", 'exactly one "name" tag'),
@@ -81,25 +81,25 @@ def test_a_manifest_without_a_build_type_says_so() -> None:
         ('<package format="3">', '<!DOCTYPE a [<!ENTITY b "c">]><package format="3">', "which no manifest needs"),
     ],
 )
-def test_a_manifest_that_ros_refuses_is_refused_with_the_reason(before: str, after: str, words: str) -> None:
-    with pytest.raises(CheckFailed, match=words):
+def test_a_manifest_that_ros_refuses_is_refused_with_the_reason(before: str, after: str, message: str) -> None:
+    with pytest.raises(CheckFailed, match=message):
         manifest.parse(TEXT.replace(before, after), "lamp/package.xml")
 
 
 @pytest.mark.parametrize(
-    ("data", "words"),
+    ("data", "message"),
     [
         (None, "lamp has no package.xml"),
         (b"<package>" + b" " * manifest.MAX_MANIFEST, "far larger than a manifest"),
         (b"\xff\xfe<package/>", "not UTF-8"),
     ],
 )
-def test_a_file_that_is_not_a_manifest_is_named(tmp_path: Path, data: bytes | None, words: str) -> None:
+def test_a_file_that_is_not_a_manifest_is_named(tmp_path: Path, data: bytes | None, message: str) -> None:
     folder = tmp_path / "lamp"
     folder.mkdir()
     if data is not None:
         (folder / "package.xml").write_bytes(data)
-    with pytest.raises(CheckFailed, match=words):
+    with pytest.raises(CheckFailed, match=message):
         manifest.read(folder)
 
 
@@ -123,11 +123,11 @@ def test_a_manifest_is_read_even_if_ros_rejects_it(tmp_path: Path) -> None:
     (tmp_path / "package.xml").write_text(REFUSED)
     with pytest.raises(CheckFailed, match="ROS refuses"):
         manifest.read(tmp_path)
-    found = manifest.read_leniently(tmp_path)
-    assert (found.name, found.format, found.build_type) == ("dance", 3, "ament_python")
-    assert (found.description, found.licences) == ("Two lines", ("Apache-2.0",))
-    assert found.needs("exec") == {"rclpy", "launch"}
-    assert found.needs("test") == {"python3-pytest"}
+    parsed = manifest.read_leniently(tmp_path)
+    assert (parsed.name, parsed.format, parsed.build_type) == ("dance", 3, "ament_python")
+    assert (parsed.description, parsed.licences) == ("Two lines", ("Apache-2.0",))
+    assert parsed.needs("exec") == {"rclpy", "launch"}
+    assert parsed.needs("test") == {"python3-pytest"}
 
 
 def test_a_manifest_that_ros_accepts_is_read_alike_leniently_and_strictly(tmp_path: Path) -> None:
@@ -136,10 +136,10 @@ def test_a_manifest_that_ros_accepts_is_read_alike_leniently_and_strictly(tmp_pa
 
 
 @pytest.mark.parametrize(
-    ("text", "words"),
+    ("text", "message"),
     [("<package", "not well-formed XML"), (f"<!DOCTYPE p>{REFUSED}", "DOCTYPE"), (CODE_STUB, "still to be written")],
 )
-def test_a_file_that_is_not_a_manifest_is_also_rejected_leniently(tmp_path: Path, text: str, words: str) -> None:
+def test_a_file_that_is_not_a_manifest_is_also_rejected_leniently(tmp_path: Path, text: str, message: str) -> None:
     (tmp_path / "package.xml").write_text(text)
-    with pytest.raises(CheckFailed, match=words):
+    with pytest.raises(CheckFailed, match=message):
         manifest.read_leniently(tmp_path)

@@ -1,4 +1,4 @@
-"""Messages that come one by one are told from as many that come in pairs, in lockstep and in real time."""
+"""Evenly spaced messages are distinguished from as many that come in pairs, in lockstep and in real time."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_messages_with_the_right_pauses_are_paced(time: str) -> None:
         *("a tenth longer", "a tenth shorter", "a tenth longer, unevenly"),
     ],
 )
-def test_messages_with_other_pauses_are_not_paced_in_whichever_time(pauses: Sequence[float], time: str) -> None:
+def test_messages_with_other_pauses_are_not_paced_in_either_time(pauses: Sequence[float], time: str) -> None:
     assert not is_paced(_after(pauses), PERIOD, time)
 
 
@@ -66,7 +66,7 @@ def test_fewer_than_two_messages_have_no_pace(count: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("messages", "words"),
+    ("messages", "description"),
     [
         (_after([0.2] * 20), "every 0.20 s"),
         (_after([0.0, 0.2] * 20), "every 0.10 s in the mean, with pauses of 0.00 s to 0.20 s"),
@@ -74,5 +74,5 @@ def test_fewer_than_two_messages_have_no_pace(count: int) -> None:
         ([], "not at all"),
     ],
 )
-def test_a_pace_is_described_in_words(messages: Sequence[ReceivedMessage], words: str) -> None:
-    assert describe_pace(messages) == words
+def test_a_pace_is_described_in_words(messages: Sequence[ReceivedMessage], description: str) -> None:
+    assert describe_pace(messages) == description

@@ -25,26 +25,26 @@ from autograder.probes.parameters import (
 )
 from autograder.suite import CheckFailed
 
-WANTED = ("safety_distance", "slow_distance")
+EXPECTED = ("safety_distance", "slow_distance")
 
 
 def test_a_missing_parameter_is_reported_with_the_one_of_a_similar_name() -> None:
-    assert near_misses(WANTED, {"saftey_distance", "slow_distance"}) == {"safety_distance": "saftey_distance"}
-    sentence = missing_sentence(WANTED, {"saftey_distance"})
+    assert near_misses(EXPECTED, {"saftey_distance", "slow_distance"}) == {"safety_distance": "saftey_distance"}
+    sentence = missing_sentence(EXPECTED, {"saftey_distance"})
     assert sentence == "The node does not declare safety_distance (it declares saftey_distance), slow_distance."
 
 
 def test_of_very_many_and_very_long_names_only_some_are_compared() -> None:
     names = {*(f"safety_distance{number:06}" for number in range(300_000)), "slow_distance" * 100_000}
-    assert near_misses(WANTED, names) == {"safety_distance": "safety_distance000000", "slow_distance": ""}
+    assert near_misses(EXPECTED, names) == {"safety_distance": "safety_distance000000", "slow_distance": ""}
 
 
 def test_no_sentence_is_written_if_no_parameter_is_missing() -> None:
-    assert missing_sentence(WANTED, {*WANTED, "another"}) == ""
+    assert missing_sentence(EXPECTED, {*EXPECTED, "another"}) == ""
 
 
 @pytest.mark.parametrize(
-    ("value", "wanted", "equal"),
+    ("value", "expected", "equal"),
     [
         (1, 1.0, False),
         (True, 1, False),
@@ -54,19 +54,19 @@ def test_no_sentence_is_written_if_no_parameter_is_missing() -> None:
         (0.3, 0.4, False),
     ],
 )
-def test_values_are_the_same_only_in_the_same_type(value: object, wanted: object, equal: bool) -> None:
-    assert same(value, wanted) is equal  # type: ignore[arg-type]
+def test_values_are_the_same_only_in_the_same_type(value: object, expected: object, equal: bool) -> None:
+    assert same(value, expected) is equal  # type: ignore[arg-type]
 
 
 def test_differences_distinguish_an_integer_from_a_double() -> None:
-    told = differences({"a": 1, "b": 2.0}, {"a": 1.0, "b": 2.0, "c": "x"})
-    assert told == ["a is 1 instead of 1.0", "c is not set instead of 'x'"]
+    sentences = differences({"a": 1, "b": 2.0}, {"a": 1.0, "b": 2.0, "c": "x"})
+    assert sentences == ["a is 1 instead of 1.0", "c is not set instead of 'x'"]
 
 
 def test_numbers_take_the_type_that_a_node_declares_and_nothing_else_does() -> None:
     declared = {"a": 20.0, "b": 1, "c": "x", "d": True}
-    taken = as_declared({"a": 45, "b": 2.0, "c": 3, "d": 1, "e": 4}, declared)
-    assert {name: repr(value) for name, value in taken.items()} == {
+    converted = as_declared({"a": 45, "b": 2.0, "c": 3, "d": 1, "e": 4}, declared)
+    assert {name: repr(value) for name, value in converted.items()} == {
         "a": "45.0",
         "b": "2",
         "c": "3",
@@ -156,5 +156,5 @@ def test_any_text_is_a_parameter_file_or_refused(
 
 def test_overrides_are_written_as_yaml() -> None:
     values = {"hot": math.nan, "cool": 0.5, "on": True, "name": "07", "window": 2}
-    wanted = ["hot:=.nan", "cool:=0.5", "on:=true", "name:='07'", "window:=2"]
-    assert override_arguments(values) == [word for one in wanted for word in ("-p", one)]
+    overrides = ["hot:=.nan", "cool:=0.5", "on:=true", "name:='07'", "window:=2"]
+    assert override_arguments(values) == [word for override in overrides for word in ("-p", override)]

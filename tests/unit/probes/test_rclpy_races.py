@@ -1,4 +1,4 @@
-"""An error that rclpy raises by chance is told from an error of the program."""
+"""Errors of known races in rclpy are distinguished from errors of the program."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_a_known_race_in_rclpy_is_recognized_as_such(output: str) -> None:
     ],
     ids=["nothing", "empty line", "log", "shutdown", "another error", "of the program"],
 )
-def test_an_error_of_the_program_is_not(output: str) -> None:
+def test_an_error_of_the_program_is_not_recognized_as_a_race(output: str) -> None:
     assert not lost_a_race(output)
 
 

@@ -19,27 +19,27 @@ def sniffer() -> Iterator[RtpsSniffer]:
         yield sniffer
 
 
-def say(word: bytes, address: str, port: int) -> None:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as mouth:
-        mouth.sendto(word, (address, port))
+def send_packet(data: bytes, address: str, port: int) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        sender.sendto(data, (address, port))
 
 
 def test_the_sniffer_returns_an_announcement_once(sniffer: RtpsSniffer) -> None:
     assert not sniffer.take_announcements()
-    say(b"RTPS and more", "127.0.0.1", 7400 + 250 * sniffer.domain + 10)
+    send_packet(b"RTPS and more", "127.0.0.1", 7400 + 250 * sniffer.domain + 10)
     assert sniffer.take_announcements()
     assert not sniffer.take_announcements()
 
 
 def test_the_sniffer_ignores_a_packet_that_is_not_an_announcement(sniffer: RtpsSniffer) -> None:
-    say(b"hello", "127.0.0.1", 7400 + 250 * sniffer.domain + 10)
+    send_packet(b"hello", "127.0.0.1", 7400 + 250 * sniffer.domain + 10)
     assert not sniffer.take_announcements()
 
 
 def test_two_sniffers_listen_in_different_domains(sniffer: RtpsSniffer) -> None:
     with RtpsSniffer() as other:
         assert other.domain != sniffer.domain
-        say(b"RTPS", "127.0.0.1", 7400 + 250 * other.domain + 10)
+        send_packet(b"RTPS", "127.0.0.1", 7400 + 250 * other.domain + 10)
         assert not sniffer.take_announcements()
         assert other.take_announcements()
 

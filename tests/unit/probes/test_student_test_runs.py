@@ -97,10 +97,10 @@ TestNamed.__name__ = TestNamed.__qualname__ = SECRET
 """
 
 
-def test_a_run_on_a_hidden_version_returns_no_words_of_its_own(workspace: Workspace) -> None:
+def test_a_run_on_a_hidden_version_returns_no_text_of_its_own(workspace: Workspace) -> None:
     write(workspace, TELLTALE)
     source, order = take(workspace, "half"), TestRun(("test_half.py",), WRONG)
-    hidden, again = run(workspace, source, [order, order])
+    hidden, repeated = run(workspace, source, [order, order])
     names = {name.partition("[#")[0] for name in hidden.claims.verdicts}
     assert names == {"test_half::test_known", "test_half::test_cases", "test_half::TestNamed::test_inside", "a test"}
     assert not hidden.output
@@ -110,7 +110,7 @@ def test_a_run_on_a_hidden_version_returns_no_words_of_its_own(workspace: Worksp
     (shown,) = runs(workspace, order)
     assert "x // 2" in repr(shown)
     # The same test has the same name in each run, so that verdicts can be compared.
-    assert hidden.claims.verdicts == again.claims.verdicts
+    assert hidden.claims.verdicts == repeated.claims.verdicts
     assert len(hidden.claims.verdicts) == len(shown.claims.verdicts)
 
 
@@ -162,13 +162,13 @@ def test_a_run_that_exits_early_reports_no_test(workspace: Workspace, trick: str
 
 
 @pytest.mark.parametrize(
-    "said",
+    "reply",
     ["0\\n", "-1\\n", "all passed\\n", "0", "9" * 100],
     ids=["no XML", "negative", "words", "torn", "endless"],
 )
-def test_an_invalid_reply_of_a_run_reports_no_test(workspace: Workspace, said: str) -> None:
-    # It goes to all descriptors that the host is given: the report's, the status's and the one that it waits for.
-    trick = f"import os, sys\nfor fd in range(3, 64):\n    try:\n        os.write(fd, b'{said}')\n"
+def test_an_invalid_reply_of_a_run_reports_no_test(workspace: Workspace, reply: str) -> None:
+    # Written to each descriptor of the host: that of the report, of the status, and the one that it waits for.
+    trick = f"import os, sys\nfor fd in range(3, 64):\n    try:\n        os.write(fd, b'{reply}')\n"
     trick += "    except OSError:\n        pass\nos._exit(0)\n"
     write(workspace, trick + GOOD)
     (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
@@ -214,13 +214,13 @@ def test_the_only_stopped_run_is_repeated_once(
     workspace: Workspace, monkeypatch: pytest.MonkeyPatch, hangs: int, ends: tuple[ExitReason, ...]
 ) -> None:
     write(workspace, GOOD)
-    really, stopped = student_test_runs._run, itertools.count()
+    original_run, stopped = student_test_runs._run, itertools.count()
 
-    def sometimes(*run: Any) -> Report:
-        report = really(*run)
+    def run_or_stop(*run: Any) -> Report:
+        report = original_run(*run)
         return report if next(stopped) >= hangs else replace(report, exit_reason=ExitReason.WALL_TIME)
 
-    monkeypatch.setattr(student_test_runs, "_run", sometimes)
+    monkeypatch.setattr(student_test_runs, "_run", run_or_stop)
     reports = runs(workspace, TestRun(("test_half.py",), RIGHT), TestRun(("test_half.py",), WRONG))
     assert tuple(report.exit_reason for report in reports) == ends
 
@@ -254,10 +254,10 @@ def test_no_run_sees_files_of_another_run(workspace: Workspace) -> None:
 
 
 def test_the_paths_of_two_versions_differ_only_in_a_random_word(workspace: Workspace) -> None:
-    place = (
+    paths = (
         "re.sub(r'/tests-[a-z0-9_]{8}/', '/', str((half.__file__, os.getcwd(), sys.path, sorted(os.environ.items()))))"
     )
-    write(workspace, f"import os, re, sys\n\nimport half\n\n\ndef test_place():\n    assert not hash({place})\n")
+    write(workspace, f"import os, re, sys\n\nimport half\n\n\ndef test_place():\n    assert not hash({paths})\n")
     # One after the other: runs at the same time have ROS domains of their own.
     reports = [runs(workspace, TestRun(("test_half.py",), version))[0] for version in (RIGHT, WRONG)]
     messages = {report.claims.messages["test_half::test_place"] for report in reports}
@@ -266,16 +266,18 @@ def test_the_paths_of_two_versions_differ_only_in_a_random_word(workspace: Works
 
 
 def test_a_context_that_a_test_does_not_shut_down_is_detected(workspace: Workspace) -> None:
-    made = "import rclpy\nfrom rclpy.context import Context\n\nKEPT = []\n\n\ndef test_it():\n    context = Context()\n"
-    made += "    rclpy.init(context=context)\n    node = rclpy.create_node('n', context=context)\n"
-    write(workspace, made + "    KEPT.append(node)\n")
-    (left,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
-    write(workspace, made + "    node.destroy_node()\n    rclpy.try_shutdown(context=context)\n")
+    setup = (
+        "import rclpy\nfrom rclpy.context import Context\n\nKEPT = []\n\n\ndef test_it():\n    context = Context()\n"
+    )
+    setup += "    rclpy.init(context=context)\n    node = rclpy.create_node('n', context=context)\n"
+    write(workspace, setup + "    KEPT.append(node)\n")
+    (unclosed,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    write(workspace, setup + "    node.destroy_node()\n    rclpy.try_shutdown(context=context)\n")
     (clean,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
-    write(workspace, made + "    node.destroy_node()\n")
+    write(workspace, setup + "    node.destroy_node()\n")
     (dropped,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
-    assert left.passed
-    assert left.left > 0
+    assert unclosed.passed
+    assert unclosed.left > 0
     assert clean.passed
     assert (clean.left, clean.is_logging) == (0, False)
     assert dropped.passed
@@ -315,11 +317,11 @@ def test_only_tests_that_mention_launch_get_the_launch_plugin(workspace: Workspa
     write(workspace, ask.format("not "))
     (plain,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
     write(workspace, "# launch\n" + ask.format(""))
-    (speaking,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (mentioning,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
     write(workspace, ask.format(""))
     write(workspace, "# launch\n", "conftest.py")
     (shared,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
-    assert [plain.passed, speaking.passed, shared.passed] == [True, True, True]
+    assert [plain.passed, mentioning.passed, shared.passed] == [True, True, True]
 
 
 def test_a_package_without_a_folder_of_its_name_is_named(workspace: Workspace) -> None:

@@ -135,11 +135,11 @@ def test_every_fault_applies_to_both_styles(fault: Fault, name: str) -> None:
 
 
 def test_every_reworded_version_compiles_and_has_the_same_files() -> None:
-    made = [reworded(random.Random(seed)).files for seed in range(30)]
+    reworded_files = [reworded(random.Random(seed)).files for seed in range(30)]
     plain = obfuscate(style(STYLES[0]), 1).files
-    assert all(files.keys() == plain.keys() for files in made)
+    assert all(files.keys() == plain.keys() for files in reworded_files)
     for name in (name for name in plain if name.endswith(".py")):
-        for files in made:
+        for files in reworded_files:
             compile(files[name], name, "exec")
 
 

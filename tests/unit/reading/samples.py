@@ -1,4 +1,4 @@
-"""Valid data of every kind that a student's files and programs bring."""
+"""Valid samples of each kind of data that a student's files and programs contain."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Each door by which data of a student's enter the worker: whatever comes is read, or is the student's fault.
+"""Each reader of a student's data: any data are read, or are the student's fault.
 
-`make test` tries a hundred made-up readings of each door, the same in each run. To try a thousand others, run
+`make test` tries a hundred generated values for each reader, the same in each run. To try a thousand others, run
 `pytest tests/unit/reading --hypothesis-profile=thousand`.
 """
 
@@ -16,29 +16,37 @@ from hypothesis import strategies as st
 
 from autograder.exceptions import StudentError
 from autograder.suite import CheckFailed
-from tests.unit.reading.door import Door
-from tests.unit.reading.doors import DOORS
+from tests.unit.reading.reader import Reader
+from tests.unit.reading.readers import READERS
 
-# How a door says that the data are at fault; `doors` has those that the door's only caller turns into one of these.
+# Errors that blame the data. `Reader.refuses` has those that the reader's only caller turns into one of these.
 THEIRS = (StudentError, CheckFailed)
 
 
 @pytest.mark.fuzz
-@pytest.mark.parametrize("door", DOORS.values(), ids=DOORS.keys())
+@pytest.mark.parametrize("reader", READERS.values(), ids=READERS.keys())
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(data=st.data())
-def test_generated_data_are_read_or_are_the_student_s_fault(door: Door, data: st.DataObject, tmp_path: Path) -> None:
-    _read(door, data.draw(door.made_up), tmp_path)
+def test_generated_data_are_read_or_are_the_student_s_fault(
+    reader: Reader, data: st.DataObject, tmp_path: Path
+) -> None:
+    _read(reader, data.draw(reader.values), tmp_path)
 
 
 @pytest.mark.parametrize(
-    ("door", "known"),
-    [pytest.param(door, known, id=f"{name}-{i}") for name, door in DOORS.items() for i, known in enumerate(door.known)],
+    ("reader", "known"),
+    [
+        pytest.param(reader, known, id=f"{name}-{i}")
+        for name, reader in READERS.items()
+        for i, known in enumerate(reader.known)
+    ],
 )
-def test_data_that_once_went_wrong_are_read_or_are_the_student_s_fault(door: Door, known: Any, tmp_path: Path) -> None:
-    _read(door, known, tmp_path)
+def test_data_that_once_went_wrong_are_read_or_are_the_student_s_fault(
+    reader: Reader, known: Any, tmp_path: Path
+) -> None:
+    _read(reader, known, tmp_path)
 
 
-def _read(door: Door, value: Any, place: Path) -> None:
-    with suppress(*THEIRS, *door.refuses):
-        door.read(value, place)
+def _read(reader: Reader, value: Any, folder: Path) -> None:
+    with suppress(*THEIRS, *reader.refuses):
+        reader.read(value, folder)

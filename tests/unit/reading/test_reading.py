@@ -1,4 +1,4 @@
-"""Whose fault an error is."""
+"""Errors are attributed to the student's data, or pass through."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from autograder.suite import CheckFailed
     ids=lambda error: type(error).__name__,
 )
 def test_an_error_while_data_are_read_is_the_student_s_and_names_them(error: Exception) -> None:
-    with pytest.raises(StudentError) as caught, reading("src/robot/package.xml", advice="Write it anew."):
+    with pytest.raises(StudentError) as caught, reading("src/robot/package.xml", advice="Write it again."):
         raise error
     diagnosis = caught.value.diagnosis
     assert diagnosis.kind is Kind.UNREADABLE
     assert diagnosis.sentence.startswith("src/robot/package.xml cannot be read: ")
-    assert diagnosis.sentence.endswith(". Write it anew.")
+    assert diagnosis.sentence.endswith(". Write it again.")
     assert caught.value.__cause__ is error
 
 

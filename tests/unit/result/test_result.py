@@ -21,7 +21,7 @@ from autograder.result.model import Artifact, Build, CheckResult, Result, Status
 from autograder.suite import Check, Outcome, Visibility
 
 MakeResult = Callable[..., Result]
-# The fields of the first results. A later one is not required: results that were stored before have none.
+# The fields of the first results. Later ones are not required, because older stored results lack them.
 FIRST = {
     *("artifacts", "assignment", "build", "checks", "diagnosis", "isolation", "max_score"),
     *("phases", "schema", "score", "seconds", "seed", "started", "status"),
@@ -43,14 +43,14 @@ def test_points_follow_the_outcome(turns: Check, outcome: Outcome, points: float
     assert (record.points, record.max_points, record.hints) == (points, 3.0, hints)
 
 
-def test_words_of_a_program_are_shortened_with_a_remark_that_says_so(turns: Check) -> None:
-    words = "x" * 950_000
-    result = CheckResult.of(turns, Outcome.FAILED, words, hints=(words,))
-    diagnosis = Diagnosis(Kind.CRASHED_LATER, words, words)
-    for text in (result.message, *result.hints, diagnosis.sentence):
-        assert len(text) == MAX_SENTENCE
-        assert text.endswith("… (950,000 characters in all)")
-    assert len(diagnosis.detail) == len(Build(False, 0.0, log=words).log) == MAX_DETAIL
+def test_long_texts_of_a_program_are_shortened_with_a_remark(turns: Check) -> None:
+    text = "x" * 950_000
+    result = CheckResult.of(turns, Outcome.FAILED, text, hints=(text,))
+    diagnosis = Diagnosis(Kind.CRASHED_LATER, text, text)
+    for shortened in (result.message, *result.hints, diagnosis.sentence):
+        assert len(shortened) == MAX_SENTENCE
+        assert shortened.endswith("… (950,000 characters in all)")
+    assert len(diagnosis.detail) == len(Build(False, 0.0, log=text).log) == MAX_DETAIL
     assert CheckResult.of(turns, Outcome.FAILED, "y" * MAX_SENTENCE).message == "y" * MAX_SENTENCE
 
 
@@ -136,7 +136,7 @@ def test_a_diagnosis_that_this_version_does_not_know_is_refused(make_result: Mak
 
 
 @pytest.mark.parametrize(
-    ("change", "words"),
+    ("change", "message"),
     [
         ({"max_score": 1.0}, "r.json: not a grading result: 4 points of 1"),
         ({"score": "4"}, "r.json: not a grading result: score: '4' is not of type 'number'"),
@@ -146,11 +146,11 @@ def test_a_diagnosis_that_this_version_does_not_know_is_refused(make_result: Mak
     ],
 )
 def test_an_invalid_result_is_refused_with_file_and_field(
-    make_result: MakeResult, change: dict[str, object], words: str
+    make_result: MakeResult, change: dict[str, object], message: str
 ) -> None:
     with pytest.raises(UsageError) as caught:
         from_json({**make_result().to_json(), **change}, source="r.json")
-    assert words in str(caught.value)
+    assert message in str(caught.value)
 
 
 def test_json_that_is_not_an_object_is_rejected() -> None:
@@ -209,16 +209,16 @@ JSON = st.recursive(
 @pytest.mark.fuzz
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data())
-def test_a_result_with_anything_in_any_place_is_read_or_refused(make_result: MakeResult, data: st.DataObject) -> None:
-    """Replace one value, at any depth, of a right result by anything that JSON can hold."""
+def test_a_result_with_any_value_in_any_place_is_read_or_refused(make_result: MakeResult, data: st.DataObject) -> None:
+    """Replace one value, at any depth of a valid result, by any JSON value."""
     form = make_result().to_json()
-    place: Any = form
+    container: Any = form
     while True:
-        key = data.draw(st.sampled_from(sorted(place) if isinstance(place, dict) else range(len(place))))
-        if not (isinstance(place[key], (dict, list)) and place[key] and data.draw(st.booleans())):
+        key = data.draw(st.sampled_from(sorted(container) if isinstance(container, dict) else range(len(container))))
+        if not (isinstance(container[key], (dict, list)) and container[key] and data.draw(st.booleans())):
             break
-        place = place[key]
-    place[key] = data.draw(JSON)
+        container = container[key]
+    container[key] = data.draw(JSON)
     with contextlib.suppress(UsageError):
         read = from_json(form, source="result.json")
         assert 0.0 <= read.score <= read.max_score
@@ -250,5 +250,5 @@ print(failures)
 
 
 def test_several_threads_may_read_their_first_result_at_the_same_time() -> None:
-    read = subprocess.run([sys.executable, "-c", STAGGERED], capture_output=True, text=True, check=True)
-    assert read.stdout == "[]\n"
+    completed = subprocess.run([sys.executable, "-c", STAGGERED], capture_output=True, text=True, check=True)
+    assert completed.stdout == "[]\n"

@@ -1,4 +1,4 @@
-"""Announcing often: a profile for Fast DDS that is there while rclpy starts, and gone afterwards."""
+"""Frequent announcements: a Fast DDS profile that is set while rclpy starts, and removed afterwards."""
 
 from __future__ import annotations
 

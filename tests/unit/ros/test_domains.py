@@ -77,8 +77,8 @@ def test_a_domain_of_another_process_is_free_after_its_end(claims: ExitStack) ->
 
 
 def test_a_claim_is_refused_with_a_sentence_if_all_domains_are_in_use() -> None:
-    done = alone(TAKE_ALL + "print(len({domain.number for domain in domains}), error)")
-    assert done.stdout == (
+    completed = alone(TAKE_ALL + "print(len({domain.number for domain in domains}), error)")
+    assert completed.stdout == (
         "101 all 101 ROS domains of this machine are in use: stop notebooks and programs that you do not need, or try "
         "again later\n"
     )
@@ -90,7 +90,7 @@ def test_130_kernels_of_two_users_have_two_domains(claims: ExitStack) -> None:
         user: {claims.enter_context(Domain(user=user)).number for _ in range(kernels)}
         for user, kernels in ((ADA, 70), (BEN, 60))
     }
-    assert [len(found) for found in numbers.values()] == [1, 1]
+    assert [len(domains) for domains in numbers.values()] == [1, 1]
     assert numbers[ADA] != numbers[BEN]
 
 
@@ -142,6 +142,6 @@ def test_a_command_keeps_the_domain_for_as_long_as_it_runs(claims: ExitStack) ->
 @pytest.mark.promise("and so does `autograder ros`")
 def test_no_command_runs_if_no_domain_is_left() -> None:
     command = [*AUTOGRADER, "echo", "ran"]
-    done = alone(TAKE_ALL + f"import subprocess; sys.exit(subprocess.run({command}).returncode)")
-    assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr.startswith("ROS 2: all 101 ROS domains of this machine are in use: stop notebooks")
+    completed = alone(TAKE_ALL + f"import subprocess; sys.exit(subprocess.run({command}).returncode)")
+    assert (completed.returncode, completed.stdout) == (1, "")
+    assert completed.stderr.startswith("ROS 2: all 101 ROS domains of this machine are in use: stop notebooks")

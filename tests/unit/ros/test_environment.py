@@ -18,7 +18,7 @@ ROS_VARIABLES = ("ROS_", "AMENT_", "CMAKE_PREFIX", "FASTDDS_", "RCUTILS_", "RMW_
 
 
 def python(code: str, **variables: str) -> subprocess.CompletedProcess[str]:
-    """Run code in a new Python that knows nothing of ROS but `variables`."""
+    """Run code in a new Python whose only ROS variables are `variables`."""
     clean = {name: value for name, value in os.environ.items() if not name.startswith(ROS_VARIABLES)}
     return subprocess.run(
         [sys.executable, "-c", code], env={**clean, **variables}, capture_output=True, text=True, timeout=120
@@ -26,10 +26,12 @@ def python(code: str, **variables: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_the_wheels_of_this_virtual_environment_are_found() -> None:
-    done = python(
+    completed = python(
         "from autograder.ros import find; ros = find(); print(ros.kind, *ros.prefixes); print(ros.describe())"
     )
-    assert done.stdout.splitlines() == [f"wheels {sys.prefix}", f"ROS 2 Jazzy, wheels in {sys.prefix}"], done.stderr
+    assert completed.stdout.splitlines() == [f"wheels {sys.prefix}", f"ROS 2 Jazzy, wheels in {sys.prefix}"], (
+        completed.stderr
+    )
 
 
 def test_activating_is_enough_to_start_a_node() -> None:
@@ -42,8 +44,8 @@ node = rclpy.create_node("lonely")
 print(node.get_fully_qualified_name(), rclpy.utilities.get_rmw_implementation_identifier(), os.environ["ROS_DOMAIN_ID"])
 rclpy.shutdown()
 """
-    done = python(code)
-    assert done.stdout.split() == ["/lonely", "rmw_fastrtps_cpp", "17"], done.stderr
+    completed = python(code)
+    assert completed.stdout.split() == ["/lonely", "rmw_fastrtps_cpp", "17"], completed.stderr
 
 
 def test_activating_keeps_the_log_folder_and_the_transport_that_the_user_chose() -> None:
@@ -53,8 +55,8 @@ from autograder.ros import activate
 activate()
 print(os.environ["ROS_LOG_DIR"], os.environ["FASTDDS_BUILTIN_TRANSPORTS"], os.environ["ROS_DISTRO"])
 """
-    done = python(code, ROS_LOG_DIR="/chosen", FASTDDS_BUILTIN_TRANSPORTS="LARGE_DATA")
-    assert done.stdout.split() == ["/chosen", "LARGE_DATA", "jazzy"], done.stderr
+    completed = python(code, ROS_LOG_DIR="/chosen", FASTDDS_BUILTIN_TRANSPORTS="LARGE_DATA")
+    assert completed.stdout.split() == ["/chosen", "LARGE_DATA", "jazzy"], completed.stderr
 
 
 @pytest.mark.promise(
@@ -70,9 +72,9 @@ activate(); activate()
 print(before, shutil.which("colcon"), shutil.which("ros2"))
 print(os.environ["PATH"].split(os.pathsep).count(os.path.dirname(shutil.which("colcon"))))
 """
-    done = python(code, PATH="/usr/bin:/bin")
+    completed = python(code, PATH="/usr/bin:/bin")
     scripts = Path(sys.executable).parent
-    assert done.stdout.split() == ["None", str(scripts / "colcon"), str(scripts / "ros2"), "1"], done.stderr
+    assert completed.stdout.split() == ["None", str(scripts / "colcon"), str(scripts / "ros2"), "1"], completed.stderr
 
 
 FIND = """
@@ -95,28 +97,30 @@ def elsewhere(tmp_path: Path) -> Path:
 
 def test_a_sourced_jazzy_wins_over_the_wheels(elsewhere: Path) -> None:
     prefixes = os.pathsep.join(["/home/me/ws/install", str(elsewhere), "/opt/more"])
-    done = python(FIND, PYTHONPATH=str(elsewhere), ROS_DISTRO="jazzy", AMENT_PREFIX_PATH=prefixes)
-    told = f"sourced ROS 2 Jazzy, sourced from {elsewhere} {elsewhere} /opt/more"
-    assert done.stdout.strip() == told, done.stderr
+    completed = python(FIND, PYTHONPATH=str(elsewhere), ROS_DISTRO="jazzy", AMENT_PREFIX_PATH=prefixes)
+    description = f"sourced ROS 2 Jazzy, sourced from {elsewhere} {elsewhere} /opt/more"
+    assert completed.stdout.strip() == description, completed.stderr
 
 
 @pytest.mark.parametrize(("distro", "named"), [("humble", "is humble"), ("", "of no known distribution")])
 def test_another_distribution_is_refused_by_name(elsewhere: Path, distro: str, named: str) -> None:
-    done = python(FIND, PYTHONPATH=str(elsewhere), ROS_DISTRO=distro, AMENT_PREFIX_PATH="/opt/ros/other")
-    assert done.stdout.startswith("WrongDistroError the sourced ROS 2 "), done.stderr
-    assert named in done.stdout
-    assert "source /opt/ros/jazzy/setup.bash" in done.stdout
+    completed = python(FIND, PYTHONPATH=str(elsewhere), ROS_DISTRO=distro, AMENT_PREFIX_PATH="/opt/ros/other")
+    assert completed.stdout.startswith("WrongDistroError the sourced ROS 2 "), completed.stderr
+    assert named in completed.stdout
+    assert "source /opt/ros/jazzy/setup.bash" in completed.stdout
 
 
 def test_a_half_sourced_jazzy_is_reported_with_its_missing_parts(elsewhere: Path) -> None:
-    done = python(FIND, PYTHONPATH=str(elsewhere), ROS_DISTRO="jazzy")
-    assert done.stdout.startswith(f"RosNotFoundError rclpy is at {elsewhere / 'rclpy'}, but not in AMENT_PREFIX_PATH")
+    completed = python(FIND, PYTHONPATH=str(elsewhere), ROS_DISTRO="jazzy")
+    assert completed.stdout.startswith(
+        f"RosNotFoundError rclpy is at {elsewhere / 'rclpy'}, but not in AMENT_PREFIX_PATH"
+    )
 
 
 def test_without_any_ros_the_message_says_what_to_do() -> None:
     hide = "import sys, autograder.ros; sys.path = [entry for entry in sys.path if 'site-packages' not in entry]\n"
-    done = python(hide + FIND)
-    assert done.stdout.startswith("RosNotFoundError rclpy cannot be imported: run `make setup`"), done.stderr
+    completed = python(hide + FIND)
+    assert completed.stdout.startswith("RosNotFoundError rclpy cannot be imported: run `make setup`"), completed.stderr
 
 
 def test_child_processes_get_overlays_first_and_only_requested_variables() -> None:
@@ -145,21 +149,24 @@ def test_each_test_has_a_domain_whose_ports_linux_does_not_give_to_other_program
 
 def with_ros(*command: str) -> subprocess.CompletedProcess[str]:
     """Run a command by `autograder ros`."""
-    whole = [sys.executable, "-m", "autograder", "ros", *command]
-    return subprocess.run(whole, capture_output=True, text=True, timeout=120, cwd=ROOT)
+    full_command = [sys.executable, "-m", "autograder", "ros", *command]
+    return subprocess.run(full_command, capture_output=True, text=True, timeout=120, cwd=ROOT)
 
 
 def test_a_command_runs_with_ros_on_and_its_exit_status_comes_back() -> None:
-    done = with_ros("sh", "-c", 'echo "$AMENT_PREFIX_PATH"; command -v colcon; exit 7')
+    completed = with_ros("sh", "-c", 'echo "$AMENT_PREFIX_PATH"; command -v colcon; exit 7')
     prefix = find().prefixes[0]
-    assert (done.returncode, done.stdout.split()) == (7, [str(prefix), str(Path(sys.prefix) / "bin" / "colcon")])
+    assert (completed.returncode, completed.stdout.split()) == (
+        7,
+        [str(prefix), str(Path(sys.prefix) / "bin" / "colcon")],
+    )
 
 
 @pytest.mark.promise('eval "$(.venv/bin/autograder ros)"')
 def test_without_a_command_the_variables_are_printed_for_a_shell() -> None:
     script = f'eval "$({sys.executable} -m autograder.ros)" && python -c "import os; print(os.environ[\'ROS_DISTRO\'])"'
-    done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, timeout=120, cwd=ROOT)
-    assert done.stdout.split() == ["jazzy"], done.stderr
+    completed = subprocess.run(["bash", "-c", script], capture_output=True, text=True, timeout=120, cwd=ROOT)
+    assert completed.stdout.split() == ["jazzy"], completed.stderr
 
 
 def test_logs_go_to_stderr_in_a_terminal_and_to_stdout_in_a_notebook(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -171,13 +178,13 @@ def test_logs_go_to_stderr_in_a_terminal_and_to_stdout_in_a_notebook(monkeypatch
 
 
 def test_a_missing_command_is_named() -> None:
-    done = with_ros("no-such-command")
-    assert (done.returncode, done.stderr) == (127, "no-such-command: No such file or directory\n")
+    completed = with_ros("no-such-command")
+    assert (completed.returncode, completed.stderr) == (127, "no-such-command: No such file or directory\n")
 
 
 def test_no_command_runs_without_a_usable_ros(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", str(elsewhere))
     monkeypatch.setenv("ROS_DISTRO", "rolling")
-    done = with_ros("echo", "ran")
-    assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr.startswith("ROS 2: the sourced ROS 2 is rolling, the course needs Jazzy")
+    completed = with_ros("echo", "ran")
+    assert (completed.returncode, completed.stdout) == (1, "")
+    assert completed.stderr.startswith("ROS 2: the sourced ROS 2 is rolling, the course needs Jazzy")

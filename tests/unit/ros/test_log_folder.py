@@ -1,4 +1,4 @@
-"""ROS's log folder is the user's own: nobody else can make it first, or write to it."""
+"""ROS's log folder belongs to the user: no other user can create it first or write to it."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ ROS = RosEnvironment("wheels", (Path("/venv"),), Path("/venv/lib/rclpy"))
 def test_logs_go_below_the_user_s_home_under_names_that_no_other_user_can_take(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    taken = tmp_path / "tmp"
-    taken.mkdir()
-    (taken / f"ros2-log-{os.getuid()}").write_text("a victim's folder, made first")
-    monkeypatch.setattr(tempfile, "tempdir", str(taken))
+    shared_tmp = tmp_path / "tmp"
+    shared_tmp.mkdir()
+    (shared_tmp / f"ros2-log-{os.getuid()}").write_text("a victim's folder, made first")
+    monkeypatch.setattr(tempfile, "tempdir", str(shared_tmp))
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
     monkeypatch.delenv("ROS_HOME", raising=False)
     folder = Path(ROS.variables()["ROS_LOG_DIR"])

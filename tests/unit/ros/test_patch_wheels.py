@@ -37,7 +37,7 @@ def test_a_folder_with_backslashes_is_written_literally() -> None:
 
 @pytest.fixture
 def prefix(tmp_path: Path) -> Path:
-    """A prefix with one baked CMake file, a good one, and a text that is none of the mender's business."""
+    """A prefix with a CMake file that has foreign paths, a correct one, and a text file that is not to be patched."""
     folder = tmp_path / "share" / "std_msgs" / "cmake"
     folder.mkdir(parents=True)
     (folder / "baked.cmake").write_text(BAKED)
@@ -76,8 +76,8 @@ def test_the_stand_ins_come_last_on_the_path(tmp_path: Path) -> None:
     assert patch_wheels.link_standins(tmp_path) == pth
     assert [path.name for path in tmp_path.iterdir()] == [patch_wheels.STANDINS_PTH]
     code = f"import site, sys; site.addsitedir({str(tmp_path)!r}); print(sys.path[-1])"
-    done = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True, timeout=60)
-    assert done.stdout.strip() == str(Path(patch_wheels.__file__).parent / "standins"), done.stderr
+    completed = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True, timeout=60)
+    assert completed.stdout.strip() == str(Path(patch_wheels.__file__).parent / "standins"), completed.stderr
 
 
 def test_flake8_is_set_to_one_process_once(tmp_path: Path) -> None:

@@ -84,9 +84,9 @@ def test_a_message_survives_conversion_to_yaml(x: float, ranges: list[float], fr
     twist = Twist()
     twist.linear.x = x
     for message in (scan, twist):
-        again = type(message)()
-        set_message_fields(again, yaml.safe_load(message_to_yaml(message)))
-        assert again == message
+        converted = type(message)()
+        set_message_fields(converted, yaml.safe_load(message_to_yaml(message)))
+        assert converted == message
 
 
 def test_fields_are_converted_to_their_type() -> None:

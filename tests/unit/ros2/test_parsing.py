@@ -47,8 +47,8 @@ def test_a_command_alone_prints_its_help(words: tuple[str, ...], capsys: pytest.
 def test_a_command_that_is_not_covered_is_named_with_the_place_where_it_works(words: tuple[str, ...]) -> None:
     outcome = main(words)
     assert isinstance(outcome, str)
-    thing = " ".join(words if words[0] in COVERED else words[:1]).split(" /")[0]
-    assert outcome.startswith(f"`ros2 {thing}` is not covered by this stand-in")
+    command_name = " ".join(words if words[0] in COVERED else words[:1]).split(" /")[0]
+    assert outcome.startswith(f"`ros2 {command_name}` is not covered by this stand-in")
     assert "works with the real ros2cli: install it with `make real-launch`, or source a ROS 2 Jazzy" in outcome
 
 
@@ -105,8 +105,8 @@ def test_the_real_ros2cli_takes_over_if_it_is_installed(tmp_path: Path) -> None:
     (package / "cli.py").write_text("def main(*, argv):\n    print('the real one', argv)\n    return 3\n")
     code = "import sys; sys.path.insert(0, sys.argv.pop(1)); from autograder.ros.ros2 import main; sys.exit(main())"
     command = [sys.executable, "-c", code, str(tmp_path), "topic", "list"]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (3, "the real one ['topic', 'list']\n")
+    completed = subprocess.run(command, capture_output=True, text=True)
+    assert (completed.returncode, completed.stdout) == (3, "the real one ['topic', 'list']\n")
 
 
 def test_verbs_without_a_graph_do_not_import_rclpy() -> None:
@@ -114,14 +114,14 @@ def test_verbs_without_a_graph_do_not_import_rclpy() -> None:
         "import sys; from autograder.ros.ros2.main import stand_in; stand_in(['pkg', 'prefix', 'rclpy']); "
         "stand_in(['interface', 'show', 'std_msgs/msg/String']); print('rclpy' in sys.modules)"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert done.stdout.endswith("\nFalse\n"), done.stderr
+    completed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert completed.stdout.endswith("\nFalse\n"), completed.stderr
 
 
 def test_a_closed_output_pipe_gives_no_traceback() -> None:
     shell = f"{sys.executable} -m autograder.ros.ros2 interface list | head -1"
-    done = subprocess.run(["bash", "-c", shell], capture_output=True, text=True)
-    assert (done.stdout, done.stderr) == ("Messages:\n", "")
+    completed = subprocess.run(["bash", "-c", shell], capture_output=True, text=True)
+    assert (completed.stdout, completed.stderr) == ("Messages:\n", "")
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""`ros2 pkg create` refuses what would not work, and says what it did."""
+"""`ros2 pkg create` refuses invalid requests, and prints what it creates."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The installation of the real launch, against local git repositories that stand for the sources."""
+"""The installation of the real launch, from local git repositories that replace the sources."""
 
 from __future__ import annotations
 
@@ -49,8 +49,10 @@ def repository(folder: Path, files: dict[str, str], tag: str = "") -> Path:
 
 def commit_of(folder: Path) -> str:
     """Return the commit that is checked out."""
-    done = subprocess.run(["git", "-C", str(folder), "rev-parse", "HEAD"], capture_output=True, text=True, check=True)
-    return done.stdout.strip()
+    completed = subprocess.run(
+        ["git", "-C", str(folder), "rev-parse", "HEAD"], capture_output=True, text=True, check=True
+    )
+    return completed.stdout.strip()
 
 
 def python_package(name: str, content: str) -> dict[str, str]:
@@ -64,7 +66,7 @@ def python_package(name: str, content: str) -> dict[str, str]:
 
 @pytest.fixture
 def machine(tmp_path: Path) -> tuple[RosEnvironment, str]:
-    """A virtual environment of its own that sees this one's packages, and ROS with its prefix in front."""
+    """A separate virtual environment that sees the packages of this one, and ROS with its prefix in front."""
     prefix = tmp_path / "venv"
     venv.create(prefix, symlinks=True)
     python = str(prefix / "bin" / "python")
@@ -79,7 +81,7 @@ NO_GIT = "https://example.invalid/x.git"
 
 @pytest.mark.promise("`make real-launch` installs the real ones")
 @pytest.mark.slow
-def test_packages_are_installed_from_the_places_that_the_variables_name(
+def test_packages_are_installed_from_the_sources_that_the_variables_name(
     tmp_path: Path, machine: tuple[RosEnvironment, str]
 ) -> None:
     ros, python = machine
@@ -102,8 +104,8 @@ def test_packages_are_installed_from_the_places_that_the_variables_name(
     index = prefix / "share/ament_index/resource_index/packages/made_launch"
     assert index.is_file()
     code = "import made_launch; print(made_launch.VERSION)"
-    found = subprocess.run([python, "-c", code], capture_output=True, text=True, check=True)
-    assert found.stdout == "tagged\n"
+    printed = subprocess.run([python, "-c", code], capture_output=True, text=True, check=True)
+    assert printed.stdout == "tagged\n"
     remove([*names, "never_installed"], python=python)
     assert not index.exists()
 
@@ -115,8 +117,8 @@ def test_packages_that_cannot_all_be_installed_are_not_installed(
     ros, python = machine
     clone = repository(tmp_path / "clone", python_package("made_launch", "") | python_package("made_ros", ""), tag="1")
     (ros.prefixes[0] / "share/ament_index/resource_index/packages").mkdir(parents=True)
-    in_the_way = ros.prefixes[0] / "share/ament_index/resource_index/packages/made_ros"
-    in_the_way.mkdir()
+    obstacle = ros.prefixes[0] / "share/ament_index/resource_index/packages/made_ros"
+    obstacle.mkdir()
     source = Source("LAUNCH", NO_GIT, "1", commit_of(clone), ("made_launch", "made_ros"))
     with pytest.raises(RealLaunchError, match="could not install what was built: "):
         install(ros, {"LAUNCH": str(clone)}, python=python, sources=(source,), requirement="")
@@ -125,11 +127,11 @@ def test_packages_that_cannot_all_be_installed_are_not_installed(
 
 
 def test_another_commit_than_the_pinned_one_is_refused_unless_the_user_names_its_tag(tmp_path: Path) -> None:
-    place = repository(tmp_path / "launch", {"launch/setup.py": "raise SystemExit('it was run')"}, tag="1.0")
-    url, environ = place.as_uri(), {"LAUNCH": f"{place.as_uri()}@1.0"}
+    clone = repository(tmp_path / "launch", {"launch/setup.py": "raise SystemExit('it was run')"}, tag="1.0")
+    url, environ = clone.as_uri(), {"LAUNCH": f"{clone.as_uri()}@1.0"}
     source = Source("LAUNCH", url, "1.0", "0" * 40, ("launch",))
-    refused = f"refuses tag 1.0 of {url}: it is commit {commit_of(place)}, not {'0' * 40}; LAUNCH={url}@1.0 takes it"
-    with pytest.raises(RealLaunchError, match=re.escape(refused)):
+    message = f"refuses tag 1.0 of {url}: it is commit {commit_of(clone)}, not {'0' * 40}; LAUNCH={url}@1.0 takes it"
+    with pytest.raises(RealLaunchError, match=re.escape(message)):
         install(find(), {}, sources=(source,), requirement="")
     with pytest.raises(RealLaunchError, match="found no ROS package launch in LAUNCH: "):  # the next step
         install(find(), environ, sources=(source,), requirement="")
@@ -137,7 +139,7 @@ def test_another_commit_than_the_pinned_one_is_refused_unless_the_user_names_its
 
 @pytest.fixture
 def silent_server() -> Iterator[str]:
-    """The address of a server that takes connections and says nothing."""
+    """The address of a server that accepts connections and sends nothing."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         yield f"http://127.0.0.1:{server.getsockname()[1]}/launch.git"
 
@@ -148,8 +150,8 @@ def test_sources_that_do_not_answer_are_given_up_after_ten_seconds(
     assert real_launch.REACH_SECONDS == 10.0
     monkeypatch.setattr(real_launch, "REACH_SECONDS", 1.0)
     sources = tuple(Source(f"SOURCE_{number}", silent_server, "1", "0" * 40, ("launch",)) for number in range(3))
-    told = f"could not reach {silent_server} within 1 s; point SOURCE_0 at"
-    with pytest.raises(RealLaunchError, match=re.escape(told)):
+    message = f"could not reach {silent_server} within 1 s; point SOURCE_0 at"
+    with pytest.raises(RealLaunchError, match=re.escape(message)):
         install(find(), {}, sources=sources, requirement="")
 
 
@@ -183,10 +185,10 @@ def test_set_up_does_nothing_if_the_pinned_versions_are_installed(monkeypatch: p
 
 
 def test_a_repository_without_the_package_is_refused(tmp_path: Path) -> None:
-    place = repository(tmp_path / "r", {"README": "nothing"}, tag="1.2")
-    source = Source("LAUNCH_SOURCE", "unused", "1.2", commit_of(place), ("launch",))
+    clone = repository(tmp_path / "r", {"README": "nothing"}, tag="1.2")
+    source = Source("LAUNCH_SOURCE", "unused", "1.2", commit_of(clone), ("launch",))
     with pytest.raises(RealLaunchError, match="found no ROS package launch in LAUNCH_SOURCE: "):
-        install(find(), {"LAUNCH_SOURCE": str(place)}, sources=(source,), requirement="")
+        install(find(), {"LAUNCH_SOURCE": str(clone)}, sources=(source,), requirement="")
 
 
 def test_a_sourced_installation_is_not_changed() -> None:
@@ -196,7 +198,7 @@ def test_a_sourced_installation_is_not_changed() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "place"),
+    ("setting", "expected"),
     [
         (None, Place("https://example.com/x.git", "1.0", "c0de")),
         ("/clones/x", Place("/clones/x", "1.0", "c0de")),
@@ -205,9 +207,9 @@ def test_a_sourced_installation_is_not_changed() -> None:
         ("git@example.com:team/x.git@2.0", Place("git@example.com:team/x.git", "2.0", "")),
     ],
 )
-def test_a_source_is_an_address_with_an_optional_tag_that_is_not_pinned(given: str | None, place: Place) -> None:
+def test_a_source_is_an_address_with_an_optional_tag_that_is_not_pinned(setting: str | None, expected: Place) -> None:
     source = Source("X_SOURCE", "https://example.com/x.git", "1.0", "c0de", ("x",))
-    assert source.place({"X_SOURCE": given} if given else {}) == place
+    assert source.place({"X_SOURCE": setting} if setting else {}) == expected
 
 
 def test_every_default_source_is_pinned_to_a_commit() -> None:

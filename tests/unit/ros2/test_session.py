@@ -11,7 +11,7 @@ from autograder.ros.ros2.session import Session, signals_held_back
 
 
 class InterruptedExecutor:
-    """An executor in whose first turn Ctrl-C is pressed."""
+    """An executor that receives Ctrl-C in its first turn."""
 
     def __init__(self) -> None:
         self.turns = 0

@@ -1,4 +1,4 @@
-"""What the verbs print, and what they make of files and numbers, without any node."""
+"""Output of the verbs, and how they read files and numbers, without a node."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def test_hidden_names_begin_with_an_underscore() -> None:
     assert [has_hidden_part(name) for name in ("/a/_action/status", "/a_b", "/_x")] == [True, False, True]
 
 
-def test_two_nodes_with_the_same_name_are_warned_of(capsys: pytest.CaptureFixture[str]) -> None:
+def test_two_nodes_with_the_same_name_cause_a_warning(capsys: pytest.CaptureFixture[str]) -> None:
     warn_of_duplicates([NodeName("a", "/"), NodeName("b", "/")])
     assert capsys.readouterr().err == ""
     warn_of_duplicates([NodeName("a", "/"), NodeName("a", "/")])
@@ -132,10 +132,10 @@ broken: 5
 def test_a_parameter_file_gives_a_node_its_own_values_over_those_for_all(tmp_path: Path) -> None:
     path = tmp_path / "p.yaml"
     path.write_text(PARAMETERS)
-    found = parameters_in_file(path, "/lab/helper", True)
-    assert found["speed"].value.double_value == 2.0
-    assert found["deep.er.x"].value.integer_value == 1
-    assert list(found["names"].value.string_array_value) == ["a", "b"]
+    parameters = parameters_in_file(path, "/lab/helper", True)
+    assert parameters["speed"].value.double_value == 2.0
+    assert parameters["deep.er.x"].value.integer_value == 1
+    assert list(parameters["names"].value.string_array_value) == ["a", "b"]
     assert set(parameters_in_file(path, "/lab/helper", False)) == {"speed", "names"}
     assert set(parameters_in_file(path, "/other", True)) == {"speed", "deep.er.x"}
 
@@ -158,7 +158,7 @@ def test_a_wrong_parameter_file_is_an_error(tmp_path: Path, text: str, node: str
         parameters_in_file(tmp_path / "none.yaml", node, True)
 
 
-def test_dotted_names_nest() -> None:
+def test_dotted_names_become_nested_mappings() -> None:
     assert nested({"a": 1, "b.c": 2, "b.d.e": 3}) == {"a": 1, "b": {"c": 2, "d": {"e": 3}}}
 
 

@@ -1,4 +1,4 @@
-"""What the tests of the launch stand-ins share: a context, a service that runs, and a log folder of their own."""
+"""Fixtures for the tests of the launch stand-ins: a context, a launch service and a separate log folder."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Run = Callable[..., int]
 
 
 @pytest.fixture(autouse=True)
-def _surroundings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def _separate_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
     before = dict(os.environ)
     launch.logging.reset()

@@ -1,4 +1,4 @@
-"""The doors of the worker: a function for each that reads data as the worker does, and data to try it with."""
+"""The readers of the worker: for each, a function that reads data as the worker does, and data to try it with."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ from autograder.run.sandbox import ExitReason
 from autograder.submission import exercise_stubs, intake, packages
 from autograder.submission.intake.notebooks import read_cells
 from autograder.submission.intake.writefile import written_file
-from tests.unit.reading import chapter_doors, ros_doors
-from tests.unit.reading.door import Door
-from tests.unit.reading.made_up import JSON, altered, altered_json, texts
+from tests.unit.reading import chapter_readers, ros_readers
+from tests.unit.reading.generated import JSON, altered, altered_json, texts
+from tests.unit.reading.reader import Reader
 from tests.unit.reading.samples import (
     CALLS,
     DEFINITION,
@@ -63,26 +63,26 @@ from tests.unit.reading.samples import (
 def _written(name: str, read: Callable[[Path], object]) -> Callable[[bytes, Path], object]:
     """Let a value be the content of a file of this name; `read` gets the folder."""
 
-    def with_file(data: bytes, place: Path) -> object:
-        path = place / name
+    def with_file(data: bytes, folder: Path) -> object:
+        path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)
-        return read(place)
+        return read(folder)
 
     return with_file
 
 
-def _parse_notebook(data: bytes, place: Path) -> object:
+def _parse_notebook(data: bytes, folder: Path) -> object:
     source = submitted_notebook.read(json.dumps(NOTEBOOK).encode(), "source")
     return submitted_notebook.restore(submitted_notebook.read(data, "02_nodes.ipynb"), source)
 
 
-def _answer_of_calls(answer: Any, place: Path) -> object:
+def _answer_of_calls(answer: Any, folder: Path) -> object:
     process: Any = SimpleNamespace(exit_reason=ExitReason.EXITED, returncode=0, output="")
     outcomes = calls.parse_answer(json.dumps(answer).encode(), "wheels.limits", 2, process)
     for outcome in outcomes:
-        found = calls.value(outcome, "limit(1.0)")
-        return calls.same(found, 1.0), calls.same([found], [[1]]), f"limit(1.0) returned {found}"
+        value = calls.value(outcome, "limit(1.0)")
+        return calls.same(value, 1.0), calls.same([value], [[1]]), f"limit(1.0) returned {value}"
     return None
 
 
@@ -99,14 +99,14 @@ def _use(event: str, record: Any) -> object:
     return event, record
 
 
-def _diagnose_crash(text: str, place: Path) -> object:
+def _diagnose_crash(text: str, folder: Path) -> object:
     process: Any = SimpleNamespace(exit_reason=ExitReason.EXITED, returncode=1, output=text)
     lines = text.splitlines() or [""]
     crash = protocol.Crash("spin", lines[-1], text, text)
     return failures.diagnose_output(process), failures.diagnose_exit(process), failures.diagnose_crash(crash)
 
 
-def _launch_output(text: str, place: Path) -> object:
+def _launch_output(text: str, folder: Path) -> object:
     launch_probe.parse_arguments(text)
     launch_probe.require_written(text)
     for program in launch_probe.started(text):
@@ -114,7 +114,7 @@ def _launch_output(text: str, place: Path) -> object:
     return launch_probe.ended(text), launch_probe.failure(text), launch_probe.unreadable(text)
 
 
-def _status_of_launch(data: bytes, place: Path) -> object:
+def _status_of_launch(data: bytes, folder: Path) -> object:
     ours, theirs = os.pipe()
     os.set_blocking(ours, False)
     os.write(theirs, data)
@@ -131,26 +131,26 @@ def _cell(source: str) -> nbformat.NotebookNode:
     return nbformat.v4.new_code_cell(source)
 
 
-def _zip(place: Path, data: bytes) -> object:
-    (place / "alice.zip").write_bytes(data)
-    read = intake.read_submission(place / "alice.zip", "02_nodes")
-    return intake.write_tree(read.source, place / "src")
+def _zip(folder: Path, data: bytes) -> object:
+    (folder / "alice.zip").write_bytes(data)
+    read = intake.read_submission(folder / "alice.zip", "02_nodes")
+    return intake.write_tree(read.source, folder / "src")
 
 
 def _archive() -> bytes:
-    whole = io.BytesIO()
-    with zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED) as archive:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("02_nodes/02_nodes.ipynb", json.dumps(NOTEBOOK))
         archive.writestr("02_nodes/ws/src/wheels/package.xml", MANIFEST)
-    return whole.getvalue()
+    return buffer.getvalue()
 
 
 def _definition(package: str, kind: str) -> Callable[[bytes, Path], object]:
-    def read(data: bytes, place: Path) -> object:
+    def read(data: bytes, folder: Path) -> object:
         text = data.decode(errors="replace")
-        wanted = interfaces.parse(package, f"{kind}/Status.{kind}", DEFINITION[kind].decode())
-        found = interfaces.parse(package, f"{kind}/Status.{kind}", text)
-        return interfaces.share(wanted, interfaces.compare(wanted, found))
+        expected = interfaces.parse(package, f"{kind}/Status.{kind}", DEFINITION[kind].decode())
+        actual = interfaces.parse(package, f"{kind}/Status.{kind}", text)
+        return interfaces.share(expected, interfaces.compare(expected, actual))
 
     return read
 
@@ -162,18 +162,18 @@ def _bomb(form: str) -> bytes:
     return "\n".join(["scout:", " ros__parameters:", "  n0: &n0 {b: 1}", *lines, ""]).encode()
 
 
-def _parameters_of(place: Path) -> object:
-    file = parameters.read_file(place / "config" / "fleet.yaml")
-    found = parameters.for_node(file, "scout")
-    declared = parameters.as_declared(found, {"speed": 0.5, "count": 3})
-    return parameters.differences(declared, {"speed": 1.0}), parameters.missing_sentence({"speed"}, found)
+def _parameters_of(folder: Path) -> object:
+    file = parameters.read_file(folder / "config" / "fleet.yaml")
+    values = parameters.for_node(file, "scout")
+    declared = parameters.as_declared(values, {"speed": 0.5, "count": 3})
+    return parameters.differences(declared, {"speed": 1.0}), parameters.missing_sentence({"speed"}, values)
 
 
 _UNFINISHED = Diagnosis(Kind.BUILD_FAILED, "It does not build.")
 
-DOORS: dict[str, Door] = {
-    "package.xml by its name": Door(
-        _written("wheels/package.xml", lambda place: packages.find_packages(place)),
+READERS: dict[str, Reader] = {
+    "package.xml by its name": Reader(
+        _written("wheels/package.xml", lambda folder: packages.find_packages(folder)),
         altered(MANIFEST),
         (
             MANIFEST.replace(b'encoding="utf-8"', b'encoding="foo"'),
@@ -181,17 +181,17 @@ DOORS: dict[str, Door] = {
             MANIFEST.replace(b"<name>wheels", b"<name>../../wheels"),
         ),
     ),
-    "package.xml whole": Door(
-        _written("wheels/package.xml", lambda place: manifest.read(place / "wheels")),
+    "package.xml whole": Reader(
+        _written("wheels/package.xml", lambda folder: manifest.read(folder / "wheels")),
         altered(MANIFEST),
         (MANIFEST.replace(b'encoding="utf-8"', b'encoding="foo"'),),
     ),
-    "stubs of a package": Door(
-        _written("wheels/package.xml", lambda place: exercise_stubs.explain(_UNFINISHED, place, "wheels")),
+    "stubs of a package": Reader(
+        _written("wheels/package.xml", lambda folder: exercise_stubs.explain(_UNFINISHED, folder, "wheels")),
         altered(MANIFEST),
         (b"<depend>..</depend><depend>.</depend>", b"<depend>" + b"a" * 300 + b"</depend>"),
     ),
-    "parameter file": Door(
+    "parameter file": Reader(
         _written("config/fleet.yaml", _parameters_of),
         altered(*PARAMETERS),
         (
@@ -209,7 +209,7 @@ DOORS: dict[str, Door] = {
             b"scout: &s {ros__parameters: {a: *s}}\n",
         ),
     ),
-    "answer of a function": Door(
+    "answer of a function": Reader(
         _answer_of_calls,
         altered_json(*CALLS) | JSON,
         (
@@ -221,8 +221,8 @@ DOORS: dict[str, Door] = {
             {"outcomes": [[], {"arguments": {"a": 1}}]},
         ),
     ),
-    "event of a stepped program": Door(
-        lambda event, place: _use(*protocol.parse(json.dumps(event).encode() + b"\n")),
+    "event of a stepped program": Reader(
+        lambda event, folder: _use(*protocol.parse(json.dumps(event).encode() + b"\n")),
         altered_json(*EVENTS) | JSON,
         (
             *({**event, "event": ["done"]} for event in EVENTS),
@@ -235,78 +235,78 @@ DOORS: dict[str, Door] = {
         ),
         refuses=(protocol.ProtocolError,),
     ),
-    "line of a stepped program": Door(
-        lambda line, place: protocol.parse(line + b"\n"),
+    "line of a stepped program": Reader(
+        lambda line, folder: protocol.parse(line + b"\n"),
         altered(*(json.dumps(event).encode() for event in EVENTS)),
         refuses=(protocol.ProtocolError,),
     ),
-    "report of pytest": Door(
-        lambda data, place: student_test_reports.parse_claims(data),
+    "report of pytest": Reader(
+        lambda data, folder: student_test_reports.parse_claims(data),
         altered(JUNIT),
         (JUNIT.replace(b"utf-8", b"foo"), JUNIT.replace(b"utf-8", b"utf-7")),
     ),
-    "output of a launch": Door(_launch_output, texts(LAUNCH_OUTPUT, SHOWN_ARGUMENTS)),
-    "exit status of a launch": Door(
+    "output of a launch": Reader(_launch_output, texts(LAUNCH_OUTPUT, SHOWN_ARGUMENTS)),
+    "exit status of a launch": Reader(
         _status_of_launch,
         altered(b"0\n", b"-15\n"),
         (b"points\n", b"-\n", b"1\n0\n", b"\xd9\xa3\n", b"9" * 4301 + b"\n", b"x" * 70, b"--1\n", b"1_0\n"),
     ),
-    "traceback": Door(_diagnose_crash, texts(TRACEBACK)),
-    "traceback of a signal's race": Door(lambda text, place: rclpy_races.lost_a_race(text), texts(TRACEBACK)),
-    "frames of a traceback": Door(lambda text, place: tracebacks.own_frames(text), texts(TRACEBACK)),
-    "log of a build": Door(
-        lambda text, place: (build_log.readable(text), build_log.first_error(text)), texts(TRACEBACK, LAUNCH_OUTPUT)
+    "traceback": Reader(_diagnose_crash, texts(TRACEBACK)),
+    "traceback of a signal's race": Reader(lambda text, folder: rclpy_races.lost_a_race(text), texts(TRACEBACK)),
+    "frames of a traceback": Reader(lambda text, folder: tracebacks.own_frames(text), texts(TRACEBACK)),
+    "log of a build": Reader(
+        lambda text, folder: (build_log.readable(text), build_log.first_error(text)), texts(TRACEBACK, LAUNCH_OUTPUT)
     ),
-    "imports of a module": Door(
-        _written("wheels/wheels/limits.py", lambda place: imports.imported(place / "wheels")),
+    "imports of a module": Reader(
+        _written("wheels/wheels/limits.py", lambda folder: imports.imported(folder / "wheels")),
         altered(PYTHON),
         (b"(" * 5000, b"\0", b"# coding: foo\n", b"x = " + b"9" * 5000),
     ),
-    "metadata of an installed package": Door(
+    "metadata of an installed package": Reader(
         _written(
             "install/wheels/lib/python3.12/site-packages/wheels-1.0.egg-info/entry_points.txt",
-            lambda place: installed.look(place / "install", "wheels"),
+            lambda folder: installed.look(folder / "install", "wheels"),
         ),
         altered(METADATA),
         (b"[console_scripts]\na\n", b"a=b\n[console_scripts]\nc=d\n", b"[console_scripts]\na=b\n c=d\n[a\n"),
     ),
-    "definition of a message": Door(
+    "definition of a message": Reader(
         _definition("wheels_msgs", "msg"), altered(DEFINITION["msg"]), refuses=(interfaces.Unreadable,)
     ),
-    "definition of an action": Door(
+    "definition of an action": Reader(
         _definition("wheels_msgs", "action"), altered(DEFINITION["action"]), refuses=(interfaces.Unreadable,)
     ),
-    "definition that is built": Door(
-        lambda data, place: definition_reader.read("wheels_msgs", {"msg/Status.msg": data.decode(errors="replace")}),
+    "definition that is built": Reader(
+        lambda data, folder: definition_reader.read("wheels_msgs", {"msg/Status.msg": data.decode(errors="replace")}),
         altered(DEFINITION["msg"]),
         refuses=(definitions.DefinitionError,),
     ),
-    "notebook": Door(
-        lambda value, place: _parse_notebook(json.dumps(value).encode(), place),
+    "notebook": Reader(
+        lambda value, folder: _parse_notebook(json.dumps(value).encode(), folder),
         altered_json(NOTEBOOK),
         ({**NOTEBOOK, "nbformat_minor": 10**400}, {**NOTEBOOK, "metadata": []}, {**NOTEBOOK, "cells": {"a": 1}}),
     ),
-    "cells of a notebook": Door(
-        lambda value, place: [written_file(cell["source"]) for cell in read_cells(json.dumps(value).encode())],
+    "cells of a notebook": Reader(
+        lambda value, folder: [written_file(cell["source"]) for cell in read_cells(json.dumps(value).encode())],
         altered_json(NOTEBOOK),
         refuses=(ValueError,),
     ),
-    "bytes of a notebook": Door(_parse_notebook, altered(json.dumps(NOTEBOOK).encode())),
-    "outputs of a notebook": Door(
-        lambda lines, place: read_answer(b"\n".join(json.dumps(line).encode() for line in lines)),
+    "bytes of a notebook": Reader(_parse_notebook, altered(json.dumps(NOTEBOOK).encode())),
+    "outputs of a notebook": Reader(
+        lambda lines, folder: read_answer(b"\n".join(json.dumps(line).encode() for line in lines)),
         st.lists(altered_json(*OUTPUTS), max_size=3),
     ),
-    "bytes of outputs of a notebook": Door(
-        lambda data, place: read_answer(data), altered(b"\n".join(json.dumps(line).encode() for line in OUTPUTS))
+    "bytes of outputs of a notebook": Reader(
+        lambda data, folder: read_answer(data), altered(b"\n".join(json.dumps(line).encode() for line in OUTPUTS))
     ),
-    "file that a cell writes": Door(
-        lambda name, place: _would_overwrite(_cell(f"%%writefile {name}\n# YOUR CODE HERE"), place),
+    "file that a cell writes": Reader(
+        lambda name, folder: _would_overwrite(_cell(f"%%writefile {name}\n# YOUR CODE HERE"), folder),
         st.text(st.sampled_from("ab/.~\0\ud800 é*\n-"), max_size=40) | st.sampled_from(("a" * 300, "/" * 5000)),
         ("a\0b", "a" * 300, "ws/src/" + "b" * 256 + "/c", "\ud800", "~", "/etc/passwd", ".", "..", "-a", ""),
     ),
-    "archive": Door(lambda data, place: _zip(place, data), altered(_archive())),
-    "names in a submission": Door(
-        lambda names, place: intake.detect_layout(
+    "archive": Reader(lambda data, folder: _zip(folder, data), altered(_archive())),
+    "names in a submission": Reader(
+        lambda names, folder: intake.detect_layout(
             [intake.SubmittedFile(PurePosixPath(name), b"") for name in names], "02_nodes"
         ),
         st.lists(
@@ -317,6 +317,6 @@ DOORS: dict[str, Door] = {
         ),
         (["ws/src/a", "ws/src/a/b"], [""], ["src"], ["/"]),
     ),
-    **ros_doors.DOORS,
-    **chapter_doors.DOORS,
+    **ros_readers.READERS,
+    **chapter_readers.READERS,
 }

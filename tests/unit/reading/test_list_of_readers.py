@@ -1,4 +1,4 @@
-"""The list of doors is whole: each module of the worker that parses something is in it, or reads the grader's own."""
+"""The list of readers is complete: each parsing module of the worker is in it, or parses only the grader's own data."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ PARSES = re.compile(
     r"|\.read_string\(|HeaderParser\(|struct\.unpack|tarfile\.open|zipfile\.ZipFile\(|parse_package_string\(|rosidl_adapter\b"
 )
 PARTS = ("building", "checks", "grade", "harness", "probes", "run/lockstep", "submission", "suite")
-# Modules with a door that `doors` tries, each with the door's name.
+# Modules whose reader is tested, with the reader's name.
 TRIED = {
     "checks/ch01_package_structure/hidden/run.py": "configuration of 01",
     "grade/run_notebook.py": "outputs of a notebook",
@@ -30,27 +30,27 @@ TRIED = {
     "probes/student_test_reports.py": "report of pytest",
     "probes/student_yaml.py": "parameter file",
 }
-# What these read, the grader or a course's author has written, or a program of the sandbox reads it there.
+# Modules that parse only data of the grader or of a course's author, or that run in the sandbox.
 OWN = {
     *("building/interface_bundle.py", "checks/ch06_testing/hidden/faults.py", "suite/contract.py"),
     *("grade/batch.py", "grade/job.py", "grade/notebook_runner.py", "building/keeper.py"),
     *("grade/store.py", "building/interfaces/generate.py", "building/interfaces/tutorials.py"),
     *("run/lockstep/lockstep_host/pipes.py", "probes/call_runner.py", "probes/versions.py"),
     "submission/reading.py",  # an example in its docstring
-    "grade/bounded_json.py",  # what a worker answers, with bounds of its own
+    "grade/bounded_json.py",  # replies of workers, with limits of their own
 }
 
 
 def test_each_parsing_module_of_the_worker_is_tested_with_bad_data() -> None:
-    from tests.unit.reading.doors import DOORS
+    from tests.unit.reading.readers import READERS
 
     package = ROOT / "autograder"
     files = [path for part in PARTS for path in (package / part).rglob("*.py")]
-    left_out = {"variants", "versions"}  # answers, and packages under test
+    excluded = {"variants", "versions"}  # answers, and packages under test
     parsing = {
         path.relative_to(package).as_posix()
         for path in files
-        if not left_out & set(path.parts) and path.name != "attacks.py" and PARSES.search(path.read_text())
+        if not excluded & set(path.parts) and path.name != "attacks.py" and PARSES.search(path.read_text())
     }
     assert parsing == {*TRIED, *OWN}
-    assert set(TRIED.values()) <= set(DOORS)
+    assert set(TRIED.values()) <= set(READERS)

@@ -1,4 +1,4 @@
-"""The doors by which messages of a student's nodes enter the worker, and what it makes of each message."""
+"""The readers of messages from a student's nodes, and how the worker uses each message."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from autograder.harness.message_text import format_message
 from autograder.harness.parameter_values import value_of
 from autograder.probes import parameters
 from sim import Recorder, Simulation, load_world, start
-from tests.unit.reading.door import Door
-from tests.unit.reading.made_up import altered
+from tests.unit.reading.generated import altered
+from tests.unit.reading.reader import Reader
 
 KINDS = (
     *(Twist, Odometry, LaserScan, BatteryState, JointState, String, Log, GoalStatusArray, ParameterDescriptor),
@@ -46,10 +46,10 @@ def _integers(kind: str) -> st.SearchStrategy[int]:
 
 def _values(kind: str) -> st.SearchStrategy[Any]:
     """Return a strategy for values of a field, by its type as rosidl writes it."""
-    if found := re.fullmatch(r"sequence<([^,>]+)(?:, (\d+))?>", kind):
-        return st.lists(_values(found[1]), max_size=min(int(found[2] or 4), 4))
-    if found := re.fullmatch(r"(.+)\[(\d+)\]", kind):
-        return st.lists(_values(found[1]), min_size=int(found[2]), max_size=int(found[2]))
+    if match := re.fullmatch(r"sequence<([^,>]+)(?:, (\d+))?>", kind):
+        return st.lists(_values(match[1]), max_size=min(int(match[2] or 4), 4))
+    if match := re.fullmatch(r"(.+)\[(\d+)\]", kind):
+        return st.lists(_values(match[1]), min_size=int(match[2]), max_size=int(match[2]))
     if kind.startswith("string"):
         return TEXTS
     plain = {"boolean": st.booleans(), "float": FLOATS, "double": DOUBLES, "octet": st.binary(min_size=1, max_size=1)}
@@ -72,42 +72,42 @@ def messages(kind: Any) -> st.SearchStrategy[Any]:
 def _message(kind: Any, values: dict[str, Any]) -> Any:
     message = kind()
     for name, value in values.items():
-        held = getattr(message, name)
-        if isinstance(held, array.array):
-            value = array.array(held.typecode, value)
-        elif isinstance(held, np.ndarray):
-            value = np.array(value, held.dtype)
+        current = getattr(message, name)
+        if isinstance(current, array.array):
+            value = array.array(current.typecode, value)
+        elif isinstance(current, np.ndarray):
+            value = np.array(value, current.dtype)
         setattr(message, name, value)
     return message
 
 
-def obey(message: Twist, place: Path) -> object:
+def obey(message: Twist, folder: Path) -> object:
     """Drive a step with a command, as a harness does."""
     simulation = Simulation(load_world(WORLD / "empty_room.yaml"))
     state = start(simulation)
     return _move(simulation, state, _command(ReceivedMessage(0.1, message)), 200_000_000, Recorder(simulation, state))
 
 
-def describe_parameter(answer: ParameterValue, place: Path) -> object:
+def describe_parameter(answer: ParameterValue, folder: Path) -> object:
     """Read a node's answer about a parameter, compare it and put it into words."""
-    found = {"speed": value_of(answer, "speed")}
-    declared = parameters.as_declared({"speed": 3.0}, found)
+    values = {"speed": value_of(answer, "speed")}
+    declared = parameters.as_declared({"speed": 3.0}, values)
     return (
-        parameters.differences(found, {"speed": 0.5}),
+        parameters.differences(values, {"speed": 0.5}),
         parameters.override_arguments(declared),
         parameters.same(1.0, 2.0),
     )
 
 
-def follow_goal(message: GoalStatusArray, place: Path) -> object:
-    """Take the states of goals, of which one is the grader's."""
-    node: Any = SimpleNamespace(on_exchange=lambda *told: None)
+def follow_goal(message: GoalStatusArray, folder: Path) -> object:
+    """Take the states of goals; one of them is the grader's."""
+    node: Any = SimpleNamespace(on_exchange=lambda *exchange: None)
     actions = Actions(node, lambda arrived_ns: 0.1)
     actions._goals[bytes(16)] = Goal()
     return actions._on_status(message, 0)
 
 
-def show(message: Any, place: Path) -> str:
+def show(message: Any, folder: Path) -> str:
     """Format a message for the feedback."""
     return format_message(message)
 
@@ -117,17 +117,17 @@ def _own_type() -> Any:
     return classes((("wheels_msgs", (inner, status)),)).msg.Status
 
 
-DOORS: dict[str, Door] = {
-    "command of a robot": Door(obey, messages(Twist)),
-    "answer about a parameter": Door(
+READERS: dict[str, Reader] = {
+    "command of a robot": Reader(obey, messages(Twist)),
+    "answer about a parameter": Reader(
         describe_parameter,
         messages(ParameterValue),
         (ParameterValue(type=200), ParameterValue(type=3, double_value=float("nan")), ParameterValue(type=9)),
     ),
-    "states of goals": Door(follow_goal, messages(GoalStatusArray)),
-    "message that is shown": Door(show, st.one_of(*map(messages, KINDS))),
-    "bytes of a message of the student's own type": Door(
-        lambda data, place: format_message(from_bytes(_own_type(), data)),
+    "states of goals": Reader(follow_goal, messages(GoalStatusArray)),
+    "message that is shown": Reader(show, st.one_of(*map(messages, KINDS))),
+    "bytes of a message of the student's own type": Reader(
+        lambda data, folder: format_message(from_bytes(_own_type(), data)),
         altered(bytes(40), b"\x01\0\0\0\x02\0\0\0a\0" + bytes(30)) | st.binary(max_size=60),
         refuses=(ValueError,),
     ),

@@ -1,4 +1,4 @@
-"""Made-up data for the doors of the grader: valid data with a few changes, so that they get past the first look."""
+"""Generated data for the readers: valid data with a few changes, so that they pass the first checks."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-# What parsers have stumbled over: numbers without end, words of several formats, brackets, ends of lines, bytes.
+# Tokens that made parsers fail: endless numbers, words of several formats, brackets, line ends, bytes.
 TOKENS = (
     *(b"", b"0", b"-1", b"1e400", b"-1e-400", b"nan", b".inf", b"9" * 400, b"9" * 4301, b"0x1f", b"1_0", b"1" * 70),
     *(b"null", b"true", b"~", b"!!bool foo", b"!!int ''", b"!!timestamp foo", b"!!python/object:os.system x", b"*a"),
@@ -52,24 +52,24 @@ def _nested(depth: int) -> Any:
 
 @st.composite
 def altered(draw: st.DrawFn, *samples: bytes) -> bytes:
-    """Draw one of the samples with up to four changes: a part of it is left out, repeated, or gives way to a token."""
+    """Draw one of the samples with up to four changes: a part is removed, repeated or replaced by a token."""
     data = draw(st.sampled_from(samples))
     for _ in range(draw(st.integers(0, 4))):
         start = draw(st.integers(0, len(data)))
         end = min(len(data), start + draw(st.sampled_from((0, 1, 3, 10, 40, 400))))
-        put = draw(st.one_of(st.sampled_from(TOKENS), st.just(data[start:end] * 2), st.binary(max_size=6)))
-        data = data[:start] + put + data[end:]
+        replacement = draw(st.one_of(st.sampled_from(TOKENS), st.just(data[start:end] * 2), st.binary(max_size=6)))
+        data = data[:start] + replacement + data[end:]
     return data
 
 
 def texts(*samples: str) -> st.SearchStrategy[str]:
-    """Return altered samples as text that a program has printed: bytes that are no UTF-8 are replaced."""
+    """Return altered samples as text that a program has printed: invalid UTF-8 is replaced."""
     return altered(*(sample.encode() for sample in samples)).map(lambda data: data.decode(errors="replace"))
 
 
 @st.composite
 def altered_json(draw: st.DrawFn, *samples: Any) -> Any:
-    """Draw one of the samples, JSON values, in which up to three values are others, or are missing."""
+    """Draw one of the samples, JSON values, with up to three values changed or removed."""
     value = json.loads(json.dumps(draw(st.sampled_from(samples))))
     for _ in range(draw(st.integers(0, 3))):
         value = _changed(draw, value)
