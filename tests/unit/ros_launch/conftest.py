@@ -48,20 +48,20 @@ def run() -> Run:
 
 
 @pytest.fixture
-def seen() -> list[str]:
-    """What `note` has noted."""
+def recorded() -> list[str]:
+    """The texts that `record` has recorded."""
     return []
 
 
 @pytest.fixture
-def note(seen: list[str]) -> Callable[[Any], launch.Action]:
-    """Make an action that notes the text of a substitution at the time of its execution."""
+def record(recorded: list[str]) -> Callable[[Any], launch.Action]:
+    """Make an action that records the text of a substitution at the time of its execution."""
 
     def make(text: Any) -> launch.Action:
         parts = launch.utilities.normalize_to_list_of_substitutions(text)
 
         def write(context: launch.LaunchContext) -> None:
-            seen.append(launch.utilities.perform_substitutions(context, parts))
+            recorded.append(launch.utilities.perform_substitutions(context, parts))
 
         return launch.actions.OpaqueFunction(function=write)
 

@@ -22,30 +22,30 @@ from launch.conditions import IfCondition
 from launch.substitutions import EnvironmentVariable, LaunchConfiguration, TextSubstitution
 
 Run = Callable[..., int]
-Note = Callable[[Any], Any]
+Record = Callable[[Any], Any]
 X = LaunchConfiguration("x", default="unset")
 
 
-def test_a_default_is_used_and_may_refer_to_an_earlier_argument(run: Run, note: Note, seen: list[str]) -> None:
+def test_a_default_is_used_and_may_refer_to_an_earlier_argument(run: Run, record: Record, recorded: list[str]) -> None:
     code = run(
         DeclareLaunchArgument("robot", default_value="r2"),
         DeclareLaunchArgument("topic", default_value=["/", LaunchConfiguration("robot"), "/scan"]),
-        note(LaunchConfiguration("topic")),
+        record(LaunchConfiguration("topic")),
     )
-    assert (code, seen) == (0, ["/r2/scan"])
+    assert (code, recorded) == (0, ["/r2/scan"])
 
 
-def test_a_default_does_not_replace_a_value(run: Run, note: Note, seen: list[str]) -> None:
-    run(SetLaunchConfiguration("x", "given"), DeclareLaunchArgument("x", default_value="default"), note(X))
-    assert seen == ["given"]
+def test_a_default_does_not_replace_a_value(run: Run, record: Record, recorded: list[str]) -> None:
+    run(SetLaunchConfiguration("x", "given"), DeclareLaunchArgument("x", default_value="default"), record(X))
+    assert recorded == ["given"]
 
 
 def test_a_missing_argument_ends_the_launch_with_an_error(
-    run: Run, note: Note, seen: list[str], capsys: pytest.CaptureFixture[str]
+    run: Run, record: Record, recorded: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    code = run(DeclareLaunchArgument("map", description="the map"), note("never"))
+    code = run(DeclareLaunchArgument("map", description="the map"), record("never"))
     out = capsys.readouterr().out
-    assert (code, seen) == (1, [])
+    assert (code, recorded) == (1, [])
     assert 'Required launch argument "map" (description: "the map") was not provided' in out
     assert (
         "[ERROR] [launch]: Caught exception in launch (see debug for traceback): "
@@ -80,52 +80,52 @@ def test_the_description_of_an_argument_names_its_choices(arguments: dict[str, A
     assert DeclareLaunchArgument("x", **arguments).description == description
 
 
-def test_a_configuration_set_in_a_group_ends_with_the_group(run: Run, note: Note, seen: list[str]) -> None:
+def test_a_configuration_set_in_a_group_ends_with_the_group(run: Run, record: Record, recorded: list[str]) -> None:
     run(
         SetLaunchConfiguration("x", "outer"),
-        GroupAction([note(X), SetLaunchConfiguration("x", "inner"), note(X)]),
-        note(X),
+        GroupAction([record(X), SetLaunchConfiguration("x", "inner"), record(X)]),
+        record(X),
     )
-    assert seen == ["outer", "inner", "outer"]
+    assert recorded == ["outer", "inner", "outer"]
 
 
-def test_a_group_without_scope_leaves_what_it_sets(run: Run, note: Note, seen: list[str]) -> None:
-    run(GroupAction([SetLaunchConfiguration("x", "inner")], scoped=False), note(X))
-    assert seen == ["inner"]
+def test_a_group_without_scope_leaves_what_it_sets(run: Run, record: Record, recorded: list[str]) -> None:
+    run(GroupAction([SetLaunchConfiguration("x", "inner")], scoped=False), record(X))
+    assert recorded == ["inner"]
 
 
-def test_a_group_without_forwarding_sees_only_what_it_is_given(run: Run, note: Note, seen: list[str]) -> None:
+def test_a_group_without_forwarding_sees_only_what_it_is_given(run: Run, record: Record, recorded: list[str]) -> None:
     y = LaunchConfiguration("y", default="unset")
     run(
         SetLaunchConfiguration("x", "outer"),
-        GroupAction([note(X), note(y)], forwarding=False, launch_configurations={"y": ["from ", X]}),
-        note(X),
-        note(y),
+        GroupAction([record(X), record(y)], forwarding=False, launch_configurations={"y": ["from ", X]}),
+        record(X),
+        record(y),
     )
-    assert seen == ["unset", "from outer", "outer", "unset"]
+    assert recorded == ["unset", "from outer", "outer", "unset"]
 
 
-def test_groups_nest(run: Run, note: Note, seen: list[str]) -> None:
+def test_groups_can_be_nested(run: Run, record: Record, recorded: list[str]) -> None:
     run(
         GroupAction(
-            [SetLaunchConfiguration("x", "1"), GroupAction([SetLaunchConfiguration("x", "2"), note(X)]), note(X)]
+            [SetLaunchConfiguration("x", "1"), GroupAction([SetLaunchConfiguration("x", "2"), record(X)]), record(X)]
         ),
-        note(X),
+        record(X),
     )
-    assert seen == ["2", "1", "unset"]
+    assert recorded == ["2", "1", "unset"]
 
 
-def test_the_environment_of_a_group_ends_with_it(run: Run, note: Note, seen: list[str]) -> None:
+def test_the_environment_of_a_group_ends_with_it(run: Run, record: Record, recorded: list[str]) -> None:
     variable = EnvironmentVariable("COURSE_X", default_value="unset")
     run(
-        GroupAction([SetEnvironmentVariable("COURSE_X", "inner"), note(variable)]),
-        note(variable),
+        GroupAction([SetEnvironmentVariable("COURSE_X", "inner"), record(variable)]),
+        record(variable),
         SetEnvironmentVariable(["COURSE", "_X"], TextSubstitution(text="outer")),
-        note(variable),
+        record(variable),
         UnsetEnvironmentVariable("COURSE_X"),
-        note(variable),
+        record(variable),
     )
-    assert seen == ["inner", "unset", "outer", "unset"]
+    assert recorded == ["inner", "unset", "outer", "unset"]
 
 
 def test_an_environment_variable_can_be_extended_at_both_ends(run: Run) -> None:
@@ -140,23 +140,25 @@ def test_an_environment_variable_can_be_extended_at_both_ends(run: Run) -> None:
     assert os.environ["COURSE_LIST"] == "1,2"
 
 
-def test_a_configuration_can_be_removed(run: Run, note: Note, seen: list[str]) -> None:
-    run(SetLaunchConfiguration("x", "1"), UnsetLaunchConfiguration("x"), note(X))
-    assert seen == ["unset"]
+def test_a_configuration_can_be_removed(run: Run, record: Record, recorded: list[str]) -> None:
+    run(SetLaunchConfiguration("x", "1"), UnsetLaunchConfiguration("x"), record(X))
+    assert recorded == ["unset"]
 
 
-def test_substitutions_are_performed_when_the_action_is_executed(run: Run, note: Note, seen: list[str]) -> None:
-    late = note(X)
+def test_substitutions_are_performed_when_the_action_is_executed(run: Run, record: Record, recorded: list[str]) -> None:
+    late = record(X)
     run(SetLaunchConfiguration("x", "1"), SetLaunchConfiguration("x", [X, "2"]), late)
-    assert seen == ["12"]
+    assert recorded == ["12"]
 
 
-def test_an_opaque_function_gets_its_arguments_and_may_yield_actions(run: Run, note: Note, seen: list[str]) -> None:
+def test_an_opaque_function_gets_its_arguments_and_may_yield_actions(
+    run: Run, record: Record, recorded: list[str]
+) -> None:
     def function(context: LaunchContext, *args: str, key: str) -> Any:
-        return [note(X.perform(context)), note([*args, key])]
+        return [record(X.perform(context)), record([*args, key])]
 
     run(SetLaunchConfiguration("x", "1"), OpaqueFunction(function=function, args=["a", "b"], kwargs={"key": "c"}))
-    assert seen == ["1", "abc"]
+    assert recorded == ["1", "abc"]
 
 
 def test_a_value_that_is_not_an_entity_is_named(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
@@ -173,10 +175,10 @@ def test_the_arguments_of_a_description_are_found_without_running_it() -> None:
             GroupAction([DeclareLaunchArgument("guarded")], condition=IfCondition("false")),
         ]
     )
-    found = {argument.name: argument for argument in description.get_launch_arguments()}
-    assert list(found) == ["first", "grouped", "guarded"]
-    assert found["first"].default_value is None
-    assert [found[name]._conditionally_included for name in found] == [False, False, True]
+    arguments = {argument.name: argument for argument in description.get_launch_arguments()}
+    assert list(arguments) == ["first", "grouped", "guarded"]
+    assert arguments["first"].default_value is None
+    assert [arguments[name]._conditionally_included for name in arguments] == [False, False, True]
 
 
 def test_arguments_behind_a_group_that_forwards_nothing_are_not_arguments_of_the_file() -> None:

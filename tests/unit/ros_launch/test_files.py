@@ -1,4 +1,4 @@
-"""Launch files: loading, including and describing them, and what is said of those that cannot be loaded."""
+"""Launch files: loading, including and describing them, and the errors of those that cannot be loaded."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from launch.launch_description_sources import (
 from launch.substitutions import LaunchConfiguration, ThisLaunchFile, ThisLaunchFileDir
 
 Run = Callable[..., int]
-Note = Callable[[Any], Any]
+Record = Callable[[Any], Any]
 
 INNER = """
 from launch import LaunchDescription
@@ -65,18 +65,18 @@ def test_an_included_file_gets_its_arguments_and_its_own_path(
 
 
 def test_arguments_of_an_include_stay_unless_a_group_encloses_it(
-    run: Run, inner: Path, note: Note, seen: list[str]
+    run: Run, inner: Path, record: Record, recorded: list[str]
 ) -> None:
     def include() -> IncludeLaunchDescription:
         return IncludeLaunchDescription(str(inner), launch_arguments=[("robot", "r2")])
 
     robot = LaunchConfiguration("robot", default="unset")
-    run(GroupAction([include()]), note(robot), include(), note(robot))
-    assert seen == ["unset", "r2"]
+    run(GroupAction([include()]), record(robot), include(), record(robot))
+    assert recorded == ["unset", "r2"]
 
 
 def test_after_an_include_the_outer_file_is_the_current_one_again(
-    run: Run, inner: Path, tmp_path: Path, note: Note, seen: list[str]
+    run: Run, inner: Path, tmp_path: Path, record: Record, recorded: list[str]
 ) -> None:
     outer = tmp_path / "outer.launch.py"
     outer.write_text(
@@ -84,14 +84,14 @@ def test_after_an_include_the_outer_file_is_the_current_one_again(
     )
     description = LaunchDescription(
         [
-            note(ThisLaunchFile()),
+            record(ThisLaunchFile()),
             IncludeLaunchDescription(str(inner), launch_arguments=[("robot", "r2")]),
-            note(ThisLaunchFileDir()),
+            record(ThisLaunchFileDir()),
         ]
     )
     source = launch.LaunchDescriptionSource(description, location=str(outer))
     run(IncludeLaunchDescription(source))
-    assert seen == [str(outer), str(tmp_path)]
+    assert recorded == [str(outer), str(tmp_path)]
 
 
 def test_a_required_argument_that_an_include_does_not_give_is_an_error(
@@ -230,7 +230,7 @@ def test_loading_a_launch_file_leaves_no_compiled_file(inner: Path) -> None:
     assert [path.name for path in inner.parent.iterdir()] == ["inner.launch.py"]
 
 
-def test_a_deprecated_description_is_warned_of(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_deprecated_description_causes_a_warning(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
     run(LaunchDescription([LogInfo(msg="still runs")], deprecated_reason="use the other one"))
     out = capsys.readouterr().out
     assert "[WARNING] [launch]: deprecated launch description: use the other one" in out

@@ -15,8 +15,8 @@ from autograder.course_paths import ROOT
 
 MODULES: dict[str, list[str]] = yaml.safe_load(Path(__file__).with_name("real_modules.yaml").read_text())
 PAGE = runpy.run_path(str(ROOT / "docs" / "platform_page.py"))
-TOLD = PAGE["current"]()
-# Pytest asks a plug-in for names that it need not have, and expects an AttributeError.
+PAGE_TEXT = PAGE["current"]()
+# Pytest asks a plug-in for optional names, and expects an AttributeError.
 PLUGIN = "launch_pytest.plugin"
 
 
@@ -24,14 +24,14 @@ PLUGIN = "launch_pytest.plugin"
 def test_a_module_offers_its_names_or_the_page_says_that_they_are_not_covered(module: str) -> None:
     for name in ["", *MODULES[module]]:
         if f"{module}.{name}" in MODULES:
-            continue  # a submodule: it has a turn of its own
+            continue  # a submodule is tested on its own
         try:
-            found = importlib.import_module(module)
-            getattr(found, name or "__name__")
+            imported = importlib.import_module(module)
+            getattr(imported, name or "__name__")
         except NotInStandInError as error:
             missing = re.match("'(.*?)' is not covered", str(error))
             assert missing, error  # noqa: PT017
-            assert f"`{missing[1]}`" in TOLD
+            assert f"`{missing[1]}`" in PAGE_TEXT
 
 
 @pytest.mark.parametrize("module", PAGE["INNER_NAMES"])

@@ -1,4 +1,4 @@
-"""Nodes: what their command line comes to, and where they and their packages are found."""
+"""Nodes: their command lines, and where they and their packages are found."""
 
 from __future__ import annotations
 
@@ -169,7 +169,7 @@ def test_a_parameter_for_all_nodes_is_one_value() -> None:
         SetParameter("p", {"a": 1})
 
 
-def test_two_nodes_of_one_full_name_are_warned_of(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+def test_two_nodes_of_one_full_name_cause_a_warning(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
     run(Node(executable="true", name="n", namespace="/"), Node(executable="true", name="n", namespace="/"))
     expected = "[WARNING] [/n]: there are now at least 2 nodes with the name /n created within this launch context"
     assert expected in capsys.readouterr().out
@@ -204,10 +204,14 @@ def test_packages_and_their_executables_are_found(
 
 
 def test_configurations_for_nodes_do_not_disturb_those_of_the_user(run: Run) -> None:
-    seen: dict[str, Any] = {}
+    configurations: dict[str, Any] = {}
 
-    def look(context: LaunchContext) -> None:
-        seen.update(context.launch_configurations)
+    def read_configurations(context: LaunchContext) -> None:
+        configurations.update(context.launch_configurations)
 
-    run(SetLaunchConfiguration("speed", "1"), GroupAction([SetParameter("a", 1)]), OpaqueFunction(function=look))
-    assert seen == {"speed": "1"}
+    run(
+        SetLaunchConfiguration("speed", "1"),
+        GroupAction([SetParameter("a", 1)]),
+        OpaqueFunction(function=read_configurations),
+    )
+    assert configurations == {"speed": "1"}

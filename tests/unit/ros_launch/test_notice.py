@@ -1,4 +1,4 @@
-"""Stand-ins say what they are, and answer what they do not cover with an error that helps."""
+"""Stand-ins say that they are stand-ins, and an error with a remedy names what they do not cover."""
 
 from __future__ import annotations
 
@@ -78,14 +78,14 @@ def test_an_uncovered_submodule_is_named_with_the_way_to_get_it(module: str) -> 
         assert str(caught.value) == str(not_covered(module, standin=package))
 
 
-def test_a_typing_error_is_answered_with_the_name_that_was_meant() -> None:
+def test_a_misspelt_name_is_reported_with_the_nearest_one() -> None:
     with pytest.raises(
         NotInStandInError, match=r"^'launch_ros.actions.Nod' is not covered \(did you mean 'Node'\?\): "
     ):
         exec("from launch_ros.actions import Nod")
 
 
-def test_private_names_are_refused_the_python_way() -> None:
+def test_a_private_name_raises_an_attribute_error() -> None:
     assert not hasattr(launch.actions, "__wrapped__")
     with pytest.raises(AttributeError, match=r"module 'launch.actions' has no attribute '_private'"):
         launch.actions._private  # noqa: B018

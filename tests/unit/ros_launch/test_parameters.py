@@ -1,4 +1,4 @@
-"""Parameters and namespaces: what they come to when they are evaluated."""
+"""Evaluation of parameters and namespaces."""
 
 from __future__ import annotations
 

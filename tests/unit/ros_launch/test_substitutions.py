@@ -1,4 +1,4 @@
-"""Substitutions: what they stand for, when that is worked out, and how they fail."""
+"""Substitutions: their values, when they are evaluated, and how they fail."""
 
 from __future__ import annotations
 
@@ -116,9 +116,9 @@ def test_a_local_value_is_found_by_attributes_and_keys(context: LaunchContext) -
 
 
 def test_an_executable_is_found_on_the_path(context: LaunchContext) -> None:
-    found = Path(context.perform_substitution(FindExecutable(name="sh")))
-    assert found.name == "sh"
-    assert os.access(found, os.X_OK)
+    executable = Path(context.perform_substitution(FindExecutable(name="sh")))
+    assert executable.name == "sh"
+    assert os.access(executable, os.X_OK)
 
 
 def test_an_anonymous_name_stays_the_same_within_a_launch(context: LaunchContext) -> None:

@@ -73,8 +73,8 @@ def test_only_mounts_marked_as_writable_are_writable(tmp_path: Path) -> None:
 def test_every_file_system_in_memory_has_a_size_or_is_read_only(tmp_path: Path) -> None:
     options = _options(_sandbox(Sandbox(tmp_path, limits=Limits(scratch=4096))))
     for path in ("/tmp", "/dev/shm"):
-        at = next(i for i, pair in enumerate(itertools.pairwise(options)) if pair == ("--tmpfs", path))
-        assert options[at - 2 : at] == ["--size", "4096"]
+        index = next(i for i, pair in enumerate(itertools.pairwise(options)) if pair == ("--tmpfs", path))
+        assert options[index - 2 : index] == ["--size", "4096"]
     assert {"/", "/dev", "/proc"} <= set(_pairs(options, "--remount-ro"))
 
 
@@ -107,17 +107,17 @@ def test_a_worker_sandbox_has_namespaces_and_a_scratch_folder_of_limited_size(tm
     options = _options(arguments)
     for flag in ("--unshare-net", "--unshare-user", "--unshare-pid", "--unshare-ipc"):
         assert flag in options
-    at = options.index(str(tmp_path))
-    assert options[at - 3 : at] == ["--size", str(WORKER_SCRATCH), "--tmpfs"]
+    index = options.index(str(tmp_path))
+    assert options[index - 3 : index] == ["--size", str(WORKER_SCRATCH), "--tmpfs"]
     assert arguments[-1] == "worker"
 
 
 def test_a_sandbox_of_root_becomes_an_ordinary_user_before_it_creates_namespaces(tmp_path: Path) -> None:
     arguments = bubblewrap.worker_sandbox(["worker"], View(), scratch=tmp_path, user=47001)
     assert "--unshare-user" not in _options(arguments)
-    become = arguments[arguments.index("setpriv") :]
-    assert {"--reuid=47001", "--regid=47001", "--clear-groups", "--no-new-privs"} <= set(become)
-    assert become.index("--no-new-privs") < become.index("--unshare-user")
+    command = arguments[arguments.index("setpriv") :]
+    assert {"--reuid=47001", "--regid=47001", "--clear-groups", "--no-new-privs"} <= set(command)
+    assert command.index("--no-new-privs") < command.index("--unshare-user")
 
 
 def test_a_worker_sandbox_shows_the_grader_s_code_and_only_the_declared_files_of_chapters(tmp_path: Path) -> None:

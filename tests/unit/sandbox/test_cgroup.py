@@ -1,4 +1,4 @@
-"""Where a control group can be made, told from the kernel's own tables; and one made for real."""
+"""Where a control group can be created, according to the kernel's tables, and real control groups."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_version_1_offers_the_own_group_of_the_pids_controller_and_those_above(t
     assert cgroup.homes("pids", mountinfo, own) == [pids / "user" / "session", pids / "user", pids]
 
 
-def test_version_2_offers_the_groups_that_hand_the_pids_controller_down(tmp_path: Path) -> None:
+def test_version_2_offers_the_groups_that_delegate_the_pids_controller(tmp_path: Path) -> None:
     _hierarchy(tmp_path, "user.slice/session.scope")
     (tmp_path / "cgroup.subtree_control").write_text("cpu memory pids\n")
     (tmp_path / "user.slice" / "cgroup.subtree_control").write_text("memory pids\n")
@@ -47,7 +47,7 @@ def test_without_control_groups_no_folder_is_offered() -> None:
 
 
 @pytest.fixture(autouse=True)
-def _look_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
+def _uncached_home(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cgroup, "_home", cgroup._home.__wrapped__)
 
 
@@ -65,7 +65,7 @@ def test_without_a_control_group_prlimit_bounds_all_users_but_root(
 
 
 def test_a_group_of_version_2_is_one_folder_with_both_bounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """No controller is at work in this folder. The test only asserts that the right texts are written to its files."""
+    """No controller acts on this folder. The test only asserts which texts are written to its files."""
     monkeypatch.setattr(cgroup, "_home", lambda controller: tmp_path)
     folder = tmp_path / f"autograder-{cgroup._PROCESS}-7"
     folder.mkdir()
@@ -74,9 +74,9 @@ def test_a_group_of_version_2_is_one_folder_with_both_bounds(tmp_path: Path, mon
     monkeypatch.setattr(cgroup, "_NUMBERS", iter([7]))
     group = cgroup.make(Limits(threads=10, memory=100 * MIB, scratch=28 * MIB))
     assert group.folders == (folder,)
-    said = {path.name: path.read_text() for path in folder.iterdir()}
-    wanted = {"pids.max": "40", "memory.max": str(256 * MIB), "memory.swap.max": "0", "memory.oom.group": "1"}
-    assert said == wanted
+    texts = {path.name: path.read_text() for path in folder.iterdir()}
+    expected = {"pids.max": "40", "memory.max": str(256 * MIB), "memory.swap.max": "0", "memory.oom.group": "1"}
+    assert texts == expected
     (folder / "memory.events").write_text("low 0\noom 1\noom_kill 0\n")
     assert not group.ran_out()
     (folder / "memory.events").write_text("low 0\noom 1\noom_kill 1\n")
@@ -86,7 +86,7 @@ def test_a_group_of_version_2_is_one_folder_with_both_bounds(tmp_path: Path, mon
 def test_a_worker_sandbox_with_version_2_has_a_group_beside_those_of_its_inner_sandboxes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The kernel lets no group have both processes and groups. This folder has no kernel behind it, only its files."""
+    """The kernel forbids a group with both processes and subgroups. This folder only imitates a control group."""
     monkeypatch.setattr(cgroup, "_home", lambda controller: tmp_path)
     monkeypatch.setattr(cgroup, "_NUMBERS", iter([7]))
     folder = tmp_path / f"autograder-{cgroup._PROCESS}-7"
@@ -95,8 +95,10 @@ def test_a_worker_sandbox_with_version_2_has_a_group_beside_those_of_its_inner_s
         (folder / name).touch()
     group = cgroup.make_nested(Limits(), os.geteuid())
     assert (folder / "cgroup.subtree_control").read_text() == "+pids +memory"
-    done = subprocess.run(group.enter(["sh", "-c", "echo $$"]), capture_output=True, text=True, check=True)
-    assert (folder / "worker" / "cgroup.procs").read_text() == done.stdout  # one process, which entered and then ran
+    completed = subprocess.run(group.enter(["sh", "-c", "echo $$"]), capture_output=True, text=True, check=True)
+    assert (
+        folder / "worker" / "cgroup.procs"
+    ).read_text() == completed.stdout  # one process, which entered and then ran
     assert (folder / "cgroup.procs").read_text() == ""
 
 
@@ -117,14 +119,16 @@ def test_memory_that_no_process_has_mapped_is_bounded(tmp_path: Path) -> None:
 def test_the_kernel_refuses_one_process_too_many_and_no_process_is_left(tmp_path: Path) -> None:
     group = cgroup.make(Limits(threads=1))
     script = "for n in 1 2 3 4 5; do sleep 30 >&- 2>&- & done; echo all of them"
-    done = subprocess.run(group.enter(["sh", "-c", script]), capture_output=True, text=True, timeout=20, check=False)
-    assert "all of them" not in done.stdout
-    assert "fork" in done.stderr.lower()
-    left = (group.by_controller["pids"] / "cgroup.procs").read_text().split()
-    assert left
+    completed = subprocess.run(
+        group.enter(["sh", "-c", script]), capture_output=True, text=True, timeout=20, check=False
+    )
+    assert "all of them" not in completed.stdout
+    assert "fork" in completed.stderr.lower()
+    pids = (group.by_controller["pids"] / "cgroup.procs").read_text().split()
+    assert pids
     group.close()
     assert not any(folder.exists() for folder in group.folders)
-    assert not [pid for pid in left if Path(f"/proc/{pid}/cmdline").is_file() and _runs(pid)]
+    assert not [pid for pid in pids if Path(f"/proc/{pid}/cmdline").is_file() and _runs(pid)]
 
 
 def _runs(pid: str) -> bool:
@@ -133,10 +137,10 @@ def _runs(pid: str) -> bool:
 
 @NEEDED
 def test_a_control_group_left_by_a_killed_grader_is_removed(monkeypatch: pytest.MonkeyPatch) -> None:
-    left = cgroup.make(Limits())
+    abandoned = cgroup.make(Limits())
     monkeypatch.setattr(cgroup, "_STALE", -1.0)
     group = cgroup.make(Limits())
-    assert not any(folder.exists() for folder in left.folders)
+    assert not any(folder.exists() for folder in abandoned.folders)
     group.close()
 
 

@@ -14,17 +14,17 @@ from autograder.run.sandbox import Isolation, best_isolation, isolation, launche
 
 @pytest.fixture
 def tools(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """An empty folder that is the whole PATH; what was found before is forgotten, and afterwards again."""
+    """An empty folder as the whole PATH. Cached probes are cleared before and after the test."""
 
-    def forget() -> None:
+    def clear_caches() -> None:
         isolation.best_isolation.cache_clear()
         isolation.namespaces_failure.cache_clear()
         isolation._root_failure.cache_clear()
 
     monkeypatch.setenv("PATH", str(tmp_path))
-    forget()
+    clear_caches()
     yield tmp_path
-    forget()
+    clear_caches()
 
 
 def _bwrap(folder: Path, script: str) -> None:
@@ -48,7 +48,7 @@ def test_the_weak_isolation_level_is_only_used_if_requested(tools: Path, monkeyp
     assert best_isolation() is Isolation.PROCESS
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root has to become somebody else")
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root changes to another user")
 def test_root_that_cannot_change_its_user_is_also_refused_the_weak_isolation_level(tools: Path) -> None:
     with pytest.raises(IsolationError, match=r"`--isolation process` root's .*setpriv is not installed.*ordinary user"):
         require(Isolation.PROCESS)

@@ -17,8 +17,8 @@ subprocess.run([sys.executable, "-c", {CHILD!r}], check=True)
 """
 
 
-@pytest.mark.parametrize(("word", "ignores"), [("restore", "False"), ("leave", "True")])
-def test_a_program_receives_ctrl_c_even_if_its_grader_is_a_background_job(word: str, ignores: str) -> None:
-    command = ["sh", "-c", 'trap "" INT; exec "$@"', "sh", sys.executable, "-c", PARENT, word]
-    said = subprocess.run(command, text=True, capture_output=True, check=True)
-    assert said.stdout.strip() == ignores
+@pytest.mark.parametrize(("mode", "ignores"), [("restore", "False"), ("leave", "True")])
+def test_a_program_receives_ctrl_c_even_if_its_grader_is_a_background_job(mode: str, ignores: str) -> None:
+    command = ["sh", "-c", 'trap "" INT; exec "$@"', "sh", sys.executable, "-c", PARENT, mode]
+    completed = subprocess.run(command, text=True, capture_output=True, check=True)
+    assert completed.stdout.strip() == ignores

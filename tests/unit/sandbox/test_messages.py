@@ -1,4 +1,4 @@
-"""A tree that comes over a worker's line is what its list says, or is refused."""
+"""A tree that comes over a worker's line matches its list, or is refused."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_a_file_has_the_size_that_the_list_says() -> None:
         sent({Entry("a", "file", False, 9): b"less"})
 
 
-def test_no_two_trees_have_one_key() -> None:
+def test_different_trees_have_different_keys() -> None:
     first, second = Entry("a.msg", "file", False, 1), Entry("b.msg", "file", False, 2)
     joined = b"x" + json.dumps(astuple(second)).encode() + b"yz"
     assert keeper.key({first: b"x", second: b"yz"}) != keeper.key({first: joined})
@@ -59,7 +59,7 @@ def test_a_path_only_leads_through_folders_of_the_tree(entries: list[Entry]) -> 
             receive_tree(ours, SOURCES)
 
 
-def test_a_list_with_a_size_without_end_is_refused() -> None:
+def test_a_list_with_an_infinite_size_is_refused() -> None:
     ours, theirs = Pipe()
     with ours, theirs:
         theirs.send_bytes(b'[["a", "file", false, Infinity]]')

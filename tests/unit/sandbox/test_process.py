@@ -49,17 +49,17 @@ def test_a_program_that_ends_by_itself_leaves_its_status_and_output() -> None:
 def test_output_of_a_program_can_be_read_at_once() -> None:
     """What a program has written is in the output at once, without a wait for the watcher."""
     code = "import os, sys\nfor n in range(3000):\n    print(n, flush=True); os.write(int(sys.argv[1]), b'x')"
-    said, tell = os.pipe()
+    read_end, write_end = os.pipe()
     try:
-        with Process(_python(code, str(tell)), Limits(), pass_fds=(tell,)) as process:
-            os.close(tell)
+        with Process(_python(code, str(write_end)), Limits(), pass_fds=(write_end,)) as process:
+            os.close(write_end)
             number = 0
-            while os.read(said, 1):
+            while os.read(read_end, 1):
                 assert process.output.splitlines()[number:], number
                 number += 1
         assert number == 3000
     finally:
-        os.close(said)
+        os.close(read_end)
 
 
 def test_a_running_program_has_neither_a_status_nor_an_exit_reason() -> None:
@@ -191,7 +191,7 @@ signal.pause()
         assert tree.memory > 5 * MIB
 
 
-def test_measuring_stops_when_there_are_far_too_many() -> None:
+def test_measuring_stops_at_far_too_many_processes() -> None:
     assert len(measure(os.getpid()).pids) >= 1
     assert len(measure(1, most=0).pids) <= 1
 

@@ -1,4 +1,4 @@
-"""What a submission's own processes use is not taken for the machine's."""
+"""Time that a submission's own processes use does not count as used by others."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_children_that_have_ended_are_counted_once() -> None:
     assert used(before, Use({}, {MAIN: CpuTime(1.0, 8.5)})) == pytest.approx(0.5)
 
 
-def test_an_end_that_is_not_waited_for_takes_nothing_from_the_other_processes_time() -> None:
+def test_an_unreaped_process_does_not_reduce_the_time_of_the_others() -> None:
     before = Use({}, {MAIN: CpuTime(1.0), CHILD: CpuTime(3.0)})
     assert used(before, Use({}, {MAIN: CpuTime(1.4)})) == pytest.approx(0.4)
 
@@ -42,5 +42,5 @@ def test_the_time_of_a_started_process_and_of_its_children_is_found_after_their_
     assert used(before, look(())) > 0.2 - 2 * TICK
 
 
-def test_nothing_is_starved_that_is_not_there() -> None:
+def test_without_processes_nothing_is_starved() -> None:
     assert starved(Use({}, {}), Use({}, {})) == 0.0

@@ -1,4 +1,4 @@
-"""Root's copy of what was handed in holds nothing that a student puts in its place meanwhile."""
+"""Root's copy of a submission contains nothing that a student swaps in while it is copied."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ def submission(tmp_path: Path) -> Path:
     return tmp_path / "home" / "sub"
 
 
-def meanwhile(monkeypatch: pytest.MonkeyPatch, seen: str, change: Callable[[], object]) -> None:
-    """Make a change right after a name of the submission was looked at."""
+def meanwhile(monkeypatch: pytest.MonkeyPatch, looked_up: str, change: Callable[[], object]) -> None:
+    """Make a change right after a name of the submission has been looked up."""
     real = os.stat
 
-    def stat(path: str, *arguments: object, **given: object) -> os.stat_result:
-        info: os.stat_result = real(path, *arguments, **given)  # type: ignore[call-overload]
-        if path == seen and "dir_fd" in given:
+    def stat(path: str, *arguments: object, **options: object) -> os.stat_result:
+        info: os.stat_result = real(path, *arguments, **options)  # type: ignore[call-overload]
+        if path == looked_up and "dir_fd" in options:
             change()
         return info
 
@@ -39,14 +39,14 @@ def meanwhile(monkeypatch: pytest.MonkeyPatch, seen: str, change: Callable[[], o
 def test_a_link_that_replaced_a_listed_file_is_not_followed(
     submission: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
-    place = submission / name
-    target = tmp_path / "others" / ("secret" if place.is_file() else "")
+    listed = submission / name
+    target = tmp_path / "others" / ("secret" if listed.is_file() else "")
 
     def swap() -> None:
-        place.rename(tmp_path / "away")
-        place.symlink_to(target)
+        listed.rename(tmp_path / "away")
+        listed.symlink_to(target)
 
-    meanwhile(monkeypatch, place.name, swap)
+    meanwhile(monkeypatch, listed.name, swap)
     copy_submission(submission, tmp_path / "copy")
     assert (tmp_path / "copy" / "zzz").read_text() == "last"
     assert not [path for path in (tmp_path / "copy").rglob("*") if path.is_file() and "secret" in path.read_text()]

@@ -23,17 +23,17 @@ def test_only_folders_of_worker_sandboxes_without_a_lock_are_removed(
     entered_tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(entered_tmp_path))
-    left, held, young, other = (
+    abandoned, locked, young, other = (
         entered_tmp_path / f"{name}"
         for name in ("autograder-worker-1", "autograder-worker-2", "autograder-worker-3", "other")
     )
-    for folder in (left, held, young, other):
+    for folder in (abandoned, locked, young, other):
         (folder / "ws").mkdir(parents=True)
         if folder != young:
             os.utime(folder, (0, 0))
     link = entered_tmp_path / "autograder-worker-4"
     link.symlink_to(other)
-    descriptor = os.open(held, os.O_RDONLY)
+    descriptor = os.open(locked, os.O_RDONLY)
     fcntl.flock(descriptor, fcntl.LOCK_EX)
     try:
         report = run_in_worker_sandbox(
@@ -42,7 +42,7 @@ def test_only_folders_of_worker_sandboxes_without_a_lock_are_removed(
     finally:
         os.close(descriptor)
     assert Path(report.output.strip()).parent == entered_tmp_path
-    assert {*entered_tmp_path.iterdir()} == {held, young, other, link}
+    assert {*entered_tmp_path.iterdir()} == {locked, young, other, link}
     assert (other / "ws").is_dir()
 
 
@@ -57,11 +57,11 @@ def test_a_worker_imports_nothing_from_the_folder_that_the_grader_was_started_in
             lambda scratch: [sys.executable, "-m", "autograder.grade.worker", "{}"], isolation
         )
         assert "JSON" not in report.output
-        assert "TypeError" in report.output  # it came as far as reading its job
+        assert "TypeError" in report.output  # it got as far as reading its job
     assert not (tmp_path / "ran").exists()
 
 
-CELL = """
+GRADER = """
 import sys
 from autograder import course_paths
 from autograder.run.sandbox import Isolation, procfs
@@ -76,20 +76,20 @@ with in_worker_sandbox(lambda scratch: ["sh", "-c", "echo up; exec sleep 600"], 
 
 
 def test_nothing_in_a_worker_sandbox_outlives_a_killed_grader() -> None:
-    """The kernel sends the signal of a parent's death with the rights of the parent, here those of root without any."""
-    command = [sys.executable, "-c", CELL]
+    """The kernel sends the parent-death signal with the rights of the parent, here root without capabilities."""
+    command = [sys.executable, "-c", GRADER]
     with subprocess.Popen(command, cwd=course_paths.ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as grader:
         assert grader.stdout is not None
         assert grader.stdout.readline() == b"up\n"
         below = {os.pidfd_open(pid): procfs.name(pid) for pid in procfs.measure(grader.pid).pids if pid != grader.pid}
         assert "sleep" in below.values()
         grader.kill()
-    until, left = time.monotonic() + 30.0, dict(below)
-    while left and time.monotonic() < until:
-        ended, _, _ = select.select(left, (), (), until - time.monotonic())
-        left = {descriptor: name for descriptor, name in left.items() if descriptor not in ended}
-    for descriptor in left:
+    deadline, remaining = time.monotonic() + 30.0, dict(below)
+    while remaining and time.monotonic() < deadline:
+        ended, _, _ = select.select(remaining, (), (), deadline - time.monotonic())
+        remaining = {descriptor: name for descriptor, name in remaining.items() if descriptor not in ended}
+    for descriptor in remaining:
         signal.pidfd_send_signal(descriptor, signal.SIGKILL)
     for descriptor in below:
         os.close(descriptor)
-    assert not left.values()
+    assert not remaining.values()

@@ -1,4 +1,4 @@
-"""A real hub with users, and the service beside it, in a process of its own that can be killed and started again."""
+"""A real hub with users, and the service beside it, in a separate process that can be killed and started again."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ FORKS.set_forkserver_preload(["tests.unit.serve.serving", "jsonschema.validators
 
 
 def free_port() -> int:
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return int(found.getsockname()[1])
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return int(listener.getsockname()[1])
 
 
 @dataclass
 class Hub:
-    """A JupyterHub of its own: its address, the service's, and the tokens of users, who are made when asked for."""
+    """A separate JupyterHub: its address, the service's, and the tokens of users, created on request."""
 
     url: str
     service: str
@@ -59,7 +59,7 @@ class Hub:
         return self._tokens[user]
 
     def environment(self) -> dict[str, str]:
-        """Return what a hub tells its service."""
+        """Return the environment variables that a hub sets for its service."""
         return {
             "JUPYTERHUB_API_TOKEN": self.secret,
             "JUPYTERHUB_API_URL": f"{self.url}/hub/api",
@@ -89,21 +89,21 @@ def running_hub(folder: Path) -> Iterator[Hub]:
     """Start a hub, and wait until it listens."""
     addresses = [f"http://127.0.0.1:{free_port()}" for _ in range(2)]
     hub = Hub(*addresses, secret=secrets.token_hex(16), admin=secrets.token_hex(16))
-    told = {"HUB": hub.url, "SERVICE": hub.service, "SERVICE_TOKEN": hub.secret, "ADMIN_TOKEN": hub.admin}
-    environment = {**os.environ, **{f"TEST_{name}": value for name, value in {**told, "FOLDER": str(folder)}.items()}}
+    values = {"HUB": hub.url, "SERVICE": hub.service, "SERVICE_TOKEN": hub.secret, "ADMIN_TOKEN": hub.admin}
+    environment = {**os.environ, **{f"TEST_{name}": value for name, value in {**values, "FOLDER": str(folder)}.items()}}
     config = Path(__file__).with_name("hub_config.py")
     command = [sys.executable, "-m", "jupyterhub", "-f", str(config)]
     with subprocess.Popen(command, cwd=folder, env=environment, stderr=subprocess.PIPE, text=True) as process:
         assert process.stderr is not None
-        said = []
+        lines = []
         try:
             for line in process.stderr:
-                said.append(line)
+                lines.append(line)
                 if "Hub API listening" in line:
                     break
             else:
-                raise AssertionError("".join(said))
-            threading.Thread(target=process.stderr.read, daemon=True).start()  # it never waits for a reader
+                raise AssertionError("".join(lines))
+            threading.Thread(target=process.stderr.read, daemon=True).start()  # the hub never blocks on a full pipe
             yield hub
         finally:
             process.terminate()
@@ -111,7 +111,7 @@ def running_hub(folder: Path) -> Iterator[Hub]:
 
 @dataclass
 class Classroom:
-    """The service of a hub on a folder of its own."""
+    """The service of a hub, with a folder of its own."""
 
     hub: Hub
     folder: Path
@@ -122,12 +122,12 @@ class Classroom:
     def url(self) -> str:
         return f"{self.hub.service}{PREFIX}"
 
-    def start(self, **given: Any) -> None:
-        """Start the service, with a stand-in for the sandbox alone; `serving.serve` says what is given."""
+    def start(self, **options: Any) -> None:
+        """Start the service with only the sandbox replaced; `serving.serve` documents the options."""
         file = self.folder / "settings.yaml"
         file.write_text(self.settings)
         arguments = (file, self.folder / "data", self.hub.environment())
-        self.process = FORKS.Process(target=serving.serve, args=arguments, kwargs=given)
+        self.process = FORKS.Process(target=serving.serve, args=arguments, kwargs=options)
         self.process.start()
 
     def listens(self) -> bool:
@@ -148,7 +148,7 @@ class Classroom:
         return hand_in(self.url, self.hub.token(student), assignment, key or secrets.token_hex(16), answer)
 
     def get(self, user: str, path: str = "") -> tuple[int, str]:
-        """Return what a user gets: the status and the text."""
+        """Return the status and the text that a user gets."""
         return ask(f"{self.url}{path}", self.hub.token(user))
 
     def wait_for_the_kill(self) -> None:
@@ -157,9 +157,9 @@ class Classroom:
         self.process.join(PATIENCE)
         assert self.process.exitcode == -signal.SIGKILL
 
-    def wait(self, is_there: Callable[[], bool]) -> None:
-        """Wait until something is so."""
-        serving.wait(is_there, PATIENCE)
+    def wait(self, condition: Callable[[], bool]) -> None:
+        """Wait until the condition holds."""
+        serving.wait(condition, PATIENCE)
 
     def wait_for_marks(self, count: int) -> None:
         """Wait until this many answers of the class are graded, as its page shows it."""
@@ -184,9 +184,9 @@ def ask(url: str, token: str = "", method: str = "GET", body: bytes | None = Non
         return error.code, error.read().decode()
 
 
-def side_by_side(todo: Sequence[Callable[[], Any]]) -> list[Any]:
-    """Call all at once, each in a thread of its own; return what they return."""
+def call_in_parallel(functions: Sequence[Callable[[], Any]]) -> list[Any]:
+    """Call all functions at once, each in its own thread; return their results."""
     from concurrent.futures import ThreadPoolExecutor
 
-    with ThreadPoolExecutor(len(todo)) as pool:
-        return [future.result() for future in [pool.submit(each) for each in todo]]
+    with ThreadPoolExecutor(len(functions)) as pool:
+        return [future.result() for future in [pool.submit(function) for function in functions]]

@@ -1,3 +1,5 @@
+"""A real JupyterHub, and the service behind it, as fixtures."""
+
 from __future__ import annotations
 
 from collections.abc import Iterator
@@ -18,7 +20,7 @@ def hub(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Hub]:
 
 @pytest.fixture
 def classroom(hub: Hub, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Classroom]:
-    """The hub's service on an empty folder, not yet started. Students try again at once when it does not answer."""
+    """The hub's service on an empty folder, not yet started. Clients retry at once if it does not answer."""
     monkeypatch.setattr(handing_in, "PAUSES", (0.05,) * 400)
     classroom = Classroom(hub, tmp_path)
     yield classroom

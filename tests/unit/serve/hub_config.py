@@ -1,4 +1,4 @@
-"""The configuration of the tests' hub: real, but for its proxy, which stands in front of nothing here."""
+"""The configuration of the tests' hub. It has no proxy, because the tests connect to hub and service directly."""
 
 import os
 from typing import Any
@@ -6,26 +6,26 @@ from typing import Any
 from jupyterhub.proxy import Proxy
 
 SERVICE = "autograder"
-HUB, PLACE, FOLDER = (os.environ[f"TEST_{name}"] for name in ("HUB", "SERVICE", "FOLDER"))
+HUB, SERVICE_URL, FOLDER = (os.environ[f"TEST_{name}"] for name in ("HUB", "SERVICE", "FOLDER"))
 
 
 class Routes(Proxy):  # type: ignore[misc]
-    """Notes the routes of a proxy. The tests ask hub and service at their own addresses."""
+    """Keeps the routes of a proxy in memory, without a proxy."""
 
-    def __init__(self, **given: Any) -> None:
-        super().__init__(**given)
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
         self._routes: dict[str, dict[str, Any]] = {}
 
     async def add_route(self, routespec: str, target: str, data: dict[str, Any]) -> None:
-        """Note a route."""
+        """Keep a route."""
         self._routes[routespec] = {"routespec": routespec, "target": target, "data": data}
 
     async def delete_route(self, routespec: str) -> None:
-        """Forget a route."""
+        """Delete a route."""
         del self._routes[routespec]
 
     async def get_all_routes(self) -> dict[str, dict[str, Any]]:
-        """Return what was noted."""
+        """Return all routes."""
         return self._routes
 
 
@@ -41,9 +41,9 @@ c.DummyAuthenticator.allow_all = True
 c.JupyterHub.services = [
     {
         "name": SERVICE,
-        "url": PLACE,
+        "url": SERVICE_URL,
         "api_token": os.environ["TEST_SERVICE_TOKEN"],
-        "oauth_redirect_uri": f"{PLACE}/services/{SERVICE}/oauth_callback",
+        "oauth_redirect_uri": f"{SERVICE_URL}/services/{SERVICE}/oauth_callback",
         "oauth_no_confirm": True,
     },
     {"name": "tests", "api_token": os.environ["TEST_ADMIN_TOKEN"]},

@@ -1,6 +1,6 @@
-"""The service in a process of its own, which kills itself, as `kill -9` does, before a chosen line of its code.
+"""The service in a separate process, which kills itself, as `kill -9` does, before a chosen line of its code.
 
-All of it is the real code, but for the worker in the sandbox, which has tests of its own.
+All of its code is real except for the worker in the sandbox, which has tests of its own.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ def serve(
         settings: the file of settings.
         data: the folder of the data.
         environment: what the hub tells its service.
-        lines: a shared number, which counts the lines of the service's code that were run; None to count none.
-        kill_at: the number of the line before which the process kills itself, from 0; -1 for none.
+        lines: a shared counter of executed lines of the service's code; None to count none.
+        kill_at: the index of the executed line before which the process kills itself; -1 for none.
         hold: whether gradings wait until there is a file `hold` beside the data.
         jobs: how many are graded at once.
     """
@@ -67,8 +67,8 @@ def serve(
         trace = _tracer(lines, kill_at)
         threading.settrace(trace)
         sys.settrace(trace)
-    way = Way(jobs, 7, Isolation.PROCESS, partial(grade_submission, run_job=run))
-    service.serve(read_settings(settings), data, way, service.address(environment))
+    options = Way(jobs, 7, Isolation.PROCESS, partial(grade_submission, run_job=run))
+    service.serve(read_settings(settings), data, options, service.address(environment))
 
 
 def _tracer(lines: Any, kill_at: int) -> Any:
@@ -82,9 +82,9 @@ def _tracer(lines: Any, kill_at: int) -> Any:
     return lambda frame, event, argument: count if frame.f_code.co_filename.startswith(OWN) else None
 
 
-def wait(is_there: Callable[[], bool], patience: float) -> None:
-    """Wait until something is so; fail after `patience` seconds."""
+def wait(condition: Callable[[], bool], patience: float) -> None:
+    """Wait until the condition holds; fail after `patience` seconds."""
     end = time.monotonic() + patience
-    while not is_there():
-        assert time.monotonic() < end, "it did not come"
+    while not condition():
+        assert time.monotonic() < end, "the condition never held"
         time.sleep(0.02)

@@ -1,4 +1,4 @@
-"""What students submit through nbgrader's exchange is taken once, as its owner's, with the owner's rights."""
+"""Submissions through nbgrader's exchange are taken once, for their owner, with the owner's rights."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ needs_root = pytest.mark.skipif(os.geteuid() != 0, reason="only root can give a 
 def inbound() -> Iterator[Path]:
     """The folder into which students submit; other users can enter it."""
     with tempfile.TemporaryDirectory(dir="/tmp") as folder:
-        place = Path(folder)
-        place.chmod(0o755)
-        (place / "inbound").mkdir()
-        yield place / "inbound"
+        root = Path(folder)
+        root.chmod(0o755)
+        (root / "inbound").mkdir()
+        yield root / "inbound"
 
 
 def submit(inbound: Path, random: str, student: str = STUDENT, assignment: str = "02_nodes") -> Path:
@@ -48,7 +48,7 @@ def submit(inbound: Path, random: str, student: str = STUDENT, assignment: str =
     return folder
 
 
-def only(inbound: Path) -> Submitted:
+def only_submission(inbound: Path) -> Submitted:
     (submitted,) = find(inbound)
     return submitted
 
@@ -59,19 +59,19 @@ def test_a_submission_is_found_when_nbgrader_has_written_its_last_file(inbound: 
     (folder / LAST).unlink()
     assert list(find(inbound)) == []
     (folder / LAST).touch()
-    found = only(inbound)
-    assert (found.student, found.assignment, found.folder) == (STUDENT, "02_nodes", folder)
+    submitted = only_submission(inbound)
+    assert (submitted.student, submitted.assignment, submitted.folder) == (STUDENT, "02_nodes", folder)
 
 
-def test_a_submission_in_the_name_of_another_user_is_none(inbound: Path) -> None:
+def test_a_submission_in_the_name_of_another_user_is_ignored(inbound: Path) -> None:
     submit(inbound, "r4nd0m", student="somebody-else")
     (inbound / f"{STUDENT}+02_nodes+link").symlink_to(submit(inbound, "own"))
-    assert only(inbound).folder.name.endswith("+own")
+    assert only_submission(inbound).folder.name.endswith("+own")
 
 
 def test_a_packed_submission_is_read_like_an_answer_from_a_notebook(inbound: Path, tmp_path: Path) -> None:
     submit(inbound, "r4nd0m")
-    (tmp_path / "answer.zip").write_bytes(pack(only(inbound)))
+    (tmp_path / "answer.zip").write_bytes(pack(only_submission(inbound)))
     files = {str(file.path): file.data for file in intake.read_files(tmp_path / "answer.zip", "02_nodes")}
     assert files[MANIFEST] == STUDENT.encode()
 
@@ -81,7 +81,7 @@ def test_a_link_is_packed_as_a_link(inbound: Path, tmp_path: Path) -> None:
     (tmp_path / "secret").write_text("SECRET")
     (folder / MANIFEST).unlink()
     (folder / MANIFEST).symlink_to(tmp_path / "secret")
-    (tmp_path / "answer.zip").write_bytes(pack(only(inbound)))
+    (tmp_path / "answer.zip").write_bytes(pack(only_submission(inbound)))
     with pytest.raises(StudentError, match="link"):
         intake.read_files(tmp_path / "answer.zip", "02_nodes")
 
@@ -91,17 +91,17 @@ def test_a_file_that_its_student_cannot_read_is_not_packed(inbound: Path) -> Non
     folder = submit(inbound, "r4nd0m", student=NOBODY.pw_name)
     for path in (folder, *folder.rglob("*")):
         os.chown(path, NOBODY.pw_uid, NOBODY.pw_gid)
-    assert pack(only(inbound))
-    (folder / "hard link").write_text("SECRET")  # of root, and closed to others
+    assert pack(only_submission(inbound))
+    (folder / "hard link").write_text("SECRET")  # owned by root, and unreadable for others
     (folder / "hard link").chmod(0o600)
     with pytest.raises(UsageError, match="tar ended with 2"):
-        pack(only(inbound))
+        pack(only_submission(inbound))
 
 
 def test_a_submission_that_is_too_large_is_refused(inbound: Path) -> None:
     (submit(inbound, "r4nd0m") / "noise").write_bytes(os.urandom(MAX_ANSWER + 1))
     with pytest.raises(UsageError, match="its archive is larger than 16 MiB"):
-        pack(only(inbound))
+        pack(only_submission(inbound))
 
 
 def test_submissions_are_graded_once_and_by_the_rules_of_the_settings(classroom: Classroom, inbound: Path) -> None:

@@ -1,4 +1,4 @@
-"""The service behind a real hub: real requests, real files; of a grading, the worker in the sandbox is stood in for."""
+"""The service behind a real hub, with real requests and files; only the worker in the sandbox is replaced."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from autograder.notebook.handing_in import HandInError
 from autograder.report.export import load
 from tests.answers import zipped
 from tests.unit.serve import serving
-from tests.unit.serve.classroom import PREFIX, Classroom, ask, side_by_side
+from tests.unit.serve.classroom import PREFIX, Classroom, ask, call_in_parallel
 
 KEY = "0123456789abcdef" * 2
 MANIFEST = "src/package/package.xml"
@@ -73,20 +73,20 @@ def test_the_class_and_its_results_are_for_instructors(classroom: Classroom, tmp
 
 
 @pytest.mark.parametrize(
-    ("shown", "there", "hidden"),
+    ("shown", "visible", "hidden"),
     [
         ("points", "53 of 53", "The node"),
         ("nothing", "Received and graded", "53"),
     ],
 )
 def test_before_it_is_due_a_student_sees_what_the_settings_say(
-    classroom: Classroom, shown: str, there: str, hidden: str
+    classroom: Classroom, shown: str, visible: str, hidden: str
 ) -> None:
     started(classroom, shown)
     number = classroom.hand_in("ada", answer()).number
     classroom.wait_for_marks(1)
     page = classroom.get("ada", f"feedback/{number}")[1]
-    assert there in page
+    assert visible in page
     assert hidden not in page
     assert ("53 of 53" in classroom.get("ada")[1]) == (shown == "points")
     assert "of 53 points" in classroom.get("grace", f"feedback/{number}")[1]
@@ -95,10 +95,10 @@ def test_before_it_is_due_a_student_sees_what_the_settings_say(
     classroom.settings = classroom.settings.replace("2030", "2002")
     classroom.start()
     classroom.wait(classroom.listens)
-    assert "of 53 points" in classroom.get("ada", f"feedback/{number}")[1]  # it was due
+    assert "of 53 points" in classroom.get("ada", f"feedback/{number}")[1]  # it is due now
 
 
-def test_what_cannot_be_taken_is_refused_with_a_sentence_and_costs_no_try(classroom: Classroom) -> None:
+def test_an_invalid_hand_in_is_refused_with_a_reason_and_costs_no_try(classroom: Classroom) -> None:
     started(classroom)
     for student, assignment, data, sentence in (
         ("late", "02_nodes", answer(), "02_nodes was due at 2001-01-01 12:00. Ask your instructor."),
@@ -172,11 +172,11 @@ def test_a_browser_is_sent_to_the_login_of_the_hub_and_back(classroom: Classroom
     classroom.hand_in("ada", answer())
     browser, page = logged_in(classroom, "ada")
     assert "<h1>Handed in</h1>" in page
-    with pytest.raises(urllib.error.HTTPError, match="403"):  # a cookie hands nothing in
+    with pytest.raises(urllib.error.HTTPError, match="403"):  # a cookie does not authorise a hand-in
         browser.open(urllib.request.Request(f"{classroom.url}hand-ins/02_nodes/{KEY}", answer(), method="PUT"))
 
 
-def test_an_instructor_lets_a_class_be_graded_again(classroom: Classroom) -> None:
+def test_an_instructor_can_have_a_class_graded_again(classroom: Classroom) -> None:
     started(classroom)
     order = classroom.folder / serving.ORDER
     for student in ("ada", "bob"):
@@ -197,11 +197,11 @@ def test_an_instructor_lets_a_class_be_graded_again(classroom: Classroom) -> Non
     assert sorted(order.read_text().split()) == ["ada", "ada", "bob", "bob"]
 
 
-def handed_in_at_once(classroom: Classroom, students: int) -> None:
+def hand_in_at_once(classroom: Classroom, students: int) -> None:
     names = [f"student{number:03}" for number in range(students)]
     for name in names:
         classroom.hub.token(name)
-    receipts = side_by_side([lambda name=name: classroom.hand_in(name, answer(name)) for name in names])  # type: ignore[misc]
+    receipts = call_in_parallel([lambda name=name: classroom.hand_in(name, answer(name)) for name in names])  # type: ignore[misc]
     assert sorted(receipt.number for receipt in receipts) == list(range(1, students + 1))
     classroom.wait_for_marks(students)
     assert {(each["student"], each["score"]) for each in classroom.results()} == {(name, 53.0) for name in names}
@@ -210,10 +210,10 @@ def handed_in_at_once(classroom: Classroom, students: int) -> None:
 @pytest.mark.slow
 def test_twenty_students_at_once_have_twenty_marks(classroom: Classroom) -> None:
     classroom.start(jobs=2)
-    handed_in_at_once(classroom, 20)
+    hand_in_at_once(classroom, 20)
 
 
 @pytest.mark.nightly
 def test_two_hundred_students_at_once_have_two_hundred_marks(classroom: Classroom) -> None:
     classroom.start(jobs=2)
-    handed_in_at_once(classroom, 200)
+    hand_in_at_once(classroom, 200)

@@ -1,7 +1,7 @@
 """The service is killed at any instant, and started again: each answer has one mark, and none is lost.
 
 An instant is a line of the service's own code, in whichever thread. Students hand in all the while, and hand in again
-under the same key where no answer came.
+under the same key if no reply came.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from tests.answers import zipped
 from tests.unit.serve.classroom import FORKS, Classroom
 from tests.unit.serve.serving import ORDER
 
-CLASS = ("ada", "bob", "ada", "cleo")  # who hands in, one after the other
+CLASS = ("ada", "bob", "ada", "cleo")  # the students, in the order of their hand-ins
 INSTANTS = 20
 LINES = 950  # of the service's code from its start to the last grading, at least; the test below counts them
 QUICK = (1, 7, 13, 19)  # the instants of a quick run
 
 
 class Class(Thread):
-    """Students who hand in one after the other, whatever becomes of the service meanwhile."""
+    """Students who hand in one after the other, whatever happens to the service."""
 
     def __init__(self, classroom: Classroom) -> None:
         super().__init__(daemon=True)
@@ -40,18 +40,20 @@ class Class(Thread):
 
 
 def marks_in(folder: Path) -> dict[int, tuple[str, float]]:
-    """Return what is in the store: students and points by their numbers. Each has its result."""
+    """Return the students and points in the store, by number. Each hand-in must have a result."""
     store = Store(folder)
     try:
-        found = {one.number: one for one in store.of_assignment("02_nodes")}
-        assert all(one.mark is not None and one.mark.status is Status.GRADED for one in found.values())
-        assert all((store.folder(number) / RESULT).is_file() for number in found)
-        return {number: (one.student, one.mark.points) for number, one in found.items() if one.mark is not None}
+        hand_ins = {entry.number: entry for entry in store.of_assignment("02_nodes")}
+        assert all(entry.mark is not None and entry.mark.status is Status.GRADED for entry in hand_ins.values())
+        assert all((store.folder(number) / RESULT).is_file() for number in hand_ins)
+        return {
+            number: (entry.student, entry.mark.points) for number, entry in hand_ins.items() if entry.mark is not None
+        }
     finally:
         store.close()
 
 
-def test_a_class_runs_as_many_lines_as_the_instants_are_spread_over(classroom: Classroom) -> None:
+def test_a_class_runs_more_lines_than_the_instants_are_spread_over(classroom: Classroom) -> None:
     lines = FORKS.Value("L", 0)
     classroom.start(lines=lines)
     Class(classroom).run()
@@ -79,6 +81,6 @@ def test_a_kill_at_any_instant_loses_nothing_and_grades_nothing_twice(classroom:
     classroom.wait_for_marks(3)  # a row for each student
     classroom.wait(lambda: "In the queue, of all assignments: 0." in classroom.get("grace", "class/02_nodes")[1])
     classroom.kill()
-    found = marks_in(classroom.folder / "data")
-    assert [receipt.number for receipt in students.receipts] == list(found) == [1, 2, 3, 4]
-    assert list(found.values()) == [(student, 53.0) for student in CLASS]
+    marks = marks_in(classroom.folder / "data")
+    assert [receipt.number for receipt in students.receipts] == list(marks) == [1, 2, 3, 4]
+    assert list(marks.values()) == [(student, 53.0) for student in CLASS]

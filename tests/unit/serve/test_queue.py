@@ -1,4 +1,4 @@
-"""Whose turn it is: nobody is lost or served twice, and nobody who waits is overtaken twice by the same student."""
+"""The order of turns: each answer is served once, and no waiting student is overtaken twice by the same one."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from autograder.lms.serve.queue import Waiting, ahead_of, in_order, next_turn
 
 STUDENTS = st.sampled_from("abcde")
-# What happens at the service: a student hands in, or the next turn comes, with so many workers.
+# Events at the service: a student hands in, or (None) the next turn is served.
 EVENTS = st.lists(st.one_of(STUDENTS, st.none()), max_size=60)
 
 
@@ -25,16 +25,16 @@ def order(students: str, turns: dict[str, int] | None = None, busy: str = "") ->
 
 @dataclass
 class Desk:
-    """A queue that is served by one worker after the other."""
+    """A queue that serves one answer after another."""
 
     waiting: list[Waiting] = field(default_factory=list)
     turns: dict[str, int] = field(default_factory=dict)
     served: list[Waiting] = field(default_factory=list)
-    came: int = 0
+    count: int = 0
 
     def receive(self, student: str) -> None:
-        self.came += 1
-        self.waiting.append(Waiting(self.came, student))
+        self.count += 1
+        self.waiting.append(Waiting(self.count, student))
 
     def serve(self) -> None:
         if (turn := next_turn(self.waiting, self.turns, ())) is not None:
@@ -54,15 +54,15 @@ def test_students_take_turns() -> None:
     assert order("aaabbc") == "abcaba"
 
 
-def test_who_had_the_last_turn_longest_ago_is_next() -> None:
+def test_the_student_whose_last_turn_was_longest_ago_is_next() -> None:
     assert order("abc", {"a": 3, "b": 1, "c": 2}) == "bca"
 
 
-def test_who_never_had_a_turn_comes_before_all_who_had_one() -> None:
+def test_students_without_a_turn_come_before_all_others() -> None:
     assert order("abc", {"a": 1, "b": 2}) == "cab"
 
 
-def test_who_is_being_graded_comes_after_all_others() -> None:
+def test_a_student_who_is_being_graded_comes_after_all_others() -> None:
     assert order("aabc", {"b": 9}, busy="a") == "cbaa"
 
 
@@ -71,7 +71,7 @@ def test_a_student_has_one_answer_graded_at_a_time() -> None:
     assert next_turn(arrived("aa"), {}, ("a",)) is None
 
 
-def test_how_many_come_before_is_the_place_in_the_order() -> None:
+def test_the_number_of_answers_ahead_is_the_position_in_the_order() -> None:
     assert [ahead_of(number, arrived("aab"), {}, ()) for number in (1, 2, 3)] == [0, 2, 1]
 
 
@@ -88,9 +88,9 @@ def test_each_answer_has_one_turn_and_those_of_a_student_keep_their_order(
 
 
 @given(EVENTS)
-def test_nobody_who_waits_is_overtaken_twice_by_the_same_student(events: list[str | None]) -> None:
+def test_no_waiting_student_is_overtaken_twice_by_the_same_one(events: list[str | None]) -> None:
     desk = Desk()
-    overtaken: dict[str, Counter[str]] = {}  # of each student who waits: by whom, since the last turn or the arrival
+    overtaken: dict[str, Counter[str]] = {}  # for each waiting student: by whom, since the last turn or arrival
     for event in events:
         if event is not None:
             desk.receive(event)
@@ -106,16 +106,16 @@ def test_nobody_who_waits_is_overtaken_twice_by_the_same_student(events: list[st
 
 
 @given(EVENTS)
-def test_whenever_they_come_all_are_served_once(events: list[str | None]) -> None:
+def test_each_answer_is_served_once_whenever_it_arrives(events: list[str | None]) -> None:
     desk = Desk()
     desk.follow(events)
     while desk.waiting:
         desk.serve()
-    assert sorted(each.number for each in desk.served) == list(range(1, desk.came + 1))
+    assert sorted(each.number for each in desk.served) == list(range(1, desk.count + 1))
 
 
 @given(EVENTS)
-def test_the_order_that_is_announced_is_kept_if_nobody_comes(events: list[str | None]) -> None:
+def test_the_announced_order_is_kept_if_no_answer_arrives(events: list[str | None]) -> None:
     desk = Desk()
     desk.follow(events)
     announced, before = list(in_order(desk.waiting, desk.turns)), len(desk.served)

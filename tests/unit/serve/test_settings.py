@@ -1,3 +1,5 @@
+"""The settings of the hub's service, and the errors that wrong settings cause."""
+
 from __future__ import annotations
 
 from datetime import datetime, timedelta, timezone
@@ -33,20 +35,20 @@ def read(tmp_path: Path, text: str) -> Settings:
     return read_settings(path)
 
 
-def test_all_that_can_be_set_is_read(tmp_path: Path) -> None:
-    found = read(tmp_path, WHOLE)
+def test_every_setting_is_read(tmp_path: Path) -> None:
+    settings = read(tmp_path, WHOLE)
     later = DUE + timedelta(days=7)
-    assert found.instructors == {"grace", "alan"}
-    assert found.zone == BERLIN
-    assert found.exchange == Path("/srv/exchange/ros2-python/inbound")
-    assert found.assignments == {
+    assert settings.instructors == {"grace", "alan"}
+    assert settings.zone == BERLIN
+    assert settings.exchange == Path("/srv/exchange/ros2-python/inbound")
+    assert settings.assignments == {
         "02_nodes": AssignmentSettings(DUE, 3, Shown.POINTS, best_counts=True, extensions={"ada": later}),
         "01_package_structure": AssignmentSettings(),
     }
 
 
 @pytest.mark.parametrize(
-    ("line", "instead", "said"),
+    ("line", "replacement", "message"),
     [
         ("inbound", "outbound", "3: exchange is '/srv/exchange/ros2-python/outbound'. Give the course's folder in it"),
         (
@@ -75,17 +77,17 @@ def test_all_that_can_be_set_is_read(tmp_path: Path) -> None:
         ("    due: 2026-10-12 23:59\n", "", "9: 02_nodes has extensions and is never due"),
     ],
 )
-def test_a_mistake_is_named_with_its_line(tmp_path: Path, line: str, instead: str, said: str) -> None:
+def test_a_mistake_is_named_with_its_line(tmp_path: Path, line: str, replacement: str, message: str) -> None:
     text = WHOLE.lstrip()
     assert line in text
     with pytest.raises(UsageError) as refused:
-        read(tmp_path, text.replace(line, instead))
+        read(tmp_path, text.replace(line, replacement))
     assert f"{tmp_path / 'serve.yaml'}:" in str(refused.value)
-    assert said in str(refused.value)
+    assert message in str(refused.value)
 
 
 @pytest.mark.parametrize(
-    ("data", "said"),
+    ("data", "message"),
     [
         (b"", "the settings are a mapping"),
         (b"- a\n- b\n", "the settings are a mapping"),
@@ -96,25 +98,25 @@ def test_a_mistake_is_named_with_its_line(tmp_path: Path, line: str, instead: st
         (b"#" * 1_100_000, "larger than 1 MiB"),
     ],
 )
-def test_a_file_that_is_something_else_is_named(tmp_path: Path, data: bytes, said: str) -> None:
+def test_a_file_that_is_not_a_settings_file_is_named(tmp_path: Path, data: bytes, message: str) -> None:
     path = tmp_path / "serve.yaml"
     path.write_bytes(data)
-    with pytest.raises(UsageError, match=said) as refused:
+    with pytest.raises(UsageError, match=message) as refused:
         read_settings(path)
     assert str(path) in str(refused.value)
 
 
-def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
+def test_a_missing_settings_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="No such file"):
         read_settings(tmp_path / "serve.yaml")
 
 
-def test_what_is_shown_changes_when_it_is_due_for_each_student(tmp_path: Path) -> None:
-    each = read(tmp_path, WHOLE).assignments["02_nodes"]
-    assert [each.shown_to("bob", DUE + after) for after in (-MINUTE, MINUTE)] == [Shown.POINTS, Shown.EVERYTHING]
-    assert each.shown_to("ada", DUE + MINUTE) is Shown.POINTS
-    assert [each.is_open("bob", DUE + after) for after in (-MINUTE, 0 * MINUTE, MINUTE)] == [True, True, False]
-    assert each.is_open("ada", DUE + MINUTE)
+def test_the_shown_feedback_changes_at_each_students_due_time(tmp_path: Path) -> None:
+    assignment = read(tmp_path, WHOLE).assignments["02_nodes"]
+    assert [assignment.shown_to("bob", DUE + after) for after in (-MINUTE, MINUTE)] == [Shown.POINTS, Shown.EVERYTHING]
+    assert assignment.shown_to("ada", DUE + MINUTE) is Shown.POINTS
+    assert [assignment.is_open("bob", DUE + after) for after in (-MINUTE, 0 * MINUTE, MINUTE)] == [True, True, False]
+    assert assignment.is_open("ada", DUE + MINUTE)
     assert AssignmentSettings().is_open("bob", DUE + MINUTE)
 
 

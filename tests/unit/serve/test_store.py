@@ -1,3 +1,5 @@
+"""The store of hand-ins: what survives a restart, and which answer counts."""
+
 from __future__ import annotations
 
 import multiprocessing
@@ -22,18 +24,18 @@ def hand_in(number: int, mark: Mark | None) -> HandIn:
     return HandIn(number, "ada", "02_nodes", NOW, mark)
 
 
-def test_what_was_received_is_there_in_another_process_life(tmp_path: Path) -> None:
+def test_a_received_answer_survives_a_restart(tmp_path: Path) -> None:
     store = Store(tmp_path)
     received = store.receive(STRANGE, "02_nodes", "key", b"\0answer", NOW)
     store.close()
-    again = Store(tmp_path)
-    assert again.with_number(received.number) == received
+    reopened = Store(tmp_path)
+    assert reopened.with_number(received.number) == received
     assert received == HandIn(1, STRANGE, "02_nodes", NOW)
-    assert again.begin(1) == b"\0answer"
+    assert reopened.begin(1) == b"\0answer"
     assert {path.name for path in tmp_path.rglob("*")} <= {
         "hand-ins.sqlite3", "hand-ins.sqlite3-wal", "hand-ins.sqlite3-shm", "gradings"
     }  # fmt: skip
-    again.close()
+    reopened.close()
 
 
 def test_the_same_key_keeps_the_first_answer(tmp_path: Path) -> None:
@@ -46,20 +48,20 @@ def test_the_same_key_keeps_the_first_answer(tmp_path: Path) -> None:
     store.close()
 
 
-def test_a_grading_that_was_interrupted_waits_again_and_costs_no_turn(tmp_path: Path) -> None:
+def test_an_interrupted_grading_waits_again_and_costs_no_turn(tmp_path: Path) -> None:
     store = Store(tmp_path)
     for student in ("ada", "bob"):
         store.receive(student, "02_nodes", student, b"", NOW)
     store.begin(1)
     assert store.turns() == {"ada": 1}
     store.close()
-    again = Store(tmp_path)
-    assert again.waiting() == [Waiting(1, "ada"), Waiting(2, "bob")]
-    assert again.turns() == {}
-    again.close()
+    reopened = Store(tmp_path)
+    assert reopened.waiting() == [Waiting(1, "ada"), Waiting(2, "bob")]
+    assert reopened.turns() == {}
+    reopened.close()
 
 
-def test_what_is_graded_waits_no_more(tmp_path: Path) -> None:
+def test_a_graded_answer_no_longer_waits(tmp_path: Path) -> None:
     store = Store(tmp_path)
     store.receive("ada", "02_nodes", "key", b"", NOW)
     store.begin(1)
@@ -67,58 +69,58 @@ def test_what_is_graded_waits_no_more(tmp_path: Path) -> None:
     (store.folder(1) / "result.json").write_text("{}")
     store.finish(1, HALF)
     store.close()
-    again = Store(tmp_path)
-    assert again.waiting() == []
-    assert again.turns() == {"ada": 1}
-    assert again.of_student("ada") == [hand_in(1, HALF)]
-    again.close()
+    reopened = Store(tmp_path)
+    assert reopened.waiting() == []
+    assert reopened.turns() == {"ada": 1}
+    assert reopened.of_student("ada") == [hand_in(1, HALF)]
+    reopened.close()
 
 
-def test_nobody_else_can_read_the_folder(tmp_path: Path) -> None:
+def test_other_users_cannot_read_the_folder(tmp_path: Path) -> None:
     Store(tmp_path / "data").close()
     assert stat.S_IMODE((tmp_path / "data").stat().st_mode) == 0o700
 
 
-def _open(folder: Path, said: multiprocessing.SimpleQueue[str]) -> None:
+def _open(folder: Path, errors: multiprocessing.SimpleQueue[str]) -> None:
     try:
         Store(folder)
     except UsageError as error:
-        said.put(str(error))
+        errors.put(str(error))
 
 
 def test_two_processes_cannot_work_on_one_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("autograder.lms.serve.store.PATIENCE", 0.1)
     store = Store(tmp_path)
     processes = multiprocessing.get_context("fork")
-    said = processes.SimpleQueue()
-    other = processes.Process(target=_open, args=(tmp_path, said))
+    errors = processes.SimpleQueue()
+    other = processes.Process(target=_open, args=(tmp_path, errors))
     other.start()
     other.join()
-    assert not said.empty()
-    assert f"{tmp_path}: the hand-ins cannot be opened (database is locked)" in said.get()
+    assert not errors.empty()
+    assert f"{tmp_path}: the hand-ins cannot be opened (database is locked)" in errors.get()
     store.close()
 
 
 @pytest.mark.parametrize("content", [b"not a data base", b"SQLite format 3\0" + bytes(100)])
-def test_a_file_that_is_no_store_is_named(tmp_path: Path, content: bytes) -> None:
+def test_a_file_that_is_not_a_store_is_named(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "hand-ins.sqlite3").write_bytes(content)
     with pytest.raises(UsageError, match=f"{tmp_path}: the hand-ins cannot be opened"):
         Store(tmp_path)
 
 
-def test_the_last_one_counts_or_the_best() -> None:
+def test_the_last_or_the_best_answer_counts() -> None:
     own = [hand_in(1, HALF), hand_in(2, FULL), hand_in(3, HALF), hand_in(4, None)]
     assert counting(own, best=False) == own[2]
     assert counting(own, best=True) == own[1]
     assert counting(own[3:], best=True) is None
 
 
-def test_of_two_equal_ones_the_later_counts() -> None:
+def test_of_two_equal_answers_the_later_counts() -> None:
     own = [hand_in(1, HALF), hand_in(2, HALF)]
     assert counting(own, best=True) == own[1]
 
 
-def test_what_was_not_graded_counts_for_nothing_and_costs_no_try_if_the_grader_failed() -> None:
+def test_an_ungraded_answer_does_not_count_and_costs_no_try_if_the_grader_failed() -> None:
     failed, unclear = (hand_in(1, Mark(status, 0.0, 53.0)) for status in (Status.NOT_GRADED, Status.UNCLEAR))
     assert counting([failed, unclear], best=True) is None
     assert (failed.costs_a_try, unclear.costs_a_try, hand_in(1, None).costs_a_try) == (False, True, True)

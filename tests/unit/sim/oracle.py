@@ -52,7 +52,7 @@ def rational(
     """The exact distance along one beam to the nearest of some closed segments, None for a miss."""
     ox, oy = map(Fraction, origin)
     dx, dy = map(Fraction, direction)
-    found = []
+    distances = []
     for segment in segments:
         x1, y1, x2, y2 = map(Fraction, segment)
         x1, y1, x2, y2 = x1 - ox, y1 - oy, x2 - ox, y2 - oy
@@ -62,13 +62,13 @@ def rational(
             r = (x1 * ey - y1 * ex) / determinant
             t = (x1 * dy - y1 * dx) / determinant
             if r >= 0 and 0 <= t <= 1:
-                found.append(r)
+                distances.append(r)
         elif dx * y1 - dy * x1 == 0 and dx * y2 - dy * x2 == 0:  # the beam runs along the wall, or the wall is a point
             squared = dx * dx + dy * dy
             first, second = (dx * x1 + dy * y1) / squared, (dx * x2 + dy * y2) / squared
             if max(first, second) >= 0:
-                found.append(max(min(first, second), Fraction(0)))
-    return min(found, default=None)
+                distances.append(max(min(first, second), Fraction(0)))
+    return min(distances, default=None)
 
 
 def rational_disc(

@@ -17,8 +17,10 @@ def test_the_simulator_benchmark_returns_finite_positive_figures(request: pytest
     measure = "print(json.dumps(figures(1, 1, 0.2, compare=False)))"
     script = f"import json; from tests.benchmarks.bench_sim import figures; {measure}"
     environment = {**os.environ, "PYTHONPATH": str(request.config.rootpath)}
-    done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True)
-    figures = json.loads(done.stdout.splitlines()[-1])
+    completed = subprocess.run(
+        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True
+    )
+    figures = json.loads(completed.stdout.splitlines()[-1])
     assert {
         "sim.scan360_numpy_us",
         "sim.scan360_numba_us",

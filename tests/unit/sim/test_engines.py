@@ -1,4 +1,4 @@
-"""Both engines, any order of calls, any cut of the time: the same bits."""
+"""Both engines, any order of calls and any division of time give the same bits."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ from sim.scene import beams_of
 from tests.unit.sim.worlds import ENGINES, FULL_TURN, at, random_pose, random_world, wander
 
 SQUARE = ((-0.15, -0.1), (0.15, -0.1), (0.15, 0.1), (-0.15, 0.1))
-# Of the scans of `golden`, the same on every machine: see `test_the_scans_are_the_same_bits_on_every_machine`.
+# The hash of the scans of `golden`, the same on every machine.
 GOLDEN = "fce9484f7817df2924302ac482de20974748198a9b9bce93149d1ea2a170cb3b"
 
 
@@ -61,7 +61,7 @@ def test_both_engines_record_the_same_run_bit_for_bit(robot: dict[str, Any]) -> 
 
 
 def golden(name: str) -> str:
-    """The hash of the float32 scans of a run with everything in it."""
+    """Return the hash of the float32 scans of a run that uses every feature."""
     recording = run(simulation(name), wander(11, ("r0", "r1")), 10.0)
     digest = hashlib.sha256()
     for log in recording.scans:
@@ -71,12 +71,12 @@ def golden(name: str) -> str:
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_the_scans_are_the_same_bits_on_every_machine(name: str) -> None:
-    """Only correctly rounded operations stand between the seed and the scan, so that no processor can tell."""
+    """Only correctly rounded operations lead from the seed to the scan, so the processor makes no difference."""
     assert golden(name) == GOLDEN
 
 
 @pytest.mark.parametrize("name", ["numpy", pytest.param("numba", marks=pytest.mark.nightly)])
-def test_a_processor_without_vector_units_or_fused_multiply_add_finds_the_same_scans(
+def test_a_processor_without_vector_units_or_fused_multiply_add_computes_the_same_scans(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     """numpy's, numba's and the C library's fast paths are switched off in a process of its own."""
@@ -90,10 +90,10 @@ def test_a_processor_without_vector_units_or_fused_multiply_add_finds_the_same_s
         "NUMBA_CACHE_DIR": str(tmp_path),
     }
     script = f"from tests.unit.sim.test_engines import golden; print(golden({name!r}))"
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-W", "ignore", "-c", script], env=environment, capture_output=True, text=True, check=False
     )
-    assert done.stdout.strip() == GOLDEN, done.stderr
+    assert completed.stdout.strip() == GOLDEN, completed.stderr
 
 
 @pytest.mark.parametrize("lidar", [LDS_01, UTM_30LX, LidarSpec(beams=7, angle_min=-1.0, angle_increment=0.11)])
@@ -194,11 +194,11 @@ def test_the_compiled_sources_run_interpreted_too() -> None:
     grid = grid_of(walls)
     circles = np.array([[1.0, 1.0, 0.3]])
     beams = beams_of(FULL_TURN)
-    place = (circles, beams.table, 0.3, 0.4, 0.5, 0.0, beams.per_radian, beams.reach)
+    arguments = (circles, beams.table, 0.3, 0.4, 0.5, 0.0, beams.per_radian, beams.reach)
     through = traverse.fan_in_grid(
-        walls, grid.starts, grid.members, grid.west, grid.south, grid.cell, grid.columns, grid.rows, *place
+        walls, grid.starts, grid.members, grid.west, grid.south, grid.cell, grid.columns, grid.rows, *arguments
     )
-    np.testing.assert_array_equal(through, arrays.fan(walls, *place))
+    np.testing.assert_array_equal(through, arrays.fan(walls, *arguments))
     assert math.isclose(shapes.nearest(walls, circles, 0.3, 0.4), arrays.nearest(walls, circles, 0.3, 0.4))
     robot = np.zeros(14)
     other = robot.copy()

@@ -23,7 +23,7 @@ walls = st.lists(st.tuples(points, points).map(lambda ends: (*ends[0], *ends[1])
 
 
 def compare(scans: int, seed: int, engine: str) -> float:
-    """Cast scans in random worlds; return the largest error, once no hit and no miss is mistaken."""
+    """Cast scans in random worlds, assert that hits and misses agree, and return the largest error."""
     random = np.random.default_rng(seed)
     worst = 0.0
     for number in range(scans):
@@ -55,8 +55,8 @@ def check(origin: tuple[float, float], yaw: float, segments: list[tuple[float, f
     world = World.from_segments(segments)
     lidar = LidarSpec(beams=8, angle_increment=math.tau / 8, range_min=0.0, range_max=50.0)
     pose = Pose(*origin, yaw)
-    ways = directions(pose, lidar)
-    truth = [rational(origin, (float(x), float(y)), world.segments.tolist()) for x, y in ways]
+    beam_directions = directions(pose, lidar)
+    truth = [rational(origin, (float(x), float(y)), world.segments.tolist()) for x, y in beam_directions]
     for engine in ENGINES:
         ranges = cast(at(pose, world, engine), pose, lidar)
         for beam, (measured, exact) in enumerate(zip(ranges.tolist(), truth, strict=True)):
@@ -78,7 +78,7 @@ def check(origin: tuple[float, float], yaw: float, segments: list[tuple[float, f
 @example((0.0, 0.0), 0.0, [(1.0, 1.0, 2.0, 2.0), (2.0, 0.0, 2.0, 0.0)])  # a wall of no length
 @example((0.0, 0.0), 0.0, [(2.0, 0.0, 2.0, 2.0), (2.0, -2.0, 2.0, 0.0)])  # through a shared end
 @example((0.0, 0.0), 0.0, [(-2.0, -2.0, 2.0, -2.0), (2.0, -2.0, 2.0, 2.0)])  # at a corner
-def test_beams_hit_any_walls_where_rational_arithmetic_says(
+def test_beams_hit_walls_where_rational_arithmetic_says(
     origin: tuple[float, float], yaw: float, segments: list[tuple[float, float, float, float]]
 ) -> None:
     check(origin, yaw, segments)
@@ -89,7 +89,7 @@ def test_beams_hit_any_walls_where_rational_arithmetic_says(
 def test_walls_that_a_beam_touches_or_runs_along_are_decided_exactly(
     origin: tuple[float, float], yaw: float, near: float, left: int, far: float, right: int
 ) -> None:
-    """The wall's ends are on the beam, or a rounding error or three beside it."""
+    """The wall's ends are on the beam, or up to three rounding errors beside it."""
     x, y = directions(Pose(*origin, yaw), LidarSpec(beams=1))[0].tolist()
 
     def beside(distance: float, steps: int) -> tuple[float, float]:

@@ -155,11 +155,11 @@ def test_lidars_see_the_other_robots_and_the_movers() -> None:
 def test_a_failed_lidar_sends_no_scan() -> None:
     subject = at(Pose(), ROOM, faults=Faults(dead=(Window(0.1, 0.2),)))
     state = start(subject)
-    seen = []
+    sent = []
     for _ in range(5):
-        seen.append(observe(subject, state) is not None)
+        sent.append(observe(subject, state) is not None)
         state = step(subject, state, dt=0.06)
-    assert seen == [True, True, False, False, True]
+    assert sent == [True, True, False, False, True]
 
 
 def test_a_frozen_lidar_repeats_one_scan_with_new_stamps() -> None:
@@ -189,7 +189,7 @@ def test_a_failed_sector_gives_nan_also_across_angle_zero() -> None:
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_skewed_scan_takes_each_beam_from_where_the_robot_was(engine: str) -> None:
-    """At 0.5 m/s and 5 scans a second the first beam is taken almost 0.1 m back, the last one here."""
+    """At 0.5 m/s and 5 scans a second, the first beam is measured almost 0.1 m before the last one."""
     lidar = replace(LDS_01, skew=True)
     subject = at(Pose(0.5, 0.0), World.from_segments(box(6.0, 4.0)), engine, lidar)
     state = step(subject, start(subject), Command(0.5, 0.0), 0.4)
@@ -246,7 +246,7 @@ def test_invalid_faults_are_refused() -> None:
         DeadSector(math.nan, 1.0)
 
 
-def test_a_robot_without_a_lidar_or_of_no_such_name_is_named() -> None:
+def test_a_robot_without_a_lidar_and_an_unknown_robot_are_named() -> None:
     subject = Simulation(ROOM, (RobotSpec(name="bob", lidar=None),))
     with pytest.raises(SpecError, match="robot 'bob' has no lidar"):
         observe(subject, start(subject))
