@@ -147,7 +147,7 @@ def test_perfect_wheels_measure_the_truth() -> None:
 
 @pytest.mark.parametrize("command", [Command(0.5, 0.0), Command(0.4, 0.5), Command(0.0, 1.0)])
 def test_the_covariance_of_odometry_fits_its_errors(command: Command) -> None:
-    """The errors of many robots, weighed with the covariance each reports, are chi-square of three degrees."""
+    """The sample covariance of many robots' errors is close to the covariance that they report."""
     drift = OdometryDrift(linear=0.03, angular=0.03, veer=0.02)
     spec = replace(FREE, drift=drift)
     perfect = drive(FREE, command, 4.0, "numba").robots[0].odometry
@@ -170,8 +170,8 @@ def test_the_covariance_of_odometry_fits_its_errors(command: Command) -> None:
 def test_a_mover_walks_there_and_back_and_rests_at_each_point() -> None:
     mover = Mover(((0.0, 0.0), (2.0, 0.0)), speed=1.0, pause=1.0, phase=0.0)
     simulation = Simulation(World.from_segments([], movers=[mover]))
-    places = [simulation.movers_at(round(t * 1e9))[0][0] for t in (0, 1, 2, 2.5, 3, 4, 5, 5.9, 6, 7)]
-    assert places == pytest.approx([0, 1, 2, 2, 2, 1, 0, 0, 0, 1])
+    positions = [simulation.movers_at(round(t * 1e9))[0][0] for t in (0, 1, 2, 2.5, 3, 4, 5, 5.9, 6, 7)]
+    assert positions == pytest.approx([0, 1, 2, 2, 2, 1, 0, 0, 0, 1])
 
 
 def test_a_mover_goes_round_a_loop() -> None:
@@ -183,9 +183,9 @@ def test_a_mover_goes_round_a_loop() -> None:
 
 def test_the_seed_decides_where_a_mover_starts() -> None:
     world = World.from_segments([], movers=[Mover(((0, 0), (4, 0))), Mover(((0, 1), (4, 1)))])
-    begins = [tuple(x for x, _, _ in Simulation(world, seed=seed).movers_at(0)) for seed in (1, 1, 2)]
-    assert begins[0] == begins[1] != begins[2]
-    assert begins[0][0] != begins[0][1]
+    first_positions = [tuple(x for x, _, _ in Simulation(world, seed=seed).movers_at(0)) for seed in (1, 1, 2)]
+    assert first_positions[0] == first_positions[1] != first_positions[2]
+    assert first_positions[0][0] != first_positions[0][1]
 
 
 def test_a_mover_with_one_point_does_not_move() -> None:

@@ -1,4 +1,4 @@
-"""Random numbers: the right distribution, keyed by what they are for, the same on every machine."""
+"""Random numbers: correctly distributed, keyed by their purpose, and the same on every machine."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_each_tick_has_its_own_random_words_drawn_together_or_singly() -> None:
 
 
 def test_importing_the_simulator_imports_no_heavy_library() -> None:
-    """Neither numba nor a plotting library, ROS or pandas comes along, and the array engine needs none of them."""
+    """Neither numba nor a plotting library, ROS or pandas is imported, and the array engine needs none of them."""
     script = """
 import sys
 import sim
@@ -62,5 +62,5 @@ state = sim.start(simulation := sim.Simulation(sim.World.from_segments(sim.box(4
 assert sim.observe(simulation, sim.step(simulation, state, sim.Command(0.1, 0.1))) is not None
 print([name for name in ("numba", "matplotlib", "rclpy", "pandas", "scipy", "IPython") if name in sys.modules])
 """
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    completed = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert completed.stdout.strip() == "[]"

@@ -7,8 +7,8 @@ import pytest
 from sim.bridge.pace import AT_ONCE, LONGEST_LEAP, PERIOD, Pace
 
 
-def look(pace: Pace, now: float, speed: float) -> float:
-    """Look at the clock and go on by what is due."""
+def advance(pace: Pace, now: float, speed: float) -> float:
+    """Read the clock, and advance by the time that is due."""
     seconds = pace.due(now, speed)
     pace.went_on(seconds)
     return seconds
@@ -16,16 +16,16 @@ def look(pace: Pace, now: float, speed: float) -> float:
 
 def test_time_starts_with_the_first_call() -> None:
     pace = Pace(0.02)
-    assert look(pace, 1000.0, 2.0) == 0.0
+    assert advance(pace, 1000.0, 2.0) == 0.0
     assert not pace.late
-    assert look(pace, 1000.01, 2.0) == pytest.approx(0.02)
+    assert advance(pace, 1000.01, 2.0) == pytest.approx(0.02)
 
 
 @pytest.mark.parametrize("speed", [1.0, 2.0])
 def test_a_delay_is_caught_up_in_parts_shorter_than_a_watchdog(speed: float) -> None:
     pace = Pace(0.02)
-    look(pace, 0.0, speed)
-    parts = [look(pace, 0.2, speed) for _ in range(10)]
+    advance(pace, 0.0, speed)
+    parts = [advance(pace, 0.2, speed) for _ in range(10)]
     assert max(parts) == AT_ONCE
     assert sum(parts) == pytest.approx(0.2 * speed)
     assert not pace.late
@@ -33,23 +33,23 @@ def test_a_delay_is_caught_up_in_parts_shorter_than_a_watchdog(speed: float) -> 
 
 def test_a_delay_beyond_the_longest_leap_is_reported_and_dropped() -> None:
     pace = Pace(0.02)
-    look(pace, 0.0, 2.0)
-    first = look(pace, 60.0, 2.0)
+    advance(pace, 0.0, 2.0)
+    first = advance(pace, 60.0, 2.0)
     assert pace.late
-    assert first + sum(look(pace, 60.0, 2.0) for _ in range(100)) == pytest.approx(LONGEST_LEAP * 2.0 + 0.02)
+    assert first + sum(advance(pace, 60.0, 2.0) for _ in range(100)) == pytest.approx(LONGEST_LEAP * 2.0 + 0.02)
     assert not pace.late
 
 
 @pytest.mark.parametrize(("tick", "speed"), [(1.0, 0.1), (0.02, 1000.0)])
 def test_a_long_tick_and_a_high_speed_are_reached(tick: float, speed: float) -> None:
     pace = Pace(tick)
-    gone = sum(look(pace, number * PERIOD, speed) for number in range(3001))
-    assert gone == pytest.approx(30.0 * speed)
+    advanced = sum(advance(pace, number * PERIOD, speed) for number in range(3001))
+    assert advanced == pytest.approx(30.0 * speed)
 
 
 def test_a_pause_and_a_new_start_are_not_caught_up() -> None:
     pace = Pace(0.02)
-    look(pace, 0.0, 1.0)
+    advance(pace, 0.0, 1.0)
     assert pace.due(5.0, 1.0, paused=True) == 0.0
     assert pace.due(5.1, 1.0) == pytest.approx(0.1)
     pace.forget()

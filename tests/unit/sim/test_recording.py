@@ -1,4 +1,4 @@
-"""A recording keeps everything, saves, loads and replays to the same bits, and refuses what is damaged."""
+"""A recording is complete, is saved, loaded and replayed to the same bits, and is refused if it is damaged."""
 
 from __future__ import annotations
 
@@ -100,9 +100,9 @@ def test_a_replay_computes_every_state_again(recording: Recording, saved: Path, 
 
 
 def test_the_hash_differs_between_runs_and_not_between_engines(recording: Recording) -> None:
-    again = run(everything("numba"), wander(4, ("a", "b")), 6.0)
+    same = run(everything("numba"), wander(4, ("a", "b")), 6.0)
     other = run(everything(), wander(5, ("a", "b")), 6.0)
-    assert again.sha256() == recording.sha256() != other.sha256()
+    assert same.sha256() == recording.sha256() != other.sha256()
 
 
 def test_a_recorder_stores_commands_and_ticks_without_a_command() -> None:
@@ -139,7 +139,7 @@ def test_a_missing_file_and_a_file_of_another_kind_are_named(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(
-    ("what", "change"),
+    ("field", "change"),
     [
         ("world", None),
         ("robots", []),
@@ -148,12 +148,12 @@ def test_a_missing_file_and_a_file_of_another_kind_are_named(tmp_path: Path) -> 
         ("tick", "soon"),
     ],
 )
-def test_a_recording_that_no_run_can_produce_is_refused(saved: Path, what: str, change: object) -> None:
+def test_a_recording_that_no_run_can_produce_is_refused(saved: Path, field: str, change: object) -> None:
     with np.load(saved) as file:
         arrays = dict(file)
     header = json.loads(arrays["header"].tobytes())
     description = json.loads(header["simulation"])
-    description[what] = change
+    description[field] = change
     header["simulation"] = json.dumps(description)
     arrays["header"] = np.frombuffer(json.dumps(header).encode(), dtype=np.uint8)
     np.savez(saved, **arrays)
@@ -162,7 +162,7 @@ def test_a_recording_that_no_run_can_produce_is_refused(saved: Path, what: str, 
 
 
 @pytest.mark.parametrize("column", ["poses", "times_ns", "scan0_ranges"])
-def test_a_recording_whose_columns_do_not_fit_is_refused(saved: Path, column: str) -> None:
+def test_a_recording_whose_columns_do_not_match_is_refused(saved: Path, column: str) -> None:
     with np.load(saved) as file:
         arrays = dict(file)
     arrays[column] = arrays[column][:-1]
@@ -172,14 +172,14 @@ def test_a_recording_whose_columns_do_not_fit_is_refused(saved: Path, column: st
 
 
 @settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(at=st.floats(0, 1), value=st.integers(0, 255), cut=st.booleans())
-def test_a_damaged_file_is_a_recording_error_and_nothing_else(saved: Path, at: float, value: int, cut: bool) -> None:
+@given(share=st.floats(0, 1), value=st.integers(0, 255), cut=st.booleans())
+def test_a_damaged_file_is_a_recording_error_and_nothing_else(saved: Path, share: float, value: int, cut: bool) -> None:
     data = bytearray(saved.read_bytes())
-    place = int(at * (len(data) - 1))
+    offset = int(share * (len(data) - 1))
     if cut:
-        del data[place:]
+        del data[offset:]
     else:
-        data[place] = value
+        data[offset] = value
     damaged = saved.with_name("damaged.npz")
     damaged.write_bytes(data)
     try:

@@ -1,4 +1,4 @@
-"""World files: what they say, and a clear error with the line for each way of getting one wrong."""
+"""World files: their contents, and a clear error with its line for each mistake."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def write(folder: Path, text: str | bytes) -> Path:
     return path
 
 
-def test_each_object_of_a_world_file_has_place_name_and_metres(tmp_path: Path) -> None:
+def test_each_object_of_a_world_file_is_read_with_its_name_and_in_metres(tmp_path: Path) -> None:
     world = load_world(write(tmp_path, GOOD))
     assert world.name == "test room"
     assert len(world.segments) == 2 + 4 + 4 + 3
@@ -76,7 +76,7 @@ def test_the_worlds_of_the_course_can_be_read(request: pytest.FixtureRequest) ->
             assert len(load_world(path).segments) > 0
 
 
-# What is in the file, the line that is to be named, and the words that are to be said.
+# The text of the file, the line that the error names, and its message.
 BAD: list[tuple[str | bytes, int | None, str]] = [
     ("", 1, "the file is empty. Give it walls"),
     ("# nothing\n", 1, "the file is empty"),
@@ -162,12 +162,12 @@ BAD: list[tuple[str | bytes, int | None, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("text", "line", "words"), BAD, ids=range(len(BAD)))
+@pytest.mark.parametrize(("text", "line", "message"), BAD, ids=range(len(BAD)))
 def test_a_malformed_world_is_reported_with_file_line_and_error(
-    tmp_path: Path, text: str | bytes, line: int | None, words: str
+    tmp_path: Path, text: str | bytes, line: int | None, message: str
 ) -> None:
     path = write(tmp_path, text)
-    with pytest.raises(WorldError, match=re.escape(words)) as caught:
+    with pytest.raises(WorldError, match=re.escape(message)) as caught:
         load_world(path)
     assert caught.value.path == str(path)
     assert caught.value.line == line
@@ -194,7 +194,7 @@ def test_a_world_too_large_to_use_is_reported(tmp_path: Path, monkeypatch: pytes
 
 
 def outcome(path: Path) -> str:
-    """What loading a file comes to: its world's name or the error; any other exception is left to fail the test."""
+    """Return the world's name or the WorldError from loading a file. Any other exception fails the test."""
     try:
         return f"{path}: {load_world(path).name}"
     except WorldError as error:
@@ -215,8 +215,10 @@ def test_any_bytes_are_a_world_or_a_clear_error(tmp_path: Path, data: bytes) -> 
 @pytest.mark.fuzz
 @fuzz
 @given(st.integers(0, len(GOOD) - 1), st.integers(0, 20), st.text(max_size=6))
-def test_a_good_file_with_an_error_is_a_world_or_a_clear_error(tmp_path: Path, at: int, cut: int, put: str) -> None:
-    text = GOOD[:at] + put + GOOD[at + cut :]
+def test_a_good_file_with_an_error_is_a_world_or_a_clear_error(
+    tmp_path: Path, offset: int, cut: int, inserted: str
+) -> None:
+    text = GOOD[:offset] + inserted + GOOD[offset + cut :]
     assert outcome(write(tmp_path, text.encode("utf-8", "surrogatepass"))).startswith(str(tmp_path))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from sim import BOX_NAMES, Command, LidarSpec, Mover, Pose, RobotSpec, Simulation, World, box
 
-# Both, always: numba belongs to what the tests need.
+# Always both: the tests require numba.
 ENGINES = ("numpy", "numba")
 FULL_TURN = LidarSpec(name="test", range_min=0.0, range_max=30.0)
 

@@ -1,4 +1,4 @@
-"""The run behind the node, without ROS; and the node beside a notebook's own, on its thread."""
+"""The run behind the node, without ROS, and the node in a thread beside a notebook."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ def test_scans_and_odometry_have_their_mean_rates_for_any_tick() -> None:
     simulation = Simulation(World(), robots=(RobotSpec(lidar=LidarSpec(rate=5.5)),), tick=0.03)
     driver = Driver(simulation, odometry_rate=20.0)
     sent = list(driver.run(driver.ticks(60.0)))
-    assert sum(len(one.scans) for one in sent) == 330
-    assert sum(len(one.odometry) for one in sent) == 1200
-    assert [one.state.tick for one in sent] == list(range(1, 2001))
+    assert sum(len(output.scans) for output in sent) == 330
+    assert sum(len(output.odometry) for output in sent) == 1200
+    assert [output.state.tick for output in sent] == list(range(1, 2001))
 
 
 def test_a_command_is_obeyed_once_and_the_watchdog_counts_from_there() -> None:
     driver = Driver(Simulation(World()))
     driver.command("robot", Command(9.0, 0.0))
     driver.command("robot", Command(0.2, 0.0))
-    states = [one.state for one in driver.run(50)]
+    states = [output.state for output in driver.run(50)]
     expected = step(driver.simulation, start(driver.simulation), Command(0.2, 0.0))
     assert states[0] == expected
     assert states[-1].robots[0].velocity.linear == 0.0
     assert states[20].robots[0].velocity.linear == pytest.approx(0.2)
 
 
-def test_reset_forgets_commands_that_wait() -> None:
+def test_reset_discards_pending_commands() -> None:
     driver = Driver(Simulation(World()))
     driver.command("robot", Command(0.2, 0.0))
     driver.reset()
@@ -75,11 +75,11 @@ def bridge(ros_domain: int) -> Iterator[Bridge]:
 
 
 def until(condition: Callable[[], bool], bridge: Bridge) -> None:
-    """Wait for the bridge's thread."""
+    """Wait until the bridge's thread fulfils the condition."""
     deadline = time.monotonic() + PATIENCE
     while not condition():
-        assert time.monotonic() < deadline, "waited in vain"
-        bridge.resume()  # takes as long as the thread needs to answer: no sleep
+        assert time.monotonic() < deadline, "the condition never held"
+        bridge.resume()  # returns when the thread answers, so no sleep is needed
 
 
 def test_the_bridge_runs_pauses_steps_and_resets(bridge: Bridge) -> None:

@@ -30,11 +30,11 @@ ROOT = Path(__file__).resolve().parents[3]
 WORLD = ROOT / "assets" / "worlds" / "empty_room.yaml"
 PATIENCE = 60.0
 RELIABLE = QoSProfile(depth=10)
-"""What a subscription has whose author wrote a number."""
+"""The profile of a subscription that was created with a plain depth."""
 
 
 class Listener:
-    """A node that keeps what comes on some topics."""
+    """A node that keeps the messages of some topics."""
 
     def __init__(self, domain: int) -> None:
         self._context = Context()
@@ -43,16 +43,16 @@ class Listener:
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
 
-    def hear(self, kind: Any, topic: str, qos: QoSProfile) -> list[Any]:
+    def collect(self, kind: Any, topic: str, qos: QoSProfile) -> list[Any]:
         """Return the list that fills with the topic's messages."""
-        heard: list[Any] = []
-        self._node.create_subscription(kind, topic, heard.append, qos)
-        return heard
+        messages: list[Any] = []
+        self._node.create_subscription(kind, topic, messages.append, qos)
+        return messages
 
     def until(self, condition: Callable[[], bool]) -> None:
         deadline = time.monotonic() + PATIENCE
         while not condition():
-            assert time.monotonic() < deadline, "waited in vain"
+            assert time.monotonic() < deadline, "the condition never held"
             self._executor.spin_once(timeout_sec=0.05)
 
     def stop(self) -> None:
@@ -78,11 +78,11 @@ def driven(domain: int, **settings: Any) -> Iterator[Bridge]:
 
 def planar(transform: Any) -> np.ndarray[Any, Any]:
     """A transform as a matrix, (3, 3)."""
-    place, turn = transform.transform.translation, transform.transform.rotation
-    assert turn.z**2 + turn.w**2 == pytest.approx(1.0)
-    angle = 2.0 * math.atan2(turn.z, turn.w)
+    position, rotation = transform.transform.translation, transform.transform.rotation
+    assert rotation.z**2 + rotation.w**2 == pytest.approx(1.0)
+    angle = 2.0 * math.atan2(rotation.z, rotation.w)
     cosine, sine = math.cos(angle), math.sin(angle)
-    return np.array([[cosine, -sine, place.x], [sine, cosine, place.y], [0.0, 0.0, 1.0]])
+    return np.array([[cosine, -sine, position.x], [sine, cosine, position.y], [0.0, 0.0, 1.0]])
 
 
 def stamp(header: Any) -> tuple[int, int]:
@@ -90,34 +90,34 @@ def stamp(header: Any) -> tuple[int, int]:
 
 
 def test_a_reliable_scan_serves_reliable_and_best_effort_subscriptions(ros_domain: int, listener: Listener) -> None:
-    reliable = listener.hear(LaserScan, "/scan", RELIABLE)
-    best_effort = listener.hear(LaserScan, "/scan", qos_profile_sensor_data)
+    reliable = listener.collect(LaserScan, "/scan", RELIABLE)
+    best_effort = listener.collect(LaserScan, "/scan", qos_profile_sensor_data)
     with driven(ros_domain, scan_qos="reliable"):
         listener.until(lambda: bool(reliable) and bool(best_effort))
     assert len(reliable[0].ranges) == 360
 
 
-def test_each_scan_has_a_way_through_the_frames_to_the_map_at_its_own_time(ros_domain: int, listener: Listener) -> None:
-    scans = listener.hear(LaserScan, "/scan", qos_profile_sensor_data)
-    moving, standing = listener.hear(TFMessage, "/tf", TF_QOS), listener.hear(TFMessage, "/tf_static", LATCHED)
-    truth = listener.hear(Odometry, "/ground_truth", RELIABLE)
+def test_each_scan_can_be_transformed_to_the_map_at_its_own_time(ros_domain: int, listener: Listener) -> None:
+    scans = listener.collect(LaserScan, "/scan", qos_profile_sensor_data)
+    moving, standing = listener.collect(TFMessage, "/tf", TF_QOS), listener.collect(TFMessage, "/tf_static", LATCHED)
+    truth = listener.collect(Odometry, "/ground_truth", RELIABLE)
     settings = {"tf": "map", "ground_truth": True, "lidar_x": 0.1, "lidar_yaw": 0.5, "drift_linear": 0.1}
     with driven(ros_domain, **settings):
         listener.until(lambda: len(scans) > 3 and len(moving) > 20 and bool(standing) and len(truth) > 20)
     parents: dict[str, set[str]] = {}
-    at: dict[tuple[int, int], dict[str, Any]] = {}
+    transforms_at: dict[tuple[int, int], dict[str, Any]] = {}
     for message in (*moving, *standing):
         for transform in message.transforms:
             parents.setdefault(transform.child_frame_id, set()).add(transform.header.frame_id)
-            at.setdefault(stamp(transform.header), {})[transform.child_frame_id] = transform
+            transforms_at.setdefault(stamp(transform.header), {})[transform.child_frame_id] = transform
     assert parents == {"laser": {"base_link"}, "base_link": {"odom"}, "odom": {"map"}}  # one parent each: a tree
-    known = [scan for scan in scans if stamp(scan.header) in at]
+    known = [scan for scan in scans if stamp(scan.header) in transforms_at]
     assert known
     true_poses = {stamp(odometry.header): odometry for odometry in truth}
     laser = standing[0].transforms[0]
     assert planar(laser)[:2, 2] == pytest.approx([0.1, 0.0])
     for scan in known:
-        frames = at[stamp(scan.header)]
+        frames = transforms_at[stamp(scan.header)]
         assert scan.header.frame_id == "laser"
         base = planar(frames["odom"]) @ planar(frames["base_link"])
         pose = true_poses[stamp(scan.header)].pose.pose
@@ -125,9 +125,9 @@ def test_each_scan_has_a_way_through_the_frames_to_the_map_at_its_own_time(ros_d
         assert true_poses[stamp(scan.header)].header.frame_id == "map"
 
 
-def test_who_comes_late_gets_the_map(ros_domain: int, listener: Listener) -> None:
+def test_a_late_subscription_gets_the_map(ros_domain: int, listener: Listener) -> None:
     with driven(ros_domain, publish_map=True, map_resolution=0.1):
-        maps = listener.hear(OccupancyGrid, "/map", LATCHED)
+        maps = listener.collect(OccupancyGrid, "/map", LATCHED)
         listener.until(lambda: bool(maps))
     grid, (received,) = grid_of(load_world(WORLD), 0.1), maps
     assert (received.info.height, received.info.width) == grid.cells.shape
@@ -138,7 +138,7 @@ def test_who_comes_late_gets_the_map(ros_domain: int, listener: Listener) -> Non
     assert np.array_equal(np.array(received.data, dtype=np.int8).reshape(grid.cells.shape), grid.cells)
 
 
-def test_without_the_options_nothing_is_sent_but_scan_odom_and_clock(ros_domain: int) -> None:
+def test_without_the_options_only_scan_odom_and_clock_are_published(ros_domain: int) -> None:
     with driven(ros_domain) as bridge:
         topics = {name for name, _ in bridge._node.get_publisher_names_and_types_by_node("simulator", "/")}
     assert topics == {"/clock", "/odom", "/scan", "/parameter_events", "/rosout"}

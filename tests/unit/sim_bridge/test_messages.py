@@ -58,7 +58,7 @@ def test_the_frame_of_a_scan_can_be_chosen() -> None:
     assert scan_to_msg(scan([1.0]), "alpha/laser").header.frame_id == "alpha/laser"
 
 
-def test_odometry_has_the_pose_the_twist_and_an_honest_covariance() -> None:
+def test_odometry_has_the_pose_the_twist_and_the_covariance() -> None:
     robot = RobotState(
         name="robot",
         pose=Pose(9.0, 9.0, 9.0),

@@ -1,4 +1,4 @@
-"""Keys of a terminal drive a robot: in a real terminal, over ROS."""
+"""Keys in a real terminal drive a robot over ROS."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ def test_keys_change_the_command() -> None:
 def test_a_key_in_a_terminal_becomes_a_command_and_q_stops_the_robot(ros_domain: int) -> None:
     context = Context()
     rclpy.init(context=context, domain_id=ros_domain, signal_handler_options=SignalHandlerOptions.NO)
-    node, heard = Node("robot", namespace="bob", context=context), list[float]()
-    node.create_subscription(Twist, "cmd_vel", lambda message: heard.append(message.linear.x), 10)
+    node, speeds = Node("robot", namespace="bob", context=context), list[float]()
+    node.create_subscription(Twist, "cmd_vel", lambda message: speeds.append(message.linear.x), 10)
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
     ours, theirs = pty.openpty()
@@ -45,15 +45,15 @@ def test_a_key_in_a_terminal_becomes_a_command_and_q_stops_the_robot(ros_domain:
     os.close(theirs)
     try:
         deadline = time.monotonic() + PATIENCE
-        shown = b""
-        while b"q: end" not in shown:  # what is typed earlier is forgotten
-            shown += os.read(ours, 1000)
+        output = b""
+        while b"q: end" not in output:  # earlier input is discarded
+            output += os.read(ours, 1000)
         os.write(ours, b"w")
-        while 0.05 not in heard:  # it is said again and again
+        while 0.05 not in speeds:  # the command is repeated
             assert time.monotonic() < deadline
             executor.spin_once(timeout_sec=0.05)
         os.write(ours, b"q")
-        while heard[-1] != 0.0:
+        while speeds[-1] != 0.0:
             assert time.monotonic() < deadline
             executor.spin_once(timeout_sec=0.05)
         assert process.wait(PATIENCE) == 0

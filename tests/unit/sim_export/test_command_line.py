@@ -1,4 +1,4 @@
-"""`python -m sim`: its verbs, and what it says to misuse."""
+"""`python -m sim`: its verbs, and its errors for wrong calls."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ def test_a_page_holds_the_run_and_loads_nothing(recording: Recording, tmp_path: 
     text = to_html(recording, tmp_path / "run.html").read_text(encoding="utf-8")
     page = _Page(text)
     addresses = [attrs[name] or "" for _, attrs in page.tags for name in ("src", "href") if name in attrs]
-    assert [address[:22] for address in addresses] == ["data:image/png;base64,"]  # the picture where no script runs
+    assert [address[:22] for address in addresses] == ["data:image/png;base64,"]  # the picture without scripts
     assert not re.search(r"url\(|@import|https?://(?!www\.w3\.org/2000/svg)", text)
     stored = re.search(r'<script type="application/json">(.*?)</script>', text, re.DOTALL)
     assert stored is not None

@@ -1,4 +1,4 @@
-"""A world as an occupancy grid: what is a wall, what is free, what nobody can know."""
+"""A world as an occupancy grid: occupied, free and unknown cells."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sim.maps.grid import FREE, OCCUPIED, UNKNOWN, grid_of
 WORLDS = Path(__file__).resolve().parents[3] / "assets" / "worlds"
 
 
-def test_walls_and_pillars_are_occupied_and_what_a_robot_reaches_is_free() -> None:
+def test_walls_and_pillars_are_occupied_and_reachable_cells_are_free() -> None:
     world = load_world(WORLDS / "lab.yaml")
     grid = grid_of(world, 0.05)
     for x1, y1, x2, y2 in world.segments.tolist():
@@ -21,7 +21,7 @@ def test_walls_and_pillars_are_occupied_and_what_a_robot_reaches_is_free() -> No
             assert grid.cells[grid.cell_of(x1 + share * (x2 - x1), y1 + share * (y2 - y1))] == OCCUPIED
     for x, y, radius in world.circles.tolist():
         assert grid.cells[grid.cell_of(x + radius, y)] == OCCUPIED
-        assert grid.cells[grid.cell_of(x, y)] == UNKNOWN  # nobody sees the inside
+        assert grid.cells[grid.cell_of(x, y)] == UNKNOWN  # the inside is never seen
     for start in world.starts:
         assert grid.cells[grid.cell_of(start.x, start.y)] == FREE
     assert grid.cells[grid.cell_of(4.0, 4.0)] == FREE

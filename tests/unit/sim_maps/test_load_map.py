@@ -1,4 +1,4 @@
-"""Maps of nav2's map_server: read by its rules, refused in sentences."""
+"""Maps of nav2's map_server are read by its rules, or refused with a reason."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def png(image: Image.Image) -> bytes:
 
 
 def write(folder: Path, picture: bytes | None = None, *, name: str = "map.pgm", **fields: str | None) -> Path:
-    """Write a map, its fields changed (or, with None, left out) as asked; return the YAML's path."""
+    """Write a map with changed fields (None omits one); return the YAML's path."""
     if picture is None:
         picture = pgm(ROOM)
     (folder / name).write_bytes(picture)
@@ -59,7 +59,7 @@ def test_a_room_becomes_the_two_faces_of_its_walls(tmp_path: Path) -> None:
     assert world.starts == (Pose(2.0, 1.5, 0.0),)
 
 
-def test_a_lidar_in_it_measures_the_cells(tmp_path: Path) -> None:
+def test_a_lidar_in_a_map_measures_the_cells(tmp_path: Path) -> None:
     lidar = LidarSpec(beams=4, angle_increment=math.pi / 2, range_max=10.0)
     simulation = Simulation(load_map(write(tmp_path)), robots=(RobotSpec(lidar=lidar),))
     scan = observe(simulation, start(simulation))
@@ -76,7 +76,7 @@ def test_the_first_row_of_the_picture_is_the_north(tmp_path: Path) -> None:
     assert (world.segments[:, 0::2].min(), world.segments[:, 0::2].max()) == (0.5, 1.0)
 
 
-def test_the_origin_moves_and_turns_it(tmp_path: Path) -> None:
+def test_the_origin_moves_and_turns_a_map(tmp_path: Path) -> None:
     world = load_map(write(tmp_path, origin=f"[10.0, -5.0, {math.pi / 2}]"))
     assert world.bounds == pytest.approx((7.0, -5.0, 10.0, -1.0))
     assert (world.starts[0].x, world.starts[0].y, world.starts[0].theta) == pytest.approx((8.5, -3.0, math.pi / 2))
@@ -263,7 +263,7 @@ def test_an_invalid_tolerance_is_refused(tmp_path: Path, tolerance: float) -> No
 
 
 def complaint(path: Path) -> str | None:
-    """Load a map; return what the WorldError says, or None for a map with walls. Anything else is a failure."""
+    """Load a map; return the message of the WorldError, or None for a map with walls. Anything else fails."""
     try:
         world = load_map(path)
     except WorldError as error:
@@ -280,8 +280,8 @@ _shared = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], 
 @given(content=st.binary(max_size=300) | st.text(max_size=300).map(str.encode))
 def test_any_bytes_as_a_picture_are_a_map_or_a_world_error(tmp_path: Path, content: bytes) -> None:
     for head in (b"", b"P5\n3 3\n255\n", b"P2\n", b"\x89PNG\r\n\x1a\n"):
-        said = complaint(write(tmp_path, head + content))
-        assert said is None or "map.pgm" in said
+        message = complaint(write(tmp_path, head + content))
+        assert message is None or "map.pgm" in message
 
 
 @_shared
@@ -292,14 +292,14 @@ def test_any_bytes_as_a_picture_are_a_map_or_a_world_error(tmp_path: Path, conte
     | st.sampled_from(["~", "{}", "[]", "&a", "*a", "!x", "|", "'"]),
 )
 def test_any_value_of_any_field_is_a_map_or_a_world_error(tmp_path: Path, key: str, value: str) -> None:
-    said = complaint(write(tmp_path, **{key: value}))
-    assert said is None or str(tmp_path) in said
+    message = complaint(write(tmp_path, **{key: value}))
+    assert message is None or str(tmp_path) in message
 
 
 @_shared
-@given(place=st.integers(0, 10_000), byte=st.integers(0, 255))
-def test_one_wrong_byte_in_a_png_is_a_map_or_a_world_error(tmp_path: Path, place: int, byte: int) -> None:
+@given(offset=st.integers(0, 10_000), byte=st.integers(0, 255))
+def test_one_wrong_byte_in_a_png_is_a_map_or_a_world_error(tmp_path: Path, offset: int, byte: int) -> None:
     picture = bytearray(png(Image.fromarray(ROOM)))
-    picture[place % len(picture)] = byte
-    said = complaint(write(tmp_path, bytes(picture), name="map.png"))
-    assert said is None or "map.png" in said
+    picture[offset % len(picture)] = byte
+    message = complaint(write(tmp_path, bytes(picture), name="map.png"))
+    assert message is None or "map.png" in message

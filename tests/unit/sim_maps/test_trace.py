@@ -1,4 +1,4 @@
-"""Outlines of occupied cells: exact, closed, turned the right way round."""
+"""Outlines of occupied cells: exact, closed and correctly oriented."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def inside(segments: npt.NDArray[np.float64], x: float, y: float) -> bool:
 
 
 def distance(point: npt.NDArray[np.float64], segments: npt.NDArray[np.float64]) -> float:
-    """How far a point is from the nearest segment."""
+    """Return the distance of a point from the nearest segment."""
     start, along = segments[:, :2], segments[:, 2:] - segments[:, :2]
     share = np.clip(((point - start) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
     return float(np.hypot(*(point - start - share[:, None] * along).T).min())

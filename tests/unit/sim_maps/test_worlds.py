@@ -19,40 +19,40 @@ WORLDS = Path(__file__).resolve().parents[3] / "assets" / "worlds"
 NAMES = sorted(path.stem for path in WORLDS.glob("*.yaml"))
 TRACED = {name for name in NAMES if "image:" in (WORLDS / f"{name}.yaml").read_text()}  # maps: walls without names
 CELL = 0.1
-ROOM_TO_SPARE = 0.05  # metres between the robot and the walls on its way
+MARGIN = 0.05  # metres between the robot and the walls on its way
 
 
 def distance_in(world: World) -> Callable[[float, float], float]:
-    """Return how far the robot's body is from everything that stands still, were it at a place."""
+    """Return a function that gives the distance of the robot's body at (x, y) from all static obstacles."""
     walls, body = layout(world.segments), RobotSpec().radius
     return lambda x, y: float(arrays.nearest(walls, world.circles, x, y)) - body
 
 
-def reachable(world: World, here: Pose) -> set[tuple[int, int]]:
-    """The cells, `CELL` wide and counted from the start pose, that a robot gets to."""
-    distance, seen, waiting = distance_in(world), {(0, 0)}, deque([(0, 0)])
+def reachable(world: World, start_pose: Pose) -> set[tuple[int, int]]:
+    """Return the cells that a robot can reach, `CELL` wide and counted from the start pose."""
+    distance, reached, waiting = distance_in(world), {(0, 0)}, deque([(0, 0)])
     while waiting:
         i, j = waiting.popleft()
         for cell in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)):
-            if cell not in seen and distance(here.x + cell[0] * CELL, here.y + cell[1] * CELL) > ROOM_TO_SPARE:
-                seen.add(cell)
+            if cell not in reached and distance(start_pose.x + cell[0] * CELL, start_pose.y + cell[1] * CELL) > MARGIN:
+                reached.add(cell)
                 waiting.append(cell)
-    return seen
+    return reached
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_robot_fits_on_every_start_and_goal(name: str) -> None:
     world = load(WORLDS / f"{name}.yaml")
     distance = distance_in(world)
-    for place in (*world.starts, *world.goals):
-        assert distance(place.x, place.y) > 0.25
+    for target in (*world.starts, *world.goals):
+        assert distance(target.x, target.y) > 0.25
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in TRACED])
 def test_every_goal_can_be_reached_from_the_first_start(name: str) -> None:
     world = load(WORLDS / f"{name}.yaml")
-    here = world.starts[0]
-    cells = np.array(sorted(reachable(world, here))) * CELL + (here.x, here.y)
+    start_pose = world.starts[0]
+    cells = np.array(sorted(reachable(world, start_pose))) * CELL + (start_pose.x, start_pose.y)
     assert world.goals
     for goal in world.goals:
         assert np.hypot(*(cells - (goal.x, goal.y)).T).min() < goal.radius
@@ -63,8 +63,8 @@ def test_moving_obstacles_walk_through_no_wall(name: str) -> None:
     world = load(WORLDS / f"{name}.yaml")
     distance, body = distance_in(world), RobotSpec().radius
     for second in np.arange(0.0, 60.0, 0.25):
-        places = movers_at(Simulation(world), int(second * 1e9))
-        for mover, (x, y) in zip(world.movers, places, strict=True):
+        positions = movers_at(Simulation(world), int(second * 1e9))
+        for mover, (x, y) in zip(world.movers, positions, strict=True):
             assert distance(x, y) + body - mover.radius > 0.02
 
 

@@ -1,4 +1,4 @@
-"""Static pictures: what is on them, the same bytes each time, no pyplot anywhere."""
+"""Static pictures: their content, reproducible bytes, and no use of pyplot."""
 
 from __future__ import annotations
 
@@ -107,9 +107,9 @@ def test_one_robot_can_be_picked(recording: Recording) -> None:
 
 def test_each_robot_has_the_colour_of_its_track(recording: Recording) -> None:
     ax = plot(recording).figure.axes[0]
-    found = {tuple(track.get_segments()[0][0]): track.get_cmap()(0.5) for track in tracks(ax)}
+    colours = {tuple(track.get_segments()[0][0]): track.get_cmap()(0.5) for track in tracks(ax)}
     for index in range(2):
-        assert found[tuple(recording.poses[0, index, :2])] == pytest.approx(
+        assert colours[tuple(recording.poses[0, index, :2])] == pytest.approx(
             to_rgba(LIGHT.robot_colour(index)), abs=0.01
         )
 
@@ -229,5 +229,5 @@ import sim.view
 sim.view.show(sim.World.from_segments(sim.box(2, 2))).png()
 assert not {"matplotlib.pyplot", "ipywidgets", "rclpy"} & set(sys.modules)
 """
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
+    completed = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=120)
+    assert completed.returncode == 0, completed.stderr

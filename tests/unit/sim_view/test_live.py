@@ -1,4 +1,4 @@
-"""The live view without a browser: what its methods do, on the loop that a kernel has."""
+"""The live view without a browser: its methods, on an event loop like a kernel's."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ PATIENCE = 60.0
 
 
 @pytest.fixture(autouse=True)
-def somebody_is_looking(monkeypatch: pytest.MonkeyPatch) -> None:
+def outside_of_grading(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("AUTOGRADER_GRADING", raising=False)
 
 
@@ -44,27 +44,27 @@ def paused(source: Any, controller: Any = None) -> LiveView:
 async def until(condition: Callable[[], bool]) -> None:
     deadline = time.monotonic() + PATIENCE
     while not condition():
-        assert time.monotonic() < deadline, "waited in vain"
+        assert time.monotonic() < deadline, "the condition never held"
         await asyncio.sleep(0)
 
 
-def elsewhere(function: Callable[..., Any], *arguments: Any) -> Any:
-    """Call on another thread: a browser test before this one leaves its loop running in the main thread."""
+def in_other_thread(function: Callable[..., Any], *arguments: Any) -> Any:
+    """Call in another thread, because an earlier browser test leaves its loop running in the main thread."""
     with ThreadPoolExecutor(1) as thread:
         return thread.submit(function, *arguments).result()
 
 
 def widgets_of(view: LiveView) -> dict[str, Any]:
-    """The view's buttons and the like by their tooltips, and the rest by their kind."""
-    found: dict[str, Any] = {}
+    """Return the view's widgets by tooltip, and those without a tooltip by class."""
+    widgets: dict[str, Any] = {}
 
     def visit(widget: Any) -> None:
-        found[getattr(widget, "tooltip", None) or type(widget).__name__] = widget
+        widgets[getattr(widget, "tooltip", None) or type(widget).__name__] = widget
         for child in getattr(widget, "children", ()):
             visit(child)
 
     visit(view.widget)
-    return found
+    return widgets
 
 
 def test_the_view_plays_on_the_event_loop_without_blocking_it(world: World) -> None:
@@ -89,7 +89,7 @@ def test_the_view_plays_on_the_event_loop_without_blocking_it(world: World) -> N
         assert not view.playing
         assert view.recording.poses[-1, 0, 0] > world.starts[0].x
 
-    elsewhere(asyncio.run, play())
+    in_other_thread(asyncio.run, play())
 
 
 def test_steps_are_exact(world: World) -> None:
@@ -114,7 +114,7 @@ def test_a_view_can_seek_to_the_past_and_continue_from_there(world: World) -> No
     assert view.time == pytest.approx(2.0)
 
 
-def test_reset_forgets_the_run(world: World) -> None:
+def test_reset_discards_the_run(world: World) -> None:
     view = paused(world, go)
     first = widgets_of(view)["Image"].value
     view.step(2.0)
@@ -200,11 +200,11 @@ def test_the_view_is_a_picture_while_a_notebook_is_graded(
         assert len(asyncio.all_tasks()) == 1  # this one
         return views
 
-    assert all(isinstance(view, Picture) for view in elsewhere(asyncio.run, make()))
+    assert all(isinstance(view, Picture) for view in in_other_thread(asyncio.run, make()))
 
 
 def test_without_an_event_loop_the_view_does_not_play(world: World) -> None:
-    view = elsewhere(live, world, go)
+    view = in_other_thread(live, world, go)
     assert isinstance(view, LiveView)
     assert not view.playing
     assert repr(view) == "<live view of 'the lab' at 0.00 s, paused>"
@@ -236,9 +236,9 @@ def test_a_blitted_frame_is_the_same_as_a_fresh_one(world: World, theme: Any) ->
     for frame in session.frames[::20]:
         used.draw(frame, session.trail(frame.state.time_ns))
     last = session.frames[-1]
-    again = used.draw(last, session.trail(last.state.time_ns))
+    reused = used.draw(last, session.trail(last.state.time_ns))
     fresh = Renderer(session.simulation, theme).draw(last, session.trail(last.state.time_ns))
-    assert np.array_equal(np.asarray(again), np.asarray(fresh))
+    assert np.array_equal(np.asarray(reused), np.asarray(fresh))
 
 
 def test_frames_are_jpeg_or_png_of_one_size(world: World) -> None:

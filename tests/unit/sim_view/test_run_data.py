@@ -26,8 +26,10 @@ ROOT = Path(__file__).resolve().parents[3]
 def unpack(packed: dict[str, Any]) -> npt.NDArray[np.float64]:
     planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["data"])), dtype=np.uint8)
     coded = np.ascontiguousarray(planes.reshape(4, -1).T).view("<u4").astype(np.int64).reshape(-1, packed["columns"])
-    whole: npt.NDArray[np.float64] = np.where(coded % 2, -(coded + 1) // 2, coded // 2).cumsum(axis=0) * packed["step"]
-    return whole
+    decoded: npt.NDArray[np.float64] = (
+        np.where(coded % 2, -(coded + 1) // 2, coded // 2).cumsum(axis=0) * packed["step"]
+    )
+    return decoded
 
 
 def test_a_decoded_table_is_rounded_to_its_steps() -> None:
@@ -77,7 +79,7 @@ def test_a_run_without_a_mark_shows_its_closest_place(world: World) -> None:
     assert "never nearer than" in data["summary"]
 
 
-def test_the_data_of_a_minute_are_small_and_of_a_fleet_for_an_hour_are_thinned_out() -> None:
+def test_the_data_of_a_minute_are_small_and_those_of_a_fleet_are_thinned_out() -> None:
     world = load_world(ROOT / "assets" / "worlds" / "lab.yaml")
     minute = run(Simulation(world), lambda state, scans: Command(0.3, 0.2), 60.0)
     assert len(encode(minute, "")) < MAX_BYTES / 3
@@ -96,7 +98,7 @@ def test_a_name_cannot_end_the_script() -> None:
     assert json.loads(text)["world"]["name"] == json.loads(text)["alt"] == evil
 
 
-def said(text: str) -> list[tuple[float, str]]:
+def decoded_output(text: str) -> list[tuple[float, str]]:
     data = json.loads(text)["said"]
     texts = json.loads(zlib.decompress(base64.b64decode(data["texts"])))
     return list(zip(unpack(data["times"])[:, 0].tolist(), texts, strict=True))
@@ -105,7 +107,7 @@ def said(text: str) -> list[tuple[float, str]]:
 def test_output_of_programs_is_decoded_with_its_times(recording: Recording) -> None:
     evil = "</script><script>alert(1)</script>"
     text = encode(replace(recording, said=((0.1, "near"), (1.5, evil))), "")
-    assert said(text) == [(pytest.approx(0.1), "near"), (pytest.approx(1.5), evil)]
+    assert decoded_output(text) == [(pytest.approx(0.1), "near"), (pytest.approx(1.5), evil)]
     assert "<" not in text
     assert json.loads(encode(recording, ""))["said"] is None
 
@@ -116,5 +118,5 @@ def test_a_flood_of_lines_that_cannot_be_compressed_is_bounded(recording: Record
     text = encode(replace(recording, said=flood), "")
     assert len(json.loads(text)["said"]["texts"]) <= MAX_LOG_BYTES
     assert len(text) <= MAX_BYTES
-    assert (said(text)[0][1], said(text)[-1][1]) == (flood[0][1], flood[-1][1])
-    assert [line for _, line in said(text)].count(LEFT_OUT) == 1
+    assert (decoded_output(text)[0][1], decoded_output(text)[-1][1]) == (flood[0][1], flood[-1][1])
+    assert [line for _, line in decoded_output(text)].count(LEFT_OUT) == 1

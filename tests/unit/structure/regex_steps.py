@@ -1,8 +1,8 @@
 """Counts the steps that a backtracking regular expression takes, and makes texts that are hard for it.
 
 `steps` carries out Python's own parse tree, one step for each character or alternative that is tried. A count is the
-same on every machine, which a time is not. A bound such as `{1,200}` counts as `{1,8}`: whatever it bounds is a
-constant, and then shows as one on short texts.
+same on every machine, which a time is not. A bound such as `{1,200}` counts as `{1,8}`: a bounded repetition
+is a constant factor, and short texts have to show it as one.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ else:
 
 BOUND = 8
 _SPACE, _WORD = set(" \t\n\r\f\v"), set("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_")
-# One of each kind that a class may hold; the first that fits stands for the class.
+# One character of each kind; the first one in a class represents the class.
 ALPHABET = "a1 A_.-/\n\t[]:'\"<>=,;(){}#*+~|`\\&%$@!?^0é\x1b\x07\x00"
 Then = Callable[[int], bool]
 
@@ -37,7 +37,7 @@ class Steps:
         self.flags, self.limit, self.count = pattern.flags, limit, 0
         self.tree = sre.parse(text, pattern.flags & ~re.UNICODE & ~re.LOCALE)
         self.text = ""
-        self.found: list[tuple[int, int]] = []
+        self.matches: list[tuple[int, int]] = []
         self.groups: dict[int, tuple[int, int]] = {}
 
     def search(self, text: str, *, anchored: bool, full: bool) -> int:
@@ -54,7 +54,7 @@ class Steps:
                 return True
 
             self._all(list(self.tree), 0, start, done)
-            self.found += [(start, end[0])] if end else []
+            self.matches += [(start, end[0])] if end else []
             if anchored:
                 break
             start = max(end[0], start + 1) if end else start + 1
@@ -96,8 +96,8 @@ class Steps:
         if kind in ("ASSERT", "ASSERT_NOT"):
             ahead, inner = value[0] > 0, list(value[1])
             width = value[1].getwidth()[0]
-            held = at >= width and self._all(inner, 0, at if ahead else at - width, lambda _: True)
-            return held is (kind == "ASSERT") and then(at)
+            matched = at >= width and self._all(inner, 0, at if ahead else at - width, lambda _: True)
+            return matched is (kind == "ASSERT") and then(at)
         if kind == "AT":
             return self._anchor(str(value), at) and then(at)
         if kind == "GROUPREF":
@@ -111,19 +111,19 @@ class Steps:
             return self._repeat_one(item[0], low, high, at, then, greedy=greedy)
 
         def more(count: int, here: int) -> bool:
-            def again(after: int) -> bool:
+            def repeat(after: int) -> bool:
                 return (after > here or count < low) and more(count + 1, after)
 
             if count < low:
-                return self._all(item, 0, here, again)
+                return self._all(item, 0, here, repeat)
             if greedy:
-                return (count < high and self._all(item, 0, here, again)) or then(here)
-            return then(here) or (count < high and self._all(item, 0, here, again))
+                return (count < high and self._all(item, 0, here, repeat)) or then(here)
+            return then(here) or (count < high and self._all(item, 0, here, repeat))
 
         return more(0, at)
 
     def _repeat_one(self, item: Any, low: int, high: int, at: int, then: Then, *, greedy: bool) -> bool:
-        """Repeat what has one character without a call for each, as Python does."""
+        """Repeat a single character without a call for each repetition, as Python does."""
         here = at
         while greedy and here - at < high and here < len(self.text) and fits(item, self.text[here], self.flags):
             self._count()
@@ -154,7 +154,7 @@ class Steps:
 
 
 def fits(node: Any, char: str, flags: int) -> bool:
-    """Return whether a node that stands for one character stands for this one."""
+    """Return whether a node for one character matches this character."""
     kind, value = str(node[0]), node[1]
     if kind == "ANY":
         return char != "\n" or bool(flags & re.DOTALL)
@@ -178,10 +178,10 @@ def _in_class(part: Any, char: str, flags: int) -> bool:
 
 
 def hard_texts(pattern: re.Pattern[Any], *, full: bool) -> Iterator[Callable[[int], str]]:
-    """Yield texts, as functions of a number of repetitions, that are made of what the pattern looks for.
+    """Yield texts, as functions of a number of repetitions, that are built from the pattern's own characters.
 
     Each is the beginning of a text that matches, then a part that is repeated, then an end that does not match. The
-    part is a character that the pattern knows, or a piece of the text that matches.
+    part is a character of the pattern, or a piece of a matching text.
     """
     maker = Steps(pattern, 0)
     samples = [_sample(list(maker.tree), maker.flags, {}, least) for least in (0, 1)]
@@ -194,7 +194,7 @@ def hard_texts(pattern: re.Pattern[Any], *, full: bool) -> Iterator[Callable[[in
         pairs |= {sample[at - 1 : at + 1] for at in cut[:12]}
     lines = {f"{head}\n" for head in heads} if maker.flags & re.MULTILINE else set()
     parts = {*chars[:16], *pairs, *heads, *lines} - {""}
-    tails = ("\0", '"\0"\0') if full else ("\0",)  # one that a class such as [^"'] does not take
+    tails = ("\0", '"\0"\0') if full else ("\0",)  # the second has characters that a class such as [^"'] excludes
     for head, part, tail in product(sorted(heads, key=len)[:8], sorted(parts), tails):
         yield lambda count, head=head, part=part, tail=tail: head + part * count + tail
 
@@ -223,21 +223,21 @@ def _char(node: Any, flags: int) -> str:
 
 
 def _sample(nodes: list[Any], flags: int, groups: dict[int, str], least: int) -> str:
-    """Return a text that matches, or nearly: each part that may be repeated is there `least` times."""
-    said = ""
+    """Return a text that matches, or almost: each repeatable part occurs `least` times."""
+    text = ""
     for node in nodes:
         kind, value = str(node[0]), node[1]
         if kind in ("MAX_REPEAT", "MIN_REPEAT"):
-            said += _sample(list(value[2]), flags, groups, least) * min(max(least, value[0]), BOUND)
+            text += _sample(list(value[2]), flags, groups, least) * min(max(least, value[0]), BOUND)
         elif kind == "SUBPATTERN":
             groups[value[0]] = _sample(list(value[3]), flags, groups, least)
-            said += groups[value[0]]
+            text += groups[value[0]]
         elif kind == "BRANCH":
-            said += _sample(list(value[1][0]), flags, groups, least)
+            text += _sample(list(value[1][0]), flags, groups, least)
         elif kind == "ASSERT" and value[0] > 0:
-            said += _sample(list(value[1]), flags, groups, least)
+            text += _sample(list(value[1]), flags, groups, least)
         elif kind == "GROUPREF":
-            said += groups.get(value, "")
+            text += groups.get(value, "")
         else:
-            said += _char(node, flags)
-    return said
+            text += _char(node, flags)
+    return text

@@ -27,7 +27,7 @@ RECIPES = [ROOT / "Makefile", ROOT / "assets" / "students" / "Makefile", ROOT / 
 IMAGES = [".binder/Dockerfile", "docs/cluster/Dockerfile"]
 IMAGES += [str(path.relative_to(ROOT)) for path in sorted((ROOT / ".github").rglob("*.yml"))]
 CODENAME = DISTRIBUTION.platform_page.rpartition("/")[2]
-SAID = re.compile(rf"{DISTRIBUTION.name}|{re.escape(DISTRIBUTION.platform)}|\b{CODENAME}\b|python3\.\d", re.IGNORECASE)
+FACT = re.compile(rf"{DISTRIBUTION.name}|{re.escape(DISTRIBUTION.platform)}|\b{CODENAME}\b|python3\.\d", re.IGNORECASE)
 VERSIONS = {
     DISTRIBUTION.rclpy,
     *DISTRIBUTION.pythons,
@@ -37,7 +37,7 @@ VERSIONS = {
 
 
 def words(code: str) -> Iterator[str]:
-    """Yield the names and the texts of a module. Its docstrings and comments are for people."""
+    """Yield the names and texts of a module, without its docstrings and comments."""
     tree = ast.parse(code)
     documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
     docstrings = {
@@ -55,18 +55,18 @@ def words(code: str) -> Iterator[str]:
 
 def test_no_code_holds_a_fact_of_the_distribution() -> None:
     assert len(CODE) > 300
-    found = {
-        str(path.relative_to(ROOT)): said
+    facts = {
+        str(path.relative_to(ROOT)): mentions
         for path in CODE
-        if (said := [word for word in words(path.read_text()) if SAID.search(word) or word in VERSIONS])
+        if (mentions := [word for word in words(path.read_text()) if FACT.search(word) or word in VERSIONS])
     }
-    assert found == {}, "read it from autograder.ros.distribution"
+    assert facts == {}, "read it from autograder.ros.distribution"
 
 
 def test_no_recipe_holds_a_fact_of_the_distribution() -> None:
     for path in RECIPES:
         lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
-        assert [line for line in lines if SAID.search(line)] == [], path
+        assert [line for line in lines if FACT.search(line)] == [], path
 
 
 def test_the_project_asks_for_the_wheels_and_the_pythons_of_the_distribution() -> None:
@@ -80,8 +80,8 @@ def test_the_project_asks_for_the_wheels_and_the_pythons_of_the_distribution() -
 
 @pytest.mark.parametrize("package", DISTRIBUTION.packages, ids=lambda package: package.name)
 def test_the_project_asks_for_the_version_of_the_platform(package: PlatformPackage) -> None:
-    asked = [Requirement(line) for line in PROJECT["dependencies"]]
-    pinned = [str(each.specifier) for each in asked if each.name == package.name]
+    requirements = [Requirement(line) for line in PROJECT["dependencies"]]
+    pinned = [str(each.specifier) for each in requirements if each.name == package.name]
     assert not pinned or f"=={package.version}" in pinned  # some come with another package, and the lock pins them
 
 
@@ -91,4 +91,4 @@ def test_the_project_asks_for_the_version_of_the_platform(package: PlatformPacka
 def test_images_and_workflows_are_those_of_the_platform(path: str) -> None:
     text = (ROOT / path).read_text()
     assert set(re.findall(r"(?:python: ?\"?|python-version: ?\"|python)(3\.\d+)", text)) <= {*DISTRIBUTION.pythons}
-    assert {f"Ubuntu {found}" for found in re.findall(r"ubuntu[:-](\d+\.\d+)", text)} <= {DISTRIBUTION.platform}
+    assert {f"Ubuntu {version}" for version in re.findall(r"ubuntu[:-](\d+\.\d+)", text)} <= {DISTRIBUTION.platform}

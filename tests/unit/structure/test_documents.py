@@ -26,7 +26,7 @@ IN_A_CHAPTER = ("ws/src", "support/contract.py", "hidden/conftest.py")  # paths 
 
 
 def spans(document: str) -> list[str]:
-    """Return what a document sets in code: spans in a line, and each line of a block."""
+    """Return the code in a document: spans in a line, and each line of a block."""
     text = (ROOT / document).read_text(encoding="utf-8")
     blocks = re.findall(r"```\w*\n(.*?)```", text, flags=re.DOTALL)
     inline = re.sub(r"```\w*\n.*?```", "", text, flags=re.DOTALL)
@@ -50,8 +50,8 @@ def _is_path(word: str) -> bool:
 
 def commands(document: str) -> list[list[str]]:
     """Return the words of each call of `autograder` after its name."""
-    found = [re.match(r"(?:eval \"\$\()?(?:\.venv/bin/)?autograder ([^`)]*)", span) for span in spans(document)]
-    return [match[1].split() for match in found if match]
+    matches = [re.match(r"(?:eval \"\$\()?(?:\.venv/bin/)?autograder ([^`)]*)", span) for span in spans(document)]
+    return [match[1].split() for match in matches if match]
 
 
 @pytest.mark.parametrize("document", DOCUMENTS)
@@ -73,12 +73,12 @@ def test_each_command_that_a_document_names_exists(document: str) -> None:
         command: click.Command = group
         context = click.Context(group)
         while words and isinstance(command, click.Group) and not words[0].startswith("-"):
-            found = command.get_command(context, words[0])
-            assert found is not None, f"{document}: autograder {' '.join(words)}"
-            command, words = found, words[1:]
+            subcommand = command.get_command(context, words[0])
+            assert subcommand is not None, f"{document}: autograder {' '.join(words)}"
+            command, words = subcommand, words[1:]
         options = {name for parameter in command.params for name in parameter.opts} | {"--version", "--help"}
-        given = {word for word in words if re.fullmatch(r"--?[a-z]+", word)} if command.name != "ros" else set()
-        assert given <= options, f"{document}: {command.name} has no {given - options}"
+        used = {word for word in words if re.fullmatch(r"--?[a-z]+", word)} if command.name != "ros" else set()
+        assert used <= options, f"{document}: {command.name} has no {used - options}"
 
 
 def test_each_make_target_that_a_document_names_exists() -> None:

@@ -37,7 +37,7 @@ def test_the_picture_is_drawn_from_its_source() -> None:
     assert (FIGURES / "parts.svg").read_text() == drawn, "run `python assets/figures/parts.py`"
 
 
-def test_each_part_is_in_the_picture_and_no_other() -> None:
+def test_the_picture_contains_exactly_the_parts() -> None:
     packages = {path.parent.name for path in (ROOT / "autograder").glob("*/__init__.py")}
     modules = {path.stem for path in (ROOT / "autograder").glob("*.py") if not path.stem.startswith("__")}
     assert (set(SOURCE["packages"]), set(SOURCE["modules"])) == (packages | {"sim"}, modules), "see parts.yaml"
@@ -64,7 +64,7 @@ def test_each_step_of_a_submission_is_drawn_at_a_part() -> None:
 
 def test_the_contract_of_the_sandbox_names_every_program_that_runs_there() -> None:
     (contract,) = (contract for contract in CONTRACTS if contract["id"] == "sandboxed")
-    found = {
+    programs = {
         ".".join(path.relative_to(ROOT).with_suffix("").parts)
         for pattern in ("*_host", "*_runner.py")
         for path in (ROOT / "autograder").rglob(pattern)
@@ -73,4 +73,4 @@ def test_the_contract_of_the_sandbox_names_every_program_that_runs_there() -> No
     inside = {
         f"autograder.run.fork_server.{name}" for name in ("children", "confinement", "emulation")
     }  # a forked program's own
-    assert found | inside == set(contract["protected_modules"])
+    assert programs | inside == set(contract["protected_modules"])

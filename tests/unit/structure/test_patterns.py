@@ -160,4 +160,4 @@ def test_the_step_counter_finds_the_same_matches_as_python(pattern: str, text: s
     compiled = re.compile(pattern)
     counter = Steps(compiled, MOST)
     counter.search(text, anchored=False, full=False)
-    assert counter.found == [match.span() for match in compiled.finditer(text)]
+    assert counter.matches == [match.span() for match in compiled.finditer(text)]
