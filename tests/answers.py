@@ -1,4 +1,4 @@
-"""A right answer to 02 as a student's folder, and the folders and archives that it is handed in as."""
+"""A correct answer to 02 as a student's folder, and the folders and archives in which it is handed in."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Files = Mapping[str, bytes]
 
 @dataclass(frozen=True)
 class Answer:
-    """A right answer: the folder's files, with the answer in its file and in its cell, and the release."""
+    """A correct answer: the folder's files, with the answer in its file and in its cell, and the release."""
 
     files: dict[str, bytes]
     released: dict[str, bytes]

@@ -1,4 +1,4 @@
-"""What all tests share: Activates ROS, gives each test a separate ROS domain, and provides results for reports."""
+"""Shared by all tests: activates ROS, gives each test a separate ROS domain, and provides results for reports."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from autograder.ros.environment import LOGS_TO_STDOUT
 from autograder.run.sandbox.launcher import restore_sigint
 from autograder.suite import Check, Outcome, Visibility
 
-# The same examples in each run: a test that fails now and then would be no gate. `make fuzz` looks further.
+# The same examples in each run, because a test that fails at random is not a gate. `make fuzz` tries others.
 # Slowness on a busy machine is not a failure.
 _PATIENT = hypothesis.settings(deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow])
 hypothesis.settings.register_profile("course", _PATIENT, derandomize=True)
@@ -34,19 +34,19 @@ hypothesis.settings.register_profile("fuzz", _PATIENT, derandomize=False)
 hypothesis.settings.register_profile("thousand", _PATIENT, derandomize=False, max_examples=1000)
 hypothesis.settings.load_profile("course")
 
-# Before any test module imports rclpy. Fixtures that outlive a test meet in the worker's own domain.
-_OURS = Domain()
-_NEXT = itertools.count(_OURS.number)  # a domain just released may still have a participant shutting down
-activate(domain=_OURS.number)
+# Before any test module imports rclpy. Fixtures that outlive a test use the worker's own domain.
+_WORKER_DOMAIN = Domain()
+_NEXT = itertools.count(_WORKER_DOMAIN.number)  # a domain just released may still have a participant shutting down
+activate(domain=_WORKER_DOMAIN.number)
 os.environ.update(LOGS_TO_STDOUT)  # as for students' programs in the grader and in notebooks
 restore_sigint()  # programs end on Ctrl-C also when the tests are a job in the background
 
 
 _CHAPTER = re.compile(r"\b[0-9]{2}_[a-z_]+")
-# Files of long tests without shared fixtures. What takes longest comes first, so that all workers end at the same time.
+# Files of long tests without shared fixtures. The slowest come first, so that all workers end at the same time.
 _NOTEBOOKS, _VERIFICATION = "tests/notebooks/test_chapters.py", "tests/e2e/test_mutants.py"
 _JUPYTERLAB = "tests/browser/test_solve_in_jupyterlab.py"
-_APART = (_NOTEBOOKS, _VERIFICATION, "tests/e2e/test_attacks.py", "tests/e2e/test_seeds.py")
+_SEPARATE = (_NOTEBOOKS, _VERIFICATION, "tests/e2e/test_attacks.py", "tests/e2e/test_seeds.py")
 _FIRST = (_NOTEBOOKS, "tests/e2e/test_nbgrader.py", _JUPYTERLAB, _VERIFICATION, "tests/e2e", "tests/browser")
 
 
@@ -56,7 +56,7 @@ class ByFile(LoadScopeScheduling):
     def _split_scope(self, nodeid: str) -> str:
         file, _, test = nodeid.partition("::")
         chapter = _CHAPTER.search(test)
-        if file in _APART:
+        if file in _SEPARATE:
             return nodeid
         return f"{file} {chapter[0]}" if chapter else file
 
@@ -67,21 +67,23 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByFile:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Sort the tests by their place."""
+    """Run the slowest files first."""
 
-    def place(item: pytest.Item) -> int:
-        return next((place for place, start in enumerate(_FIRST) if item.nodeid.startswith(start)), len(_FIRST))
+    def rank(item: pytest.Item) -> int:
+        return next((rank for rank, start in enumerate(_FIRST) if item.nodeid.startswith(start)), len(_FIRST))
 
-    items.sort(key=place)
+    items.sort(key=rank)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--fuzz-seconds", type=float, default=0.0, help="how long each test marked `fuzz` goes on")
+    parser.addoption(
+        "--fuzz-seconds", type=float, default=0.0, help="seconds for which each test marked `fuzz` is repeated"
+    )
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
-    """Run a test marked `fuzz` again and again, each time with other examples, until its time is over."""
+    """Repeat a test marked `fuzz` with other examples until its time is over."""
     end = time.monotonic() + item.config.getoption("--fuzz-seconds")
     yield
     while item.get_closest_marker("fuzz") and time.monotonic() < end:

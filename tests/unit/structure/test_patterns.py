@@ -20,7 +20,7 @@ MOST = 300_000  # steps, of a text of some hundred characters
 PLENTY = 4  # steps a character; a text that takes fewer is not hard
 STEEP = 2.6  # how the steps grow from a length to twice the length: 2 is linear, 4 quadratic
 FUNCTIONS = {"compile", "match", "fullmatch", "search", "split", "sub", "subn", "findall", "finditer"}
-# What is never given a student's text by the grader.
+# Modules whose patterns the grader never applies to a student's text.
 APART = {
     "autograder/bootstrap.py": "lock files",
     "autograder/author/course/": "the course's own notebooks",
@@ -34,7 +34,7 @@ APART = {
 class Use:
     """A pattern of a module, and whether it is tried at a text's beginning only, and has to reach its end."""
 
-    place: str
+    location: str
     pattern: re.Pattern[Any]
     anchored: bool = False
     full: bool = False
@@ -58,14 +58,19 @@ def _uses(path: str, tree: ast.Module) -> Iterator[Use]:
             methods.setdefault(call.func.value.id, set()).add(call.func.attr)
     for name, value in vars(module).items():
         for pattern in _patterns(value):
-            how = methods.get(name, {"search"})
-            yield Use(f"{path}, {name}", pattern, how <= {"match", "fullmatch"}, how == {"fullmatch"})
+            methods_used = methods.get(name, {"search"})
+            yield Use(f"{path}, {name}", pattern, methods_used <= {"match", "fullmatch"}, methods_used == {"fullmatch"})
     for function in (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)):
         for call in ast.walk(function):
             if isinstance(call, ast.Call) and ast.unparse(call.func) in {f"re.{name}" for name in FUNCTIONS}:
-                how = {ast.unparse(call.func).removeprefix("re.")}
-                place = f"{path}, line {call.lineno}"
-                yield Use(place, re.compile(_text(call.args[0])), how <= {"match", "fullmatch"}, how == {"fullmatch"})
+                methods_used = {ast.unparse(call.func).removeprefix("re.")}
+                location = f"{path}, line {call.lineno}"
+                yield Use(
+                    location,
+                    re.compile(_text(call.args[0])),
+                    methods_used <= {"match", "fullmatch"},
+                    methods_used == {"fullmatch"},
+                )
 
 
 def _patterns(value: object) -> Iterator[re.Pattern[Any]]:
@@ -76,7 +81,7 @@ def _patterns(value: object) -> Iterator[re.Pattern[Any]]:
 
 
 def _text(node: ast.expr) -> Any:
-    """Return the pattern in a call; what it is filled with is a word."""
+    """Return the pattern in a call, with a word for each value that is formatted into it."""
     if isinstance(node, ast.JoinedStr):
         return "".join(str(part.value) if isinstance(part, ast.Constant) else "x" for part in node.values)
     assert isinstance(node, ast.Constant), f"{ast.unparse(node)}: write the pattern where it is used, to be tried here"
@@ -85,7 +90,7 @@ def _text(node: ast.expr) -> Any:
 
 @pytest.fixture(autouse=True, scope="module")
 def deep() -> Iterator[None]:
-    """Let a repeated group go as deep as the texts are long."""
+    """Raise the recursion limit, because a repeated group recurses for each repetition."""
     before = sys.getrecursionlimit()
     sys.setrecursionlimit(10_000)
     yield
@@ -93,7 +98,7 @@ def deep() -> Iterator[None]:
 
 
 def steepest(use: Use) -> tuple[float, str]:
-    """Return how steeply the steps grow on the hardest text, and this text, short."""
+    """Return the growth of the steps on the hardest text, and a short form of this text."""
 
     def steps(text: str) -> int:
         return Steps(use.pattern, MOST).search(text, anchored=use.anchored, full=use.full)
@@ -114,16 +119,16 @@ def steepest(use: Use) -> tuple[float, str]:
 USES = list(uses())
 
 
-@pytest.mark.parametrize("use", USES, ids=lambda use: str(use.place))
+@pytest.mark.parametrize("use", USES, ids=lambda use: str(use.location))
 def test_the_steps_of_a_pattern_grow_in_proportion_to_the_text(use: Use) -> None:
     growth, text = steepest(use)
-    assert growth < STEEP, f"{use.place}: {use.pattern.pattern!r} on texts such as {text!r}"
+    assert growth < STEEP, f"{use.location}: {use.pattern.pattern!r} on texts such as {text!r}"
 
 
 def test_patterns_are_found_in_modules_and_in_calls() -> None:
-    places = {use.place for use in USES}
-    assert {"autograder/probes/launch_probe.py, _STARTED", "autograder/plain_text.py, _TERMINAL"} <= places
-    assert any(re.match(r"autograder/probes/colcon_test.py, line \d+", place) for place in places)
+    locations = {use.location for use in USES}
+    assert {"autograder/probes/launch_probe.py, _STARTED", "autograder/plain_text.py, _TERMINAL"} <= locations
+    assert any(re.match(r"autograder/probes/colcon_test.py, line \d+", location) for location in locations)
     assert len(USES) > 40
 
 

@@ -1,4 +1,4 @@
-"""A program that the grader starts imports nothing from the folder that somebody happens to grade from."""
+"""A program that the grader starts imports nothing from the folder in which grading was started."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STARTERS = {
     *("asyncio.create_subprocess_exec", "asyncio.create_subprocess_shell", "Process"),
 }
 UNFOLDED = ("os.system", "os.popen", "os.spawn", "os.posix_spawn", "os.exec", "pty.spawn")  # these take no folder
-ELSEWHERE = {  # and why the folder that they are started in is the right one
+ELSEWHERE = {  # modules that start programs in the present folder, and why it is the right one
     "author/verification/fork_server.py": "rm imports nothing",
     "building/build.py": "rm imports nothing",
     "building/interfaces/compile.py": "the compiler gets absolute paths, from a process in /",
@@ -37,7 +37,7 @@ ELSEWHERE = {  # and why the folder that they are started in is the right one
 
 
 def starts(path: Path) -> Iterator[ast.Call]:
-    """Find the calls in a module that start a program in whatever folder this process is in."""
+    """Find the calls in a module that start a program in the present folder of this process."""
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Call):
             name = ast.unparse(node.func)
@@ -47,13 +47,13 @@ def starts(path: Path) -> Iterator[ast.Call]:
 
 
 def test_every_started_program_has_an_explicit_working_folder() -> None:
-    found = {str(path.relative_to(GRADER)) for path in GRADER.rglob("*.py") if any(starts(path))}
-    assert found == set(ELSEWHERE), "name a folder (cwd=), or say here why the present one is right"
+    modules = {str(path.relative_to(GRADER)) for path in GRADER.rglob("*.py") if any(starts(path))}
+    assert modules == set(ELSEWHERE), "name a folder (cwd=), or say here why the present one is right"
 
 
 @pytest.fixture
 def trapped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Go to a folder in which every module leaves a mark when it is imported; return the path of the mark."""
+    """Enter a folder in which every module leaves a mark when it is imported; return the path of the mark."""
     mark = tmp_path / "imported"
     folder = tmp_path / "submission"
     folder.mkdir()
@@ -67,9 +67,9 @@ def test_the_list_of_fonts_is_made_without_modules_of_the_present_folder(
     trapped: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(trapped.parent / "cache"))
-    made = warm_caches.fonts.__wrapped__()
-    assert made is not None
-    assert made.is_relative_to(trapped.parent / "cache")
+    cache = warm_caches.fonts.__wrapped__()
+    assert cache is not None
+    assert cache.is_relative_to(trapped.parent / "cache")
     assert not trapped.exists()
 
 

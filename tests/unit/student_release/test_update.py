@@ -78,9 +78,9 @@ def test_unchanged_files_become_those_of_the_later_release(release: Path, newer:
 )
 def test_files_and_cells_that_a_student_wrote_are_kept(release: Path, newer: Path) -> None:
     write(release, "my answer")
-    done = update_release(release, newer)
-    assert (done.kept, done.set_aside) == ([GIVEN], {})
-    assert NOTEBOOK in done.written
+    update = update_release(release, newer)
+    assert (update.kept, update.set_aside) == ([GIVEN], {})
+    assert NOTEBOOK in update.written
     assert [(cell.id, cell.source) for cell in read(release).cells] == [
         ("title", "# Nodes"),
         ("new", "a hint"),
@@ -106,12 +106,12 @@ def test_kept_files_and_cells_are_kept_at_the_next_update(release: Path, newer: 
 def test_a_changed_file_of_the_course_is_set_aside(release: Path, newer: Path) -> None:
     (release / "sim/world.py").write_text("mine")
     (release / "sim/world.py.yours").write_text("of the update before")
-    done = update_release(release, newer)
-    assert done.set_aside == {"sim/world.py": "sim/world.py.yours1"}
+    update = update_release(release, newer)
+    assert update.set_aside == {"sim/world.py": "sim/world.py.yours1"}
     assert (release / "sim/world.py").read_text() == "one, mended"
     assert (release / "sim/world.py.yours").read_text() == "of the update before"
     assert (release / "sim/world.py.yours1").read_text() == "mine"
-    assert "sim/world.py" in done.written
+    assert "sim/world.py" in update.written
     assert not update_release(release, newer).written
 
 

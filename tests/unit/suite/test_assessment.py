@@ -1,4 +1,4 @@
-"""The assessment's choices: the notebook asks what the key answers, and every wrong answer is explained."""
+"""The assessment's choices: notebook and key have the same questions, and every wrong answer is explained."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ ASSIGNMENT = "09_assessment"
 
 def test_the_notebook_asks_each_question_with_four_choices() -> None:
     text = "\n".join(cell.source for cell in Chapter(course_paths.chapter(ASSIGNMENT)).read().cells)
-    asked = dict(re.findall(r"^\*\*(q\d+)\.\*\*.*?((?:\n- [a-d]\) [^\n]+)+)", text, re.MULTILINE | re.DOTALL))
-    assert tuple(asked) == contract.QUESTIONS == tuple(QUESTIONS)
-    for choices in asked.values():
+    questions = dict(re.findall(r"^\*\*(q\d+)\.\*\*.*?((?:\n- [a-d]\) [^\n]+)+)", text, re.MULTILINE | re.DOTALL))
+    assert tuple(questions) == contract.QUESTIONS == tuple(QUESTIONS)
+    for choices in questions.values():
         assert re.findall(r"^- ([a-d])\)", choices, re.MULTILINE) == list("abcd")
 
 
@@ -52,7 +52,7 @@ def test_the_reference_holds_the_key_and_the_release_does_not() -> None:
     assert parse(cell.source).keys().isdisjoint(QUESTIONS)
 
 
-def test_no_letter_is_the_correct_answer_too_often() -> None:
+def test_each_letter_is_equally_often_the_correct_answer() -> None:
     letters = [question.right for question in QUESTIONS.values()]
     assert all(letters.count(letter) == 3 for letter in contract.LETTERS)
 

@@ -1,4 +1,4 @@
-"""A robot acts on what it sees if it turns where something is ahead, and blindly if it turns wherever it is."""
+"""A robot that turns where something is ahead acts on what it sees; one that turns anywhere is blind."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ def test_a_robot_that_turns_before_a_wall_acts_on_what_it_sees(turn: Command) ->
 @pytest.mark.parametrize(
     "command",
     [Command(), ON, LEFT, Command(0.1, 0.5)],
-    ids=["stands", "drives straight on", "spins", "circles"],
+    ids=["stands still", "drives straight on", "spins", "circles"],
 )
-def test_a_robot_that_does_one_thing_only_acts_on_nothing(command: Command) -> None:
+def test_a_robot_that_always_does_the_same_acts_on_nothing(command: Command) -> None:
     assert not turns_at_things(_drive(lambda scan: command), AHEAD)
 
 

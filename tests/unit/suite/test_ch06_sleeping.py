@@ -1,4 +1,4 @@
-"""Sleeps are found by reading, in any spelling."""
+"""Sleeps are found in the source, in any spelling."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ rclpy.spin_once(node, timeout_sec=0.1)
 """
 
 
-def test_the_lines_of_sleeps_are_found_and_nothing_else() -> None:
+def test_only_the_lines_of_sleeps_are_found() -> None:
     assert sleeps(SLEEPY.encode()) == [5, 6, 9, 10, 11, 12]
 
 

@@ -30,9 +30,9 @@ def report(
     *verdicts: ClaimedOutcome, status: int | None = None, exit_reason: ExitReason | None = None, message: str = ""
 ) -> Report:
     names = [f"test_limits::test_{number}" for number in range(len(verdicts))]
-    said = {name: message if verdict is BAD else "" for name, verdict in zip(names, verdicts, strict=True)}
+    messages = {name: message if verdict is BAD else "" for name, verdict in zip(names, verdicts, strict=True)}
     implied = int(BAD in verdicts) if status is None else status
-    return Report(exit_reason, implied, Claims(dict(zip(names, verdicts, strict=True)), said), 0, "")
+    return Report(exit_reason, implied, Claims(dict(zip(names, verdicts, strict=True)), messages), 0, "")
 
 
 ENOUGH = report(*[GOOD] * MIN_TESTS[LIMITS])
@@ -118,13 +118,13 @@ def test_a_sleep_is_named_by_file_and_line() -> None:
 
 @pytest.fixture
 def examination(tmp_path: Path) -> Examination:
-    """An examination whose runs are given."""
-    made = Examination(Workspace(tmp_path, environment.find(), tmp_path), 1, frozenset())
-    made.__dict__["trial"] = {LIMITS: ENOUGH}
-    made.__dict__["runs"] = {(LIMITS, fault.id): report(BAD) for fault in faults()} | {
-        (LIMITS, what): ENOUGH for what in (SECOND, REWORDED, BACKWARDS)
+    """An examination with prepared runs."""
+    prepared = Examination(Workspace(tmp_path, environment.find(), tmp_path), 1, frozenset())
+    prepared.__dict__["trial"] = {LIMITS: ENOUGH}
+    prepared.__dict__["runs"] = {(LIMITS, fault.id): report(BAD) for fault in faults()} | {
+        (LIMITS, name): ENOUGH for name in (SECOND, REWORDED, BACKWARDS)
     }
-    return made
+    return prepared
 
 
 def test_tests_that_fail_on_all_faults_of_a_line_earn_its_points(examination: Examination) -> None:

@@ -25,11 +25,11 @@ def test_a_declared_check_takes_its_id_and_title_from_the_function() -> None:
         More for maintainers.
         """  # noqa: D205
 
-    found = check_of(test_turns)
-    assert found is not None
-    assert (found.id, found.title, found.points) == ("turns", "The robot turns when it must.", 2.0)
-    assert (found.group, found.hints, found.doc) == ("reaction", ("one", "two"), "https://docs.ros.org")
-    assert (found.needs, found.visibility) == (("starts",), Visibility.HIDDEN)
+    declared = check_of(test_turns)
+    assert declared is not None
+    assert (declared.id, declared.title, declared.points) == ("turns", "The robot turns when it must.", 2.0)
+    assert (declared.group, declared.hints, declared.doc) == ("reaction", ("one", "two"), "https://docs.ros.org")
+    assert (declared.needs, declared.visibility) == (("starts",), Visibility.HIDDEN)
 
 
 def test_a_function_without_a_declaration_is_not_a_check() -> None:
@@ -64,9 +64,9 @@ def test_hints_above_the_declaration_are_an_error() -> None:
             """The robot turns."""
 
 
-@pytest.mark.parametrize(("folder", "seen"), [("visible", Visibility.VISIBLE), ("hidden", Visibility.HIDDEN)])
+@pytest.mark.parametrize(("folder", "visibility"), [("visible", Visibility.VISIBLE), ("hidden", Visibility.HIDDEN)])
 def test_the_folder_decides_the_visibility_of_a_check_also_in_a_table(
-    tmp_path: Path, folder: str, seen: Visibility
+    tmp_path: Path, folder: str, visibility: Visibility
 ) -> None:
     module = ModuleType("a_suite")
     text = """
@@ -84,7 +84,7 @@ def body(row, robot):
     one, two = check_of(module.test_one), check_of(module.test_two)
     assert one is not None
     assert two is not None
-    assert (one.visibility, two.visibility) == (seen, seen)
+    assert (one.visibility, two.visibility) == (visibility, visibility)
     assert (two.id, two.title, two.points, two.group, two.hints, two.doc) == ("two", "Two.", 2.0, "h", ("how",), "d")
 
 
@@ -96,17 +96,17 @@ def test_a_check_of_a_table_calls_the_body_with_its_row_and_asks_for_the_body_s_
     rows = [
         Distance(id=name, title=name, points=1, hints=(), doc="d", metres=len(name)) for name in ("near", "farther")
     ]
-    seen = []
+    calls = []
 
     @check_each_row(group("g"), rows)
     def measures(row: Distance, robot: str) -> None:
-        seen.append((row.id, row.metres, robot))
+        calls.append((row.id, row.metres, robot))
 
-    made = [globals().pop(f"test_{row.id}") for row in rows]
-    assert [list(inspect.signature(function).parameters) for function in made] == [["robot"], ["robot"]]
-    for function in made:
+    functions = [globals().pop(f"test_{row.id}") for row in rows]
+    assert [list(inspect.signature(function).parameters) for function in functions] == [["robot"], ["robot"]]
+    for function in functions:
         function(robot="r2")
-    assert seen == [("near", 4, "r2"), ("farther", 7, "r2")]
+    assert calls == [("near", 4, "r2"), ("farther", 7, "r2")]
 
 
 def test_the_body_of_a_table_must_not_look_like_a_test() -> None:
@@ -134,7 +134,7 @@ def test_a_check_must_have_a_docstring() -> None:
 
 
 @pytest.mark.parametrize("points", [0, -1, float("nan"), float("inf")])
-def test_a_check_must_be_worth_something(points: float) -> None:
+def test_a_check_must_be_worth_points(points: float) -> None:
     with pytest.raises(GraderError, match="points must be above 0"):
 
         @check(points=points, group="g")

@@ -21,8 +21,8 @@ from autograder.checks.ch04_launch.support import contract as launches
 from sim import Command, RobotSpec, Scan, Simulation, World, clearance, observe, start, step
 
 SEEDS = range(1000)
-SELF_TEST = 20.0  # percent, which it wants
-EXACT = 1e-6  # percent: what adding up the legs in another order may change is far less
+SELF_TEST = 20.0  # percent that the self-test needs
+EXACT = 1e-6  # percent: far more than adding up the legs in another order can change
 
 
 def test_no_trip_has_more_legs_than_its_message_holds() -> None:
@@ -54,7 +54,7 @@ def test_a_short_trip_leaves_a_reserve_to_choose() -> None:
             for trip in drawn.trips:
                 left = math.floor(drawn.level - sum(trip) / METRES_PER_PERCENT)
                 assert 0 <= drawn.reserve < left <= drawn.level <= 100
-                assert sum(trip) < drawn.level  # also for whoever takes a metre for a percent
+                assert sum(trip) < drawn.level  # also for a program that takes a metre for a percent
 
 
 @pytest.mark.parametrize("level", [10, 39])
@@ -119,10 +119,10 @@ def test_an_obstacle_beside_the_sector_s_edge_is_hit_by_enough_beams(
         assert abs(abs(bearing) - nodes.HALF_SECTOR) > wide
         shown = scan(Part(bearing - wide, bearing + wide, 0.5), beams=beams)
         assert sum(reading == 0.5 for reading in shown.ranges) == count
-    assert nodes.HALF_SECTOR - EDGE - FINE[1] > math.degrees(0.5)  # half a radian is no 30 degrees
+    assert nodes.HALF_SECTOR - EDGE - FINE[1] > math.degrees(0.5)  # half a radian is not 30 degrees
 
 
-def test_launch_inputs_can_be_told_from_every_default() -> None:
+def test_launch_inputs_differ_from_every_default() -> None:
     for seed in SEEDS:
         inputs = draw_inputs(random.Random(f"{seed}:launch"))
         assert inputs.speed > 0.0
@@ -134,7 +134,7 @@ def test_launch_inputs_can_be_told_from_every_default() -> None:
 
 
 def _drive(world: World, seed: int) -> tuple[float, float]:
-    """Drive for a minute by the rule; return the smallest gap to anything and the length of the way, in m."""
+    """Drive for a minute by the rule; return the smallest gap and the length of the path, in m."""
     simulation = Simulation(world, (RobotSpec(radius=RADIUS),), seed=seed)
     state, gap, path = start(simulation), math.inf, 0.0
     for _ in range(600):

@@ -1,4 +1,4 @@
-"""Limits that 08 holds to the last digit: a right program of any style is on the right side of them."""
+"""Limits that 08 checks to the last digit: a correct program of any style keeps within them."""
 
 from __future__ import annotations
 

@@ -31,15 +31,15 @@ def workspace(tmp_path: Path) -> Workspace:
 
 @pytest.fixture
 def ordered(monkeypatch: pytest.MonkeyPatch) -> list[TestRun]:
-    """What was ordered; every run is said to pass."""
-    wanted: list[TestRun] = []
+    """The ordered runs; each is reported to pass."""
+    orders: list[TestRun] = []
 
-    def note(workspace: Workspace, source: Source, more: Sequence[TestRun]) -> list[Report]:
-        wanted.extend(more)
+    def run(workspace: Workspace, source: Source, more: Sequence[TestRun]) -> list[Report]:
+        orders.extend(more)
         return [ALL_PASS] * len(more)
 
-    monkeypatch.setattr(student_test_runs, "run", note)
-    return wanted
+    monkeypatch.setattr(student_test_runs, "run", run)
+    return orders
 
 
 @pytest.mark.parametrize("checks", [("slow",), ("limits_pass", "limits_right", "slow")], ids=len)
@@ -47,14 +47,16 @@ def test_only_the_runs_that_a_check_needs_are_executed(
     workspace: Workspace, ordered: list[TestRun], checks: tuple[str, ...]
 ) -> None:
     examination = Examination(workspace, 1, frozenset(checks))
-    assert set(examination.runs) == {(LIMITS, what) for what in ("second", "reworded", "backwards", "step", "smooth")}
+    assert set(examination.runs) == {
+        (LIMITS, purpose) for purpose in ("second", "reworded", "backwards", "step", "smooth")
+    }
     assert {order.files for order in ordered} == {(LIMITS,)}
     assert len(ordered) == 6
 
 
 def test_all_checks_together_run_every_faulty_version(workspace: Workspace, ordered: list[TestRun]) -> None:
     examination = Examination(workspace, 1, frozenset(FILES))
-    assert {what for _, what in examination.runs} == {fault.id for fault in faults()} | {
+    assert {purpose for _, purpose in examination.runs} == {fault.id for fault in faults()} | {
         "second",
         "reworded",
         "backwards",
@@ -89,69 +91,69 @@ Verdict = Callable[[TestRun, str], bool]  # whether a test, by its name, fails i
 
 
 def examine(monkeypatch: pytest.MonkeyPatch, workspace: Workspace, fails: Verdict) -> tuple[Examination, list[TestRun]]:
-    """Return an examination of a test with parameters a to f, and all runs of it as they are made."""
-    made: list[TestRun] = []
+    """Return an examination of a test with parameters a to f, and the list of its runs."""
+    orders: list[TestRun] = []
 
     def run(workspace: Workspace, source: Source, more: Sequence[TestRun]) -> list[Report]:
-        made.extend(more)
-        return [_report(wanted, fails) for wanted in more]
+        orders.extend(more)
+        return [_report(order, fails) for order in more]
 
     monkeypatch.setattr(student_test_runs, "run", run)
-    return Examination(workspace, 1, frozenset(("limits_pass", "limits_right", "slow"))), made
+    return Examination(workspace, 1, frozenset(("limits_pass", "limits_right", "slow"))), orders
 
 
-def _report(wanted: TestRun, fails: Verdict) -> Report:
-    ran: dict[str, ClaimedOutcome] = {}
+def _report(order: TestRun, fails: Verdict) -> Report:
+    outcomes: dict[str, ClaimedOutcome] = {}
     for name in (f"test_limits::test[{letter}]" for letter in "abcdef"):
-        if name in wanted.without or (wanted.first_failure and ClaimedOutcome.FAILED in ran.values()):
+        if name in order.without or (order.first_failure and ClaimedOutcome.FAILED in outcomes.values()):
             continue
-        ran[name] = ClaimedOutcome.FAILED if fails(wanted, name[-2]) else ClaimedOutcome.PASSED
-    report = Report(None, int(ClaimedOutcome.FAILED in ran.values()), Claims(ran), 0, "")
-    return report if wanted.shown else report.closed(frozenset({"test_limits::test"}))
+        outcomes[name] = ClaimedOutcome.FAILED if fails(order, name[-2]) else ClaimedOutcome.PASSED
+    report = Report(None, int(ClaimedOutcome.FAILED in outcomes.values()), Claims(outcomes), 0, "")
+    return report if order.shown else report.closed(frozenset({"test_limits::test"}))
 
 
-def _kind(examination: Examination, wanted: TestRun) -> str:
-    """Return what a run of the examination is made for."""
+def _kind(examination: Examination, order: TestRun) -> str:
+    """Return the purpose of a run of the examination."""
     for salt in ((), ("again",)):
-        for what, run in examination._wanted(LIMITS, (), *salt).items():
-            if wanted.version == run.version:
-                return what
+        for purpose, run in examination._wanted(LIMITS, (), *salt).items():
+            if order.version == run.version:
+                return purpose
     return "trial"
 
 
 def test_a_test_that_fails_on_the_given_package_costs_no_line_that_the_others_see(
     workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    examination, made = examine(
+    examination, orders = examine(
         monkeypatch,
         workspace,
-        lambda wanted, test: test == "b" or (test == "c" and _kind(examination, wanted) in {"step", "smooth"}),
+        lambda order, test: test == "b" or (test == "c" and _kind(examination, order) in {"step", "smooth"}),
     )
     examination.expect_right(LIMITS, "backwards")
     examination.expect_objection("slow", "it is a line.")
-    assert {wanted.without for wanted in made[1:]} == {("test_limits::test[b]",)}
+    assert {order.without for order in orders[1:]} == {("test_limits::test[b]",)}
 
 
 def test_a_test_that_objects_to_a_right_version_is_left_out_and_costs_one_check(
     workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fails(wanted: TestRun, test: str) -> bool:
-        kind = _kind(examination, wanted)
+    def fails(order: TestRun, test: str) -> bool:
+        kind = _kind(examination, order)
         return (test == "b" and kind != "trial") or (test == "c" and kind in {"step", "smooth"})
 
-    examination, made = examine(monkeypatch, workspace, fails)
+    examination, orders = examine(monkeypatch, workspace, fails)
     with pytest.raises(
         CheckFailed, match=r"test in test_limits\.py fails on a right speed_guard that is written differently"
     ):
         examination.expect_right(LIMITS, "backwards")
     examination.expect_objection("slow", "it is a line.")
-    assert made[-1].without == ("test_limits::test[b]",)
+    assert orders[-1].without == ("test_limits::test[b]",)
 
 
 def test_tests_that_object_to_every_other_version_earn_no_line(
     workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    examination, _ = examine(monkeypatch, workspace, lambda wanted, test: _kind(examination, wanted) != "trial")
+    examination, _ = examine(monkeypatch, workspace, lambda order, test: _kind(examination, order) != "trial")
     with pytest.raises(CheckFailed, match="none says anything of a faulty one"):
         examination.expect_objection("slow", "it is a line.")
 
@@ -161,7 +163,7 @@ def test_tests_that_object_to_right_versions_by_chance_earn_no_line(
 ) -> None:
     luck = random.Random(1)
     examination, _ = examine(
-        monkeypatch, workspace, lambda wanted, test: _kind(examination, wanted) != "trial" and luck.random() < 0.5
+        monkeypatch, workspace, lambda order, test: _kind(examination, order) != "trial" and luck.random() < 0.5
     )
     with pytest.raises(CheckFailed, match="so that"):
         examination.expect_objection("slow", "it is a line.")

@@ -1,4 +1,4 @@
-"""The controller of 08 is judged behind the student's processor, and without it where that fails."""
+"""The controller of 08 is judged behind the student's processor, and without it if that fails."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from autograder.suite import CheckFailed
 
 
 class Kept:
-    """Stands for a system that is kept: a check's body only sees which of the two it is."""
+    """Replaces a shared system: a check's body only sees its name."""
 
     def __init__(self, name: str) -> None:
         self.name, self.closed = name, 0
@@ -42,10 +42,10 @@ def test_a_check_that_passes_in_one_of_two_gradings_passes() -> None:
 
 
 @pytest.mark.parametrize(
-    ("fractions", "said"),
+    ("fractions", "message"),
     [({"shared": 0.0, "lone": 0.0}, "shared"), ({"shared": 0.25, "lone": 0.5}, "lone")],
 )
-def test_a_check_that_fails_in_both_gradings_has_the_better_outcome(fractions: dict[str, float], said: str) -> None:
+def test_a_check_that_fails_in_both_gradings_has_the_better_outcome(fractions: dict[str, float], message: str) -> None:
     with pytest.raises(CheckFailed) as failed:
         judge(fractions)
-    assert failed.value.message == said
+    assert failed.value.message == message

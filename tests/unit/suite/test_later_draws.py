@@ -1,4 +1,4 @@
-"""What 05 to 09 draw from a seed is within the bounds of their contracts, whatever the seed is."""
+"""Inputs that 05 to 09 draw from a seed are within the bounds of their contracts, whatever the seed."""
 
 from __future__ import annotations
 
@@ -21,12 +21,16 @@ from autograder.checks.ch09_assessment.support import contract as assessment
 from sim import RobotSpec, Simulation, clearance, start
 
 SEEDS = range(1000)
-SOME = range(0, 1000, 25)  # for what takes long
+SOME = range(0, 1000, 25)  # for slow tests
 
 
 def _allowed(name: str, value: float) -> bool:
-    wanted = parameters.WANTED[name]
-    return wanted.low is not None and wanted.high is not None and wanted.low <= value <= wanted.high
+    specification = parameters.WANTED[name]
+    return (
+        specification.low is not None
+        and specification.high is not None
+        and specification.low <= value <= specification.high
+    )
 
 
 def test_05_starts_with_values_that_are_allowed_and_fit_each_other() -> None:
@@ -35,7 +39,7 @@ def test_05_starts_with_values_that_are_allowed_and_fit_each_other() -> None:
         assert all(_allowed(name, value) for name, value in drawn.items())
         assert drawn["safety_distance"] < drawn["slow_distance"]
         assert isinstance(drawn["battery_threshold"], int)
-        assert 5 <= drawn["battery_threshold"] <= 95  # charges beside it are charges
+        assert 5 <= drawn["battery_threshold"] <= 95  # values beside it are charges, too
 
 
 def test_05_asks_for_changes_that_only_the_distances_forbid() -> None:
@@ -54,13 +58,13 @@ def test_05_asks_for_changes_that_only_the_distances_forbid() -> None:
 
 
 def test_05_asks_for_values_outside_of_each_range() -> None:
-    limited = [wanted for wanted in parameters.WANTED.values() if wanted.low is not None]
+    limited = [specification for specification in parameters.WANTED.values() if specification.low is not None]
     for seed in SEEDS:
-        for wanted in limited:
-            low, high = declaration._outside(wanted, random.Random(seed))
-            assert low < wanted.low
-            assert high > wanted.high
-            assert type(low) is type(high) is type(wanted.default)
+        for specification in limited:
+            low, high = declaration._outside(specification, random.Random(seed))
+            assert low < specification.low
+            assert high > specification.high
+            assert type(low) is type(high) is type(specification.default)
 
 
 def test_07_finds_seeds_that_a_parameter_may_have() -> None:
@@ -99,7 +103,7 @@ def test_08_draws_corridors_in_which_the_robot_is_free_and_can_drive(seed: int) 
 def test_09_draws_a_cool_threshold_below_the_other_one() -> None:
     for seed in SEEDS:
         hot, cool = nodes.draw_thresholds(random.Random(seed))
-        assert cool + 2.0 < hot - 2.0  # with room for what lies between
+        assert cool + 2.0 < hot - 2.0  # with room for temperatures between them
         assert assessment.COOL < guarded.draw_hot(seed) < assessment.HOT
         period, mean, swing = nodes.draw_wave(random.Random(seed))
         assert period > 0.0

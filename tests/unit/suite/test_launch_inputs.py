@@ -22,12 +22,12 @@ def test_numbers_are_replaced_in_place_and_all_else_is_unchanged() -> None:
     ).replace("-1e-1", "-0.5")
 
 
-def test_the_same_seed_gives_the_same_inputs_and_another_one_others() -> None:
+def test_the_same_seed_gives_the_same_inputs_and_another_seed_gives_others() -> None:
     assert draw_inputs(random.Random("7")) == draw_inputs(random.Random("7"))
     assert draw_inputs(random.Random("7")) != draw_inputs(random.Random("8"))
 
 
-def test_inputs_differ_from_the_defaults_that_they_must_win_over() -> None:
+def test_inputs_differ_from_the_defaults_that_they_must_override() -> None:
     for seed in range(200):
         inputs = draw_inputs(random.Random(seed))
         assert inputs.speed != 0.2

@@ -1,4 +1,4 @@
-"""A robot of 02 is judged by its own reactions, where it has them."""
+"""A robot of 02 is judged by its own reactions, if it has any."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ Pair = tuple[float, float]
 
 
 def _commands(*pairs: Pair) -> list[ReceivedMessage]:
-    made = []
+    messages = []
     for linear, angular in pairs:
         command = Twist()
         command.linear.x, command.angular.z = linear, angular
-        made.append(ReceivedMessage(0.0, command))
-    return made
+        messages.append(ReceivedMessage(0.0, command))
+    return messages
 
 
 def test_a_wrong_velocity_is_a_separate_reaction() -> None:
@@ -40,9 +40,9 @@ def test_a_wrong_velocity_is_a_separate_reaction() -> None:
         (((0.3, 0.0), (0.1, 0.0)), ((0.0, 0.5), (0.0, 0.0))),
         (((math.nan, 0.0),), ((0.0, math.inf),)),
     ],
-    ids=["nothing came", "it never moves", "it never turns", "it wavers", "no numbers"],
+    ids=["nothing came", "it never moves", "it never turns", "it wavers", "not finite"],
 )
-def test_a_robot_without_reactions_is_judged_by_the_contract_s(
+def test_a_robot_without_reactions_is_judged_by_those_of_the_contract(
     clear: tuple[Pair, ...], blocked: tuple[Pair, ...]
 ) -> None:
     assert own_reactions(_commands(*clear), _commands(*blocked)) == CONTRACT

@@ -43,7 +43,7 @@ def markdown(source: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(
-    ("text", "read"),
+    ("text", "quoted"),
     [
         ("The **node** is called `guard`.", "The node is called guard."),
         ("*Stop* is a `Twist()`", "Stop is a Twist() of zeros."),
@@ -67,24 +67,24 @@ def markdown(source: str) -> dict[str, Any]:
         ("It flies.", None),
     ],
 )
-def test_a_row_or_a_sentence_is_quoted_whole_and_without_markup(text: str, read: str | None) -> None:
-    assert quote(markdown(TABLE), text) == read
+def test_a_row_or_a_sentence_is_quoted_whole_and_without_markup(text: str, quoted: str | None) -> None:
+    assert quote(markdown(TABLE), text) == quoted
 
 
 @pytest.mark.parametrize(
-    ("text", "read"),
+    ("text", "quoted"),
     [
         ("It uses `x`", "It uses `x`, and *more*. kwargs stay: so."),
         ("kwargs stay: so.", "kwargs stay: so."),
         ("It ends here", "It ends here, with 0."),
     ],
 )
-def test_code_is_quoted_verbatim(text: str, read: str) -> None:
-    assert quote({"cell_type": "code", "source": CODE}, text) == read
+def test_code_is_quoted_verbatim(text: str, quoted: str) -> None:
+    assert quote({"cell_type": "code", "source": CODE}, text) == quoted
 
 
 def rendered(source: str) -> Iterator[list[str]]:
-    """Yield what another parser makes of Markdown: the cells of each row, or the one text of any other block."""
+    """Yield Markdown as another parser renders it: the cells of each row, or the text of any other block."""
     tokens, row = MarkdownIt("commonmark").enable("table").parse(source), list[str]()
     inside = False
     for token in tokens:
@@ -101,10 +101,10 @@ def rendered(source: str) -> Iterator[list[str]]:
 
 
 def cells(assignment: str) -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = json.loads(course_paths.source_notebook(assignment).read_text(encoding="utf-8"))[
+    all_cells: list[dict[str, Any]] = json.loads(course_paths.source_notebook(assignment).read_text(encoding="utf-8"))[
         "cells"
     ]
-    return [cell for cell in found if cell["metadata"].get("course", {}).get("contract")]
+    return [cell for cell in all_cells if cell["metadata"].get("course", {}).get("contract")]
 
 
 @pytest.mark.parametrize("assignment", course_paths.assignments())
@@ -115,22 +115,22 @@ def test_each_sentence_of_a_contract_is_whole_and_as_another_parser_renders_it(a
         code = " ".join(re.sub(r"^\s*# ?", "", "".join(cell["source"]), flags=re.MULTILINE).split())
         for name, texts in cell["metadata"]["course"]["contract"].items():
             for text in [texts] if isinstance(texts, str) else texts:
-                read = quote(cell, text)
-                assert read, f"{name}: {text}"
+                quoted = quote(cell, text)
+                assert quoted, f"{name}: {text}"
                 if name not in first:
-                    assert read in known[name].text
+                    assert quoted in known[name].text
                 if cell["cell_type"] == "code":
-                    assert read in code
+                    assert quoted in code
                 else:
-                    assert any(holds(block, read) for block in blocks), read
+                    assert any(contains(block, quoted) for block in blocks), quoted
         first.update(cell["metadata"]["course"]["contract"])
 
 
-def holds(block: list[str], read: str) -> bool:
+def contains(block: list[str], quoted: str) -> bool:
     """Return whether a text is a rendered row, cell by cell in its order, or whole sentences of a rendered block."""
     if len(block) > 1:
         filled = [re.escape(column) for column in block if column]
-        return re.search(".*".join(filled), read) is not None and len(filled) > 1
-    before, found, after = block[0].partition(read)
-    is_whole = (not before or before.rstrip()[-1] in ".?!)") and (not after or read[-1] in ".?!)")
-    return bool(found) and is_whole
+        return re.search(".*".join(filled), quoted) is not None and len(filled) > 1
+    before, match, after = block[0].partition(quoted)
+    is_whole = (not before or before.rstrip()[-1] in ".?!)") and (not after or quoted[-1] in ".?!)")
+    return bool(match) and is_whole

@@ -1,4 +1,4 @@
-"""What a controller of 08 is told where it is judged alone is what the reference's sectors say."""
+"""A controller of 08 that is judged alone gets the clearances that the reference would compute."""
 
 from __future__ import annotations
 

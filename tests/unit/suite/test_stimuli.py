@@ -14,12 +14,12 @@ from autograder.suite import CheckFailed
 
 
 def _commands(*pairs: tuple[float, float]) -> list[ReceivedMessage]:
-    made = []
+    messages = []
     for linear, angular in pairs:
         command = Twist()
         command.linear.x, command.angular.z = linear, angular
-        made.append(ReceivedMessage(0.0, command))
-    return made
+        messages.append(ReceivedMessage(0.0, command))
+    return messages
 
 
 def test_a_scan_of_a_full_turn_has_no_doubled_beam() -> None:
@@ -71,7 +71,7 @@ def test_missing_commands_are_never_right() -> None:
 
 
 @pytest.mark.parametrize(
-    ("pair", "words"),
+    ("pair", "description"),
     [
         ((0.0, 0.0), "stood still"),
         ((0.3, 0.0), "drove forward at 0.30 m/s"),
@@ -80,5 +80,5 @@ def test_missing_commands_are_never_right() -> None:
         ((math.nan, 0.0), "was told to move at nan m/s and 0.0 rad/s"),
     ],
 )
-def test_a_command_is_described_in_a_sentence(pair: tuple[float, float], words: str) -> None:
-    assert describe_command(_commands(pair)[0].message) == words
+def test_a_command_is_described_in_a_sentence(pair: tuple[float, float], description: str) -> None:
+    assert describe_command(_commands(pair)[0].message) == description

@@ -17,11 +17,11 @@ from autograder.suite.declaration import check_of
 HEAD = "from autograder.suite import check\n"
 KIND = suites.HIDDEN
 _NUMBERS = itertools.count()
-Home = Callable[..., str]
+WriteSuites = Callable[..., str]
 
 
 @pytest.fixture
-def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Home:
+def write_suites(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> WriteSuites:
     """Write a package of checks with one hidden suite, of 01_tiny, from modules given as text; return its name."""
     monkeypatch.syspath_prepend(str(tmp_path))
 
@@ -47,35 +47,39 @@ def test_{name}():
 """
 
 
-def test_checks_have_the_order_of_modules_and_of_lines(home: Home) -> None:
-    name = home(first=_check("b", points=2) + _check("a", group="h"), second=_check("c", '("b",)', 0.5))
-    read = suites.read(name, "01_tiny", KIND)
-    assert [check.id for check in read.checks] == ["b", "a", "c"]
-    assert [path.name for path in read.files] == ["first.py", "second.py"]
-    assert (read.packages, read.max_score, read.groups) == (("tiny",), 3.5, {"g": 2.5, "h": 1.0})
+def test_checks_have_the_order_of_modules_and_of_lines(write_suites: WriteSuites) -> None:
+    name = write_suites(first=_check("b", points=2) + _check("a", group="h"), second=_check("c", '("b",)', 0.5))
+    suite = suites.read(name, "01_tiny", KIND)
+    assert [check.id for check in suite.checks] == ["b", "a", "c"]
+    assert [path.name for path in suite.files] == ["first.py", "second.py"]
+    assert (suite.packages, suite.max_score, suite.groups) == (("tiny",), 3.5, {"g": 2.5, "h": 1.0})
     assert suites.assignments_with(name, KIND) == ["01_tiny"]
 
 
-def test_results_show_the_groups_in_their_own_order_and_files_are_run_in_that_of_the_modules(home: Home) -> None:
-    name = home('("first", "second")\nGROUPS = ("g", "h")', first=_check("a", group="h"), second=_check("b", '("a",)'))
-    read = suites.read(name, "01_tiny", KIND)
-    assert [check.id for check in read.checks] == ["b", "a"]
-    assert [path.name for path in read.files] == ["first.py", "second.py"]
-    assert read.with_dependencies("b") == ("b", "a")
-    name = home('("first",)\nGROUPS = ("g",)', first=_check("a", group="h"))
+def test_results_show_the_groups_in_their_own_order_and_files_are_run_in_that_of_the_modules(
+    write_suites: WriteSuites,
+) -> None:
+    name = write_suites(
+        '("first", "second")\nGROUPS = ("g", "h")', first=_check("a", group="h"), second=_check("b", '("a",)')
+    )
+    suite = suites.read(name, "01_tiny", KIND)
+    assert [check.id for check in suite.checks] == ["b", "a"]
+    assert [path.name for path in suite.files] == ["first.py", "second.py"]
+    assert suite.with_dependencies("b") == ("b", "a")
+    name = write_suites('("first",)\nGROUPS = ("g",)', first=_check("a", group="h"))
     with pytest.raises(GraderError, match=r"GROUPS of the hidden checks does not name \['h'\]"):
         suites.read(name, "01_tiny", KIND)
 
 
-def test_a_check_is_graded_with_the_checks_in_needs_and_without_those_in_after(home: Home) -> None:
+def test_a_check_is_graded_with_the_checks_in_needs_and_without_those_in_after(write_suites: WriteSuites) -> None:
     first = _check("a") + _check("b", '("a",)') + _check("c")
-    read = suites.read(home(first=first, second=_check("d", '("b",)', after='("c",)')), "01_tiny", KIND)
-    assert read.with_dependencies("d") == ("a", "b", "d")
+    suite = suites.read(write_suites(first=first, second=_check("d", '("b",)', after='("c",)')), "01_tiny", KIND)
+    assert suite.with_dependencies("d") == ("a", "b", "d")
 
 
-def test_an_unknown_assignment_is_a_usage_error_that_names_the_known_ones(home: Home) -> None:
+def test_an_unknown_assignment_is_a_usage_error_that_names_the_known_ones(write_suites: WriteSuites) -> None:
     with pytest.raises(UsageError, match="no hidden checks for '09_none'; there are for: 01_tiny"):
-        suites.read(home(modules="()"), "09_none", KIND)
+        suites.read(write_suites(modules="()"), "09_none", KIND)
 
 
 @pytest.mark.parametrize(
@@ -89,14 +93,16 @@ def test_an_unknown_assignment_is_a_usage_error_that_names_the_known_ones(home: 
         (_check("a", points=0), _check("b"), "points must be above 0"),
     ],
 )
-def test_a_suite_that_breaks_the_contract_is_refused(home: Home, first: str, second: str, reason: str) -> None:
+def test_a_suite_that_breaks_the_contract_is_refused(
+    write_suites: WriteSuites, first: str, second: str, reason: str
+) -> None:
     with pytest.raises(GraderError, match=reason):
-        suites.read(home(first=first, second=second), "01_tiny", KIND)
+        suites.read(write_suites(first=first, second=second), "01_tiny", KIND)
 
 
-def test_a_failed_import_inside_a_suite_is_not_reported_as_a_missing_suite(home: Home) -> None:
+def test_a_failed_import_inside_a_suite_is_not_reported_as_a_missing_suite(write_suites: WriteSuites) -> None:
     with pytest.raises(ModuleNotFoundError, match="no_such_module"):
-        suites.read(home(first="import no_such_module", second=""), "01_tiny", KIND)
+        suites.read(write_suites(first="import no_such_module", second=""), "01_tiny", KIND)
 
 
 def test_every_hidden_suite_has_visible_checks_and_keeps_the_contract() -> None:
@@ -111,12 +117,12 @@ def test_every_hidden_suite_has_visible_checks_and_keeps_the_contract() -> None:
 @pytest.mark.parametrize("kind", [suites.VISIBLE, suites.HIDDEN])
 def test_every_module_with_checks_is_named_in_modules(kind: str) -> None:
     """A module that MODULES leaves out would never be run, and no error would say so."""
-    home = suites.__package__
-    for assignment in suites.assignments_with(home, kind):
-        package = importlib.import_module(f"{home}.ch{assignment}.{kind}")
-        there = [path.stem for path in Path(package.__path__[0]).glob("*.py") if path.stem != "__init__"]
-        modules = [importlib.import_module(f"{package.__name__}.{name}") for name in there]
+    parent = suites.__package__
+    for assignment in suites.assignments_with(parent, kind):
+        package = importlib.import_module(f"{parent}.ch{assignment}.{kind}")
+        names = [path.stem for path in Path(package.__path__[0]).glob("*.py") if path.stem != "__init__"]
+        modules = [importlib.import_module(f"{package.__name__}.{name}") for name in names]
         with_checks = {
-            name for name, module in zip(there, modules, strict=True) if any(map(check_of, vars(module).values()))
+            name for name, module in zip(names, modules, strict=True) if any(map(check_of, vars(module).values()))
         }
         assert with_checks == set(package.MODULES), package.__name__

@@ -31,10 +31,10 @@ NAMED = re.compile(r"^(?:[A-Z]+_)?(?:TOLERANCE|SLACK|EXACT|ROUNDED|FLOAT32) = .*
 
 @dataclass(frozen=True)
 class Comparison:
-    """How a chapter compares a number with the one that it wants."""
+    """How a chapter compares a number with the expected one."""
 
     near: Callable[[float, float], bool]
-    tolerance: Callable[[float], float]  # for a wanted number
+    tolerance: Callable[[float], float]  # for an expected number
     lowest: float
     highest: float
 
@@ -84,21 +84,21 @@ COMPARISONS = {
 def test_a_value_within_the_tolerance_is_right_and_one_twice_as_far_is_wrong(
     comparison: Comparison, share: float, far: float, up: bool
 ) -> None:
-    wanted = comparison.lowest + share * (comparison.highest - comparison.lowest)
-    step = comparison.tolerance(wanted) * (1.0 if up else -1.0)
+    expected = comparison.lowest + share * (comparison.highest - comparison.lowest)
+    step = comparison.tolerance(expected) * (1.0 if up else -1.0)
     for within in (0.0, share * 0.999, 0.999):  # at the very limit, rounding decides
-        assert comparison.near(wanted + within * step, wanted)
+        assert comparison.near(expected + within * step, expected)
     for beyond in (2.0, far):
-        assert not comparison.near(wanted + beyond * step, wanted)
-    assert not comparison.near(float("nan"), wanted)
+        assert not comparison.near(expected + beyond * step, expected)
+    assert not comparison.near(float("nan"), expected)
 
 
 def test_each_tolerance_has_its_reason() -> None:
-    found = [
+    tolerances = [
         (path.parts[-3], line)
         for path in sorted(CHECKS.glob("ch*/*/*.py"))
         if path.parent.name in ("support", "hidden", "visible")
         for line in NAMED.findall(path.read_text())
     ]
-    assert len(found) >= 10
-    assert not [where for where in found if not re.search(r"  # .*[:,] .+|  # the ", where[1])]
+    assert len(tolerances) >= 10
+    assert not [entry for entry in tolerances if not re.search(r"  # .*[:,] .+|  # the ", entry[1])]

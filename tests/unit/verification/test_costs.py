@@ -17,8 +17,8 @@ from autograder.suite.declaration import Visibility
 from tests.conftest import MakeResult
 
 CHECKS = {
-    name: Check(name, name, points, "g", Visibility.HIDDEN, (), None, needs, holds, after)
-    for name, points, holds, needs, after in (
+    name: Check(name, name, points, "g", Visibility.HIDDEN, (), None, needs, covers, after)
+    for name, points, covers, needs, after in (
         ("turns", 2.0, ("near", "left"), (), ()),
         ("sector", 3.0, ("near",), (), ()),
         ("lidars", 4.0, ("bearings",), (), ("sector", "turns")),
@@ -52,7 +52,7 @@ def cost_of(
     return cost
 
 
-def test_a_mutant_that_loses_little_needs_no_reason(make_result: MakeResult, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cheap_mutant_needs_no_reason(make_result: MakeResult, monkeypatch: pytest.MonkeyPatch) -> None:
     cost = cost_of(make_result, monkeypatch, "turns", "edges")
     assert (cost.points, cost.lost, cost.requirements) == (2.0, 3.0, ("near", "left", "edge"))
     assert not cost.is_expensive

@@ -65,12 +65,12 @@ def test_a_survivor_needs_a_reason(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
     chapter = with_reason(chapter, monkeypatch, "[]", tmp_path)
     assert chapter.unexplained == [survivor]
     (mutant,) = (each for each in chapter.generated.mutants if each.id == survivor)
-    (said,) = faults([chapter])
-    assert said.splitlines() == [
+    (message,) = faults([chapter])
+    assert message.splitlines() == [
         f"{ASSIGNMENT}: {survivor} survives without a reason",
         *(f"    {line}" for line in mutant.diff().splitlines()),
     ]
-    assert f"\n    {mutant.file}:" in said
+    assert f"\n    {mutant.file}:" in message
     chapter = with_reason(chapter, monkeypatch, f"- {{equivalent: as stated, mutants: ['{survivor}']}}", tmp_path)
     assert chapter.survivors == {survivor: "equivalent: as stated"}
     assert faults([chapter]) == []

@@ -18,7 +18,7 @@ HEAD = "file: my_robot_package/setup.py\nmutants:\n"
 
 
 @pytest.fixture
-def described(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def mutants_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The path of a mutants.yaml that belongs to the real suite's checks."""
     real = suites.hidden("02_nodes")
     files = tuple(tmp_path / "hidden" / path.name for path in real.files)
@@ -27,13 +27,13 @@ def described(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "mutants.yaml"
 
 
-def test_a_mutant_is_read_with_defaults_for_missing_fields(described: Path) -> None:
-    described.write_text(
+def test_a_mutant_is_read_with_defaults_for_missing_fields(mutants_file: Path) -> None:
+    mutants_file.write_text(
         HEAD + "  - {id: a, title: t, check: nan, edits: [{find: x, replace: y}]}\n"
         "  - {id: b, title: t, check: warns, demo: true, slow: true,"
         " edits: [{file: other.py, find: x, replace: y}]}\n"
     )
-    described.with_name("mutants.snapshot.yaml").write_text("b: {diagnosis: stuck, fails: all}\n")
+    mutants_file.with_name("mutants.snapshot.yaml").write_text("b: {diagnosis: stuck, fails: all}\n")
     first, second = mutants("02_nodes")
     assert (first.check, first.fails) == ("nan", frozenset())
     assert (first.diagnosis, first.demo, first.slow) == (Kind.OK, False, False)
@@ -43,15 +43,15 @@ def test_a_mutant_is_read_with_defaults_for_missing_fields(described: Path) -> N
     assert second.edits[0].file == "other.py"
 
 
-def test_a_mutant_for_an_unknown_check_is_refused(described: Path) -> None:
-    described.write_text(HEAD + "  - {id: a, title: t, check: flies, edits: [{find: x, replace: y}]}\n")
+def test_a_mutant_for_an_unknown_check_is_refused(mutants_file: Path) -> None:
+    mutants_file.write_text(HEAD + "  - {id: a, title: t, check: flies, edits: [{find: x, replace: y}]}\n")
     with pytest.raises(GraderError, match="mutant a: the suite has no check flies"):
         mutants("02_nodes")
 
 
-def test_a_recorded_diagnosis_that_does_not_exist_is_refused(described: Path) -> None:
-    described.write_text(HEAD + "  - {id: a, title: t, check: nan, edits: [{find: x, replace: y}]}\n")
-    described.with_name("mutants.snapshot.yaml").write_text("a: {diagnosis: tired, fails: [nan]}\n")
+def test_a_recorded_diagnosis_that_does_not_exist_is_refused(mutants_file: Path) -> None:
+    mutants_file.write_text(HEAD + "  - {id: a, title: t, check: nan, edits: [{find: x, replace: y}]}\n")
+    mutants_file.with_name("mutants.snapshot.yaml").write_text("a: {diagnosis: tired, fails: [nan]}\n")
     with pytest.raises(ValueError, match="tired"):
         mutants("02_nodes")
 
@@ -84,14 +84,14 @@ def test_every_mutant_of_the_course_fits_the_reference_and_changes_it(assignment
 
 def test_mutants_have_unique_names_and_every_check_is_failed_by_one() -> None:
     for assignment in suites.graded_assignments():
-        every = mutants(assignment)
-        assert len({mutant.id for mutant in every}) == len(every)
-        lost = frozenset().union(*(mutant.fails for mutant in every))
-        assert lost == {check.id for check in suites.hidden(assignment).checks}
+        all_mutants = mutants(assignment)
+        assert len({mutant.id for mutant in all_mutants}) == len(all_mutants)
+        failed = frozenset().union(*(mutant.fails for mutant in all_mutants))
+        assert failed == {check.id for check in suites.hidden(assignment).checks}
 
 
-def test_a_mutant_can_write_and_delete_whole_files(described: Path, tmp_path: Path) -> None:
-    described.write_text(
+def test_a_mutant_can_write_and_delete_whole_files(mutants_file: Path, tmp_path: Path) -> None:
+    mutants_file.write_text(
         HEAD + "  - {id: a, title: t, check: nan, edits: [{file: my_robot_package/new/notes.txt, write: hello},"
         " {delete: true}]}\n"
     )

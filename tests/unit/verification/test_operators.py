@@ -47,17 +47,17 @@ def main():
 '''
 
 
-def made(functions: frozenset[str] | None = None) -> list[tuple[str, str, str]]:
+def changes_made(functions: frozenset[str] | None = None) -> list[tuple[str, str, str]]:
     """Return (operator, function, changed lines) of each change."""
-    lines, found = SOURCE.splitlines(), []
+    lines, mutated = SOURCE.splitlines(), []
     for function, (operator, changes) in mutations("robot.py", SOURCE, functions):
         data = SOURCE.encode()
         for start, end, new in sorted(changes, reverse=True):
             data = data[:start] + new.encode() + data[end:]
         ast.parse(data)
         changed = [line.strip() for line in data.decode().splitlines() if line not in lines]
-        found.append((operator, function, " / ".join(changed)))
-    return found
+        mutated.append((operator, function, " / ".join(changed)))
+    return mutated
 
 
 @pytest.mark.parametrize(
@@ -97,17 +97,19 @@ def made(functions: frozenset[str] | None = None) -> list[tuple[str, str, str]]:
     ],
 )
 def test_each_operator_makes_its_mutation(operator: str, line: str) -> None:
-    assert (operator, line) in [(name, changed) for name, _, changed in made()]
+    assert (operator, line) in [(name, changed) for name, _, changed in changes_made()]
 
 
 def test_docstrings_and_messages_are_not_mutated() -> None:
-    lines = [line for _, _, line in made()]
+    lines = [line for _, _, line in changes_made()]
     assert not any("Make it" in line or "words'" in line or "wheelss" in line or "clears" in line for line in lines)
 
 
 def test_only_the_named_functions_and_the_module_are_changed() -> None:
-    assert {function for _, function, _ in made(frozenset({"Robot.look"}))} == {"", "Robot", "Robot.look"} - {"Robot"}
-    assert any(name == "main" for _, name, _ in made(frozenset({"main"})))
+    assert {function for _, function, _ in changes_made(frozenset({"Robot.look"}))} == {"", "Robot", "Robot.look"} - {
+        "Robot"
+    }
+    assert any(name == "main" for _, name, _ in changes_made(frozenset({"main"})))
 
 
 @pytest.mark.parametrize(
@@ -128,8 +130,8 @@ def test_only_the_named_functions_and_the_module_are_changed() -> None:
     ],
 )
 def test_other_file_types_have_their_own_operators(file: str, text: str, operator: str, changed: str) -> None:
-    found = []
+    mutated = []
     for _, (name, ((start, end, new),)) in mutations(file, text, None):
         data = text.encode()
-        found.append((name, (data[:start] + new.encode() + data[end:]).decode()))
-    assert (operator, changed) in found
+        mutated.append((name, (data[:start] + new.encode() + data[end:]).decode()))
+    assert (operator, changed) in mutated

@@ -1,4 +1,4 @@
-"""The report of repeated gradings: a run goes on where another was stopped, and a difference is found."""
+"""The report of repeated gradings: an interrupted run is continued, and a difference is found."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_gradings_of_one_version_are_kept_and_an_incomplete_line_is_not(tmp_path
 
 
 @pytest.mark.parametrize("text", [None, "", "a line\n"])
-def test_a_report_that_ends_with_a_line_is_not_cut_off(text: str | None, tmp_path: Path) -> None:
+def test_a_report_that_ends_with_a_complete_line_is_not_cut_off(text: str | None, tmp_path: Path) -> None:
     report = tmp_path / "capstones.jsonl"
     if text is not None:
         report.write_text(text)
@@ -33,7 +33,7 @@ def test_a_report_that_ends_with_a_line_is_not_cut_off(text: str | None, tmp_pat
 
 
 @pytest.mark.parametrize(
-    ("other", "said"),
+    ("other", "line"),
     [
         (ONE, ""),
         (replace(ONE, number=2, percent=99.0), "number 2: 99 %, other traces: none\n"),
@@ -41,6 +41,6 @@ def test_a_report_that_ends_with_a_line_is_not_cut_off(text: str | None, tmp_pat
         (replace(ONE, number=2, traces={}), "number 2: 100 %, other traces: corner.json\n"),
     ],
 )
-def test_a_grading_that_differs_is_named(other: Grading, said: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert summarise([ONE, other]) == bool(said)
-    assert capsys.readouterr().out == f"{said}{2 - bool(said)} of 2 with all points and the same traces: {ONE.traces}\n"
+def test_a_grading_that_differs_is_named(other: Grading, line: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert summarise([ONE, other]) == bool(line)
+    assert capsys.readouterr().out == f"{line}{2 - bool(line)} of 2 with all points and the same traces: {ONE.traces}\n"

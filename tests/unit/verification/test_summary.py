@@ -19,10 +19,12 @@ ASSIGNMENT = "02_nodes"
 SUITE = suites.hidden(ASSIGNMENT)
 
 
-def result(*lost: str) -> Result:
+def result(*failed: str) -> Result:
     """Return a result in which these checks failed and all others passed."""
     checks = tuple(
-        CheckResult.of(check, Outcome.FAILED if check.id in lost else Outcome.PASSED, "so" if check.id in lost else "")
+        CheckResult.of(
+            check, Outcome.FAILED if check.id in failed else Outcome.PASSED, "so" if check.id in failed else ""
+        )
         for check in SUITE.checks
     )
     return Result(
@@ -43,8 +45,8 @@ def result(*lost: str) -> Result:
     )
 
 
-def verdict(kind: CaseKind, mismatch: str = "", *lost: str) -> Verdict:
-    return Verdict(ASSIGNMENT, kind, "x", result(*lost), mismatch)
+def verdict(kind: CaseKind, mismatch: str = "", *failed: str) -> Verdict:
+    return Verdict(ASSIGNMENT, kind, "x", result(*failed), mismatch)
 
 
 def test_a_correct_answer_has_every_point() -> None:
@@ -61,7 +63,7 @@ def test_a_release_that_students_cannot_begin_with_is_not_as_expected() -> None:
     nothing = result(*(check.id for check in SUITE.checks))
     unbuilt = replace(nothing, diagnosis=Diagnosis(Kind.BUILD_FAILED, "setup.py fails."))
     assert verify_zero(unbuilt) == "students get it broken: setup.py fails."
-    assert verify_zero(replace(unbuilt, assignment="01_package_structure")) == ""  # whose students correct a build
+    assert verify_zero(replace(unbuilt, assignment="01_package_structure")) == ""  # its students correct a build
     unread = replace(nothing, assignment="01_package_structure", diagnosis=Diagnosis(Kind.NOTEBOOK_FAILED, "It ends."))
     assert verify_zero(unread) == "students get it broken: It ends."
     unfinished = replace(nothing, diagnosis=Diagnosis(Kind.UNFINISHED, "A part is still to be written."))
@@ -122,5 +124,5 @@ def test_the_quick_mutants_fail_every_check(assignment: str) -> None:
 @pytest.mark.promise("A check needs at least three entries in `mutants.yaml`")
 @pytest.mark.parametrize("assignment", suites.graded_assignments())
 def test_each_check_has_three_mutants(assignment: str) -> None:
-    lost = Counter(name for mutant in mutants(assignment) for name in mutant.fails)
-    assert [check.id for check in suites.hidden(assignment).checks if lost[check.id] < 3] == []
+    failed = Counter(name for mutant in mutants(assignment) for name in mutant.fails)
+    assert [check.id for check in suites.hidden(assignment).checks if failed[check.id] < 3] == []

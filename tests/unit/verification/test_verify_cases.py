@@ -39,7 +39,7 @@ class NoGrader:
 
     def __call__(self, job: Job) -> WorkerReport:
         self._together.wait()
-        return WorkerReport(ExitReason.EXITED, 1, f"nobody grades {job.student}")
+        return WorkerReport(ExitReason.EXITED, 1, f"no grader for {job.student}")
 
 
 class OneByOne(NoGrader):
@@ -81,7 +81,7 @@ def test_submissions_of_several_chapters_may_have_the_same_name(tmp_path: Path) 
     assert all(mismatches), "an ungraded case is a mismatch"
     assert sorted(graded) == list(CHAPTERS)
     logs = [(tmp_path / name / "reference" / "grader.log").read_text() for name in CHAPTERS]
-    assert all("nobody grades reference" in log for log in logs)
+    assert all("no grader for reference" in log for log in logs)
 
 
 def test_chapters_are_graded_at_the_same_time_and_reported_in_order(tmp_path: Path) -> None:

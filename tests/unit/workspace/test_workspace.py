@@ -25,17 +25,17 @@ def test_an_installed_executable_is_found(workspace: Workspace) -> None:
     assert workspace.executable("pkg", "node") == workspace.install / "pkg/lib/pkg/node"
 
 
-@pytest.mark.parametrize(("package", "found"), [("pkg", "what it installs is node"), ("msgs", "it installs none")])
+@pytest.mark.parametrize(("package", "installed"), [("pkg", "what it installs is node"), ("msgs", "it installs none")])
 def test_a_missing_executable_is_reported_with_the_installed_ones(
-    workspace: Workspace, package: str, found: str
+    workspace: Workspace, package: str, installed: str
 ) -> None:
-    with pytest.raises(StudentError, match=f"The package {package} installs no program robot; {found}") as caught:
+    with pytest.raises(StudentError, match=f"The package {package} installs no program robot; {installed}") as caught:
         workspace.executable(package, "robot")
     assert caught.value.diagnosis.kind is Kind.MISSING_EXECUTABLE
     assert "console_scripts in setup.py" in caught.value.diagnosis.sentence
 
 
-def test_a_package_that_was_not_built_is_not_said_to_lack_a_program(workspace: Workspace) -> None:
+def test_a_package_that_was_not_built_is_reported_as_not_built(workspace: Workspace) -> None:
     with pytest.raises(StudentError, match="The package torn was not built, so it has no program robot: read"):
         workspace.executable("torn", "robot")
 
