@@ -24,7 +24,7 @@ def package(source: Path, name: str, *depends: str, interface: bool = False) -> 
         (folder / "CMakeLists.txt").write_text("project(x)\n")
 
 
-def bundled(source: Path, *requested: str) -> set[str]:
+def bundled_packages(source: Path, *requested: str) -> set[str]:
     return set(interface_bundle(read_packages(source)[0], requested))
 
 
@@ -33,21 +33,21 @@ def test_the_bundle_contains_the_interfaces_that_the_requested_packages_need(tmp
     package(tmp_path, "robot_msgs", "base_msgs", interface=True)
     package(tmp_path, "base_msgs", interface=True)
     package(tmp_path, "other_msgs", interface=True)
-    assert bundled(tmp_path, "robot") == {"robot_msgs", "base_msgs"}
-    assert bundled(tmp_path, "base_msgs") == {"base_msgs"}
-    assert bundled(tmp_path, "missing") == set()
+    assert bundled_packages(tmp_path, "robot") == {"robot_msgs", "base_msgs"}
+    assert bundled_packages(tmp_path, "base_msgs") == {"base_msgs"}
+    assert bundled_packages(tmp_path, "missing") == set()
 
 
 def test_interfaces_that_need_a_code_package_of_the_submission_are_not_bundled(tmp_path: Path) -> None:
     package(tmp_path, "robot_msgs", "tool", interface=True)
     package(tmp_path, "tool")
-    assert bundled(tmp_path, "robot_msgs") == set()
+    assert bundled_packages(tmp_path, "robot_msgs") == set()
 
 
 def test_packages_that_need_each_other_end_the_search(tmp_path: Path) -> None:
     package(tmp_path, "one_msgs", "two_msgs", interface=True)
     package(tmp_path, "two_msgs", "one_msgs", interface=True)
-    assert bundled(tmp_path, "one_msgs") == {"one_msgs", "two_msgs"}
+    assert bundled_packages(tmp_path, "one_msgs") == {"one_msgs", "two_msgs"}
 
 
 @pytest.mark.parametrize("name", ["CMakeLists.txt", "package.xml", "extra.txt"])

@@ -121,7 +121,9 @@ def test_regrading_with_resume_lists_the_students_whose_mark_changed(
 
 
 @pytest.mark.promise("With `--resume`, it also says which stored results would stay and which would be replaced.")
-def test_a_dry_run_of_grading_says_what_becomes_of_stored_results(tmp_path: Path, make_result: MakeResult) -> None:
+def test_a_dry_run_of_grading_says_which_stored_results_are_kept_or_replaced(
+    tmp_path: Path, make_result: MakeResult
+) -> None:
     for name in ("alice", "bob", "carol"):
         node = tmp_path / "class" / name / "src" / "node.py"
         node.parent.mkdir(parents=True)
@@ -180,9 +182,9 @@ def test_a_wrong_call_exits_2(arguments: tuple[str, ...]) -> None:
 
 
 def _main(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(list(arguments))
-    code = ended.value.code
+    code = exit_info.value.code
     assert isinstance(code, int)
     return code
 

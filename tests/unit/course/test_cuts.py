@@ -63,7 +63,7 @@ def _cell(**course: object) -> NotebookNode:
     return new_code_cell("", metadata={"course": {"source": "a/b.xml", "target": "ws/b.xml", **course}})
 
 
-def test_a_cell_is_cut_as_its_metadata_says_and_its_release_holds_no_answer(
+def test_a_cell_is_cut_by_its_metadata_and_its_release_contains_no_answer(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(course_paths, "course", lambda: Course(tmp_path, "small", "A small course"))

@@ -14,7 +14,7 @@ from .notebooks import chapter, code, grade, notebook, prose, solution
 SOLVED = "# BEGIN SOLUTION\nanswer = 42\n# END SOLUTION"
 
 
-def test_the_released_form_has_the_stub_in_the_answers_place() -> None:
+def test_the_released_form_has_the_stub_instead_of_the_answer() -> None:
     released = in_form(notebook(code(SOLVED, "s", nbgrader=solution("s"))), Form.RELEASED)
     assert "42" not in released.cells[0].source
     assert "still to be written" in released.cells[0].source

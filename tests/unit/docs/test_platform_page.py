@@ -1,4 +1,4 @@
-"""The page about the platform has what the lock installs, and a reason for each version that differs."""
+"""The platform page lists the versions that the lock installs, and a reason for each that differs."""
 
 from __future__ import annotations
 

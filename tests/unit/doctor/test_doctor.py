@@ -31,7 +31,7 @@ VERSIONS: dict[str, str] = {package.name: package.version for package in DISTRIB
 DENIED = "bwrap: setting up uid map: Permission denied"
 
 
-def answers(failing: Mapping[str, CommandResult]) -> Callable[[Sequence[str], Mapping[str, str]], CommandResult]:
+def fake_run(failing: Mapping[str, CommandResult]) -> Callable[[Sequence[str], Mapping[str, str]], CommandResult]:
     """Return a `run` in which all commands succeed, except those that contain one of the given words."""
 
     def run(command: Sequence[str], _: Mapping[str, str]) -> CommandResult:
@@ -57,7 +57,7 @@ COMPLETE: dict[str, Any] = dict(
     environ={},
     tmp=Path("/tmp"),
     which=lambda command: f"/usr/bin/{command}",
-    run=answers({}),
+    run=fake_run({}),
     read=FILES.get,
     disk_usage=lambda path: SimpleNamespace(free=50 * 1024**3),
     writable=lambda path: True,
@@ -192,7 +192,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     "an rclpy that does not start": (
         "rclpy",
         {
-            "run": answers(
+            "run": fake_run(
                 {"import rclpy": CommandResult(1, "Traceback\n  File\nImportError: librcl.so: no such file\n\n")}
             )
         },
@@ -202,7 +202,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     ),
     "a sourced rclpy that does not start": (
         "rclpy",
-        {"find_ros": lambda: SOURCED, "run": answers({"import rclpy": CommandResult(-11, "")})},
+        {"find_ros": lambda: SOURCED, "run": fake_run({"import rclpy": CommandResult(-11, "")})},
         Status.MISSING,
         "exit status -11",
         "source /opt/ros/jazzy/setup.bash",
@@ -237,14 +237,14 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     ),
     "no C++ compiler": (
         "compiler",
-        {"run": answers({"g++": CommandResult(127, "")})},
+        {"run": fake_run({"g++": CommandResult(127, "")})},
         Status.MISSING,
         "g++ not found",
         "sudo apt-get install g++",
     ),
     "no compiler at all": (
         "compiler",
-        {"run": answers({"g++": CommandResult(127, ""), "gcc": CommandResult(127, "")})},
+        {"run": fake_run({"g++": CommandResult(127, ""), "gcc": CommandResult(127, "")})},
         Status.MISSING,
         "gcc and g++ not found",
         "sudo apt-get install g++",
@@ -360,7 +360,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     ),
     "a browser that does not start": (
         "browser",
-        {"run": answers({"--version": CommandResult(1, "snap needed")})},
+        {"run": fake_run({"--version": CommandResult(1, "snap needed")})},
         Status.WEAK,
         "no working Chromium",
         "sudo apt-get install chromium",

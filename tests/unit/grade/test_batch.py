@@ -56,7 +56,7 @@ def test_a_folder_of_submissions_has_one_submission_for_each_student(tmp_path: P
     assert [name for name, _ in discovered.others] == ["notes.txt"]
 
 
-def test_an_archive_is_a_submission_whatever_its_ending(tmp_path: Path) -> None:
+def test_an_archive_with_any_file_ending_is_a_submission(tmp_path: Path) -> None:
     names = ["ada.tar.gz", "bob.ZIP", "cyd.7z", "dan.Ipynb", "eve.tgz", "fay.rar", "gus.ipynb.txt"]
     for name in names:
         (tmp_path / name).write_bytes(b"")

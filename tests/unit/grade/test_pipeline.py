@@ -123,7 +123,7 @@ class SlowWorker(Worker):
         return super().__call__(job)
 
 
-def test_a_second_try_has_only_what_the_first_has_left_of_one_budget(tmp_path: Path, doubtful_result: Result) -> None:
+def test_a_second_try_has_only_the_time_that_the_first_has_left(tmp_path: Path, doubtful_result: Result) -> None:
     worker = SlowWorker(0.5, None, with_all_points(doubtful_result))
     assert grade(tmp_path, worker, seconds=0.4).status is Status.GRADED
     first, second = worker.times

@@ -57,7 +57,7 @@ def test_an_ended_process_does_not_count_as_stalled(clock: list[float], stalls: 
 
 
 @contextmanager
-def spinning(nice: int, *, adopted: bool = False) -> Iterator[int]:
+def busy_process(nice: int, *, adopted: bool = False) -> Iterator[int]:
     """Keep the first processor busy with a process, an orphan if `adopted`; yield its id."""
     code = f"import os; os.sched_setaffinity(0, [{min(os.sched_getaffinity(0))}]); os.nice({nice})"
     code += "; print(os.getpid(), flush=True)\nwhile True: pass"
@@ -75,7 +75,7 @@ def spinning(nice: int, *, adopted: bool = False) -> Iterator[int]:
 
 def test_a_process_without_a_free_processor_counts_as_stalled(stalls: list[float]) -> None:
     deadline = time.monotonic() + SECONDS
-    with spinning(19) as pid, spinning(0, adopted=True):
+    with busy_process(19) as pid, busy_process(0, adopted=True):
         while max(stalls, default=0.0) < 0.2:
             assert time.monotonic() < deadline
             with cpu_starvation.watch([pid], SECONDS, stalls.append):
@@ -85,7 +85,7 @@ def test_a_process_without_a_free_processor_counts_as_stalled(stalls: list[float
 def test_a_processor_that_the_submission_s_own_process_has_does_not_count(stalls: list[float]) -> None:
     deadline = time.monotonic() + SECONDS
     waited = ran = 0.0
-    with spinning(19) as pid, spinning(0) as other:
+    with busy_process(19) as pid, busy_process(0) as other:
         while min(waited, ran) < 0.3:
             assert time.monotonic() < deadline
             stalls.clear()

@@ -66,7 +66,7 @@ def grader() -> Iterator[GraderNode]:
     node.close()
 
 
-def test_the_grader_stops_taking_what_a_program_publishes_without_end(
+def test_the_grader_stops_receiving_from_a_program_that_publishes_without_end(
     programs_node: Node, grader: GraderNode, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(grader, "_inflow", Inflow(Received(messages=50)))

@@ -10,7 +10,7 @@ from autograder.exceptions import StudentError
 from autograder.harness.launch import MAX_STATUS, LaunchHarness
 
 
-def test_a_flood_in_place_of_an_exit_status_is_not_kept() -> None:
+def test_a_flood_instead_of_an_exit_status_is_not_kept() -> None:
     ours, theirs = os.pipe()
     os.set_blocking(ours, False)
     harness = LaunchHarness.__new__(LaunchHarness)

@@ -51,7 +51,7 @@ def test_a_program_without_messages_has_turns_if_something_is_due(
     assert _turns(_program(due=due), alone=alone) == [(instant, {}) for instant in instants]
 
 
-def test_after_messages_a_program_has_a_turn_at_the_end_of_the_step_as_they_may_change_what_is_due() -> None:
+def test_after_messages_a_program_has_another_turn_at_the_end_of_the_step() -> None:
     assert _turns(_program((GRADER, {SCAN: 2}))) == [(199, {SCAN: 2}), (200, {})]
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from autograder.lms.hub.spawner import CourseSpawner
 from autograder.ros.domains import DOMAINS, Domain
-from tests.unit.ros.test_domains import TAKE_ALL, alone
+from tests.unit.ros.test_domains import TAKE_ALL, run_in_separate_network
 
 NAMES = [user.pw_name for user in pwd.getpwall() if user.pw_uid not in (0, os.getuid())][:3]  # of any machine
 REFUSED = """
@@ -46,7 +46,9 @@ def test_each_user_has_a_domain_also_for_programs_that_the_hub_does_not_start(sp
 
 
 def test_a_server_is_refused_with_a_sentence_if_no_domain_is_left() -> None:
-    assert alone(TAKE_ALL + REFUSED).stdout.startswith("All 101 ROS domains of this machine are in use. A server that")
+    assert run_in_separate_network(TAKE_ALL + REFUSED).stdout.startswith(
+        "All 101 ROS domains of this machine are in use. A server that"
+    )
 
 
 def test_a_server_that_was_stopped_gives_its_domain_to_another_user(spawners: list[CourseSpawner]) -> None:

@@ -306,7 +306,7 @@ def test_a_file_is_graded_as_the_plain_answer(name: str, answer: Answer, plain: 
 
 
 @pytest.mark.parametrize("name", DOWNLOADS)
-def test_a_download_holds_the_plain_answer_of_its_student(
+def test_a_download_contains_the_plain_answer_of_its_student(
     name: str, answer: Answer, plain: Submission, tmp_path: Path
 ) -> None:
     (tmp_path / "roster.csv").write_text(ROSTER)

@@ -131,7 +131,7 @@ def test_files_that_macos_adds_to_archives_are_ignored(tmp_path: Path) -> None:
     assert _names(read_submission(_zip(tmp_path / "a.zip", files), CHAPTER).extra) == {"notes.txt"}
 
 
-def test_an_empty_folder_and_a_folder_of_other_things_hold_nothing_to_grade(tmp_path: Path) -> None:
+def test_an_empty_folder_and_a_folder_of_other_things_contain_nothing_to_grade(tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
     for folder in (tmp_path / "empty", _write(tmp_path / "essay", {"essay.pdf": b"%PDF"})):
         kind, sentence = _refusal(folder)
@@ -151,7 +151,7 @@ def test_executable_files_stay_executable(tmp_path: Path) -> None:
     assert [os.access(tmp_path / "out/pkg" / name, os.X_OK) for name in ("run", "data")] == [True, False]
 
 
-def test_the_digest_is_of_paths_and_contents_whatever_the_packing(tmp_path: Path) -> None:
+def test_the_digest_depends_on_paths_and_contents_but_not_on_the_packing(tmp_path: Path) -> None:
     folder = read_submission(_write(tmp_path / "a", TREE), CHAPTER).sha256
     assert read_submission(_zip(tmp_path / "a.zip", TREE), CHAPTER).sha256 == folder
     assert read_submission(_write(tmp_path / "b", {**TREE, "notes.txt": b"yours"}), CHAPTER).sha256 != folder
@@ -248,7 +248,7 @@ def _nest(folder: Path, names: list[str]) -> None:
 
 @pytest.mark.parametrize("is_copied", [False, True], ids=["as it is", "as root copies it for another user"])
 def test_a_path_that_no_system_opens_is_left_out_and_named(tmp_path: Path, is_copied: bool) -> None:
-    def handed_in(root: Path) -> Path:
+    def submitted_path(root: Path) -> Path:
         if is_copied:
             copy_submission(root, root.parent / f"{root.name} copied")
         return root.parent / f"{root.name} copied" if is_copied else root
@@ -256,7 +256,7 @@ def test_a_path_that_no_system_opens_is_left_out_and_named(tmp_path: Path, is_co
     beside = _write(tmp_path / "bob", TREE)
     _nest(beside, ["n" * 255] * 15 + ["m" * 255] * 2)
     assert any(
-        "longer than this system can open" in name for name in read_submission(handed_in(beside), CHAPTER).unused
+        "longer than this system can open" in name for name in read_submission(submitted_path(beside), CHAPTER).unused
     )
 
 

@@ -26,7 +26,7 @@ CANVAS = """Student,ID,SIS User ID,SIS Login ID,Section,02 Nodes (55)
 """
 
 
-def download(folder: Path, *names: str) -> Path:
+def write_download(folder: Path, *names: str) -> Path:
     """Write a download of files with these names; a name that ends in a slash is a folder."""
     for name in names:
         path = folder / name
@@ -42,10 +42,10 @@ def collect_entries(folder: Path, table: str) -> tuple[CollectedSubmissions, dic
     roster = folder.parent / "roster.csv"
     roster.write_text(table, encoding="utf-8-sig")
     collected = collect(folder, read_roster(roster), CHAPTER, Path(tempfile.mkdtemp(dir=folder.parent)))
-    return collected, {student: located(path, folder) for student, path in collected.submissions.items()}
+    return collected, {student: location_in(path, folder) for student, path in collected.submissions.items()}
 
 
-def located(path: Path, folder: Path) -> str:
+def location_in(path: Path, folder: Path) -> str:
     """Return the path of a submission in a download, or the names of its files if they were gathered."""
     if path.is_relative_to(folder):
         return str(path.relative_to(folder))
@@ -53,7 +53,7 @@ def located(path: Path, folder: Path) -> str:
 
 
 def test_a_moodle_download_with_folders_is_assigned_to_students(tmp_path: Path) -> None:
-    folder = download(
+    folder = write_download(
         tmp_path / "moodle",
         "Zoë Müller-Żak_101_assignsubmission_file_/my answer.zip",
         "Zoë Müller-Żak_101_assignsubmission_onlinetext_/onlinetext.html",
@@ -74,8 +74,8 @@ def test_a_moodle_download_with_folders_is_assigned_to_students(tmp_path: Path) 
     )
 
 
-def test_the_files_of_a_moodle_submission_without_folders_come_together(tmp_path: Path) -> None:
-    folder = download(
+def test_the_files_of_a_moodle_submission_without_folders_are_gathered(tmp_path: Path) -> None:
+    folder = write_download(
         tmp_path / "moodle",
         "Zoë Müller-Żak_101_assignsubmission_file_a_b.zip",
         "jane doe_102_assignsubmission_file_1.zip",
@@ -90,7 +90,7 @@ def test_the_files_of_a_moodle_submission_without_folders_come_together(tmp_path
 
 def test_the_name_of_a_moodle_file_cannot_make_it_another_students(tmp_path: Path) -> None:
     name = "Jane Doe_102_assignsubmission_file_x_101_assignsubmission_file_a.zip"
-    collected, entries = collect_entries(download(tmp_path / "d", name), MOODLE)
+    collected, entries = collect_entries(write_download(tmp_path / "d", name), MOODLE)
     assert entries == {"jane@example.edu": name}
     assert collected.missing == ("zoe@example.edu", "bob@example.edu")
 
@@ -100,7 +100,7 @@ def test_the_name_of_a_moodle_file_cannot_make_it_another_students(tmp_path: Pat
     "Canvas marks late submissions in their file names",
 )
 def test_a_canvas_download_names_attempts_and_late_submissions(tmp_path: Path) -> None:
-    folder = download(
+    folder = write_download(
         tmp_path / "canvas",
         "doejane_7001_9001_answer.zip",
         "doejane_LATE_7001_9005_answer-1.zip",
@@ -113,8 +113,8 @@ def test_a_canvas_download_names_attempts_and_late_submissions(tmp_path: Path) -
     assert [name for name, _ in collected.unmatched] == ["testsome_7003_9003_x.zip"]
 
 
-def test_the_files_of_a_canvas_attempt_come_together_whatever_their_numbers(tmp_path: Path) -> None:
-    folder = download(
+def test_the_files_of_a_canvas_attempt_are_gathered_whatever_their_numbers(tmp_path: Path) -> None:
+    folder = write_download(
         tmp_path / "canvas",
         "doejane_7001_9001_work.zip",
         "doejane_7001_9002_screenshot.png",
@@ -128,7 +128,7 @@ def test_the_files_of_a_canvas_attempt_come_together_whatever_their_numbers(tmp_
 
 @pytest.mark.promise("A late attempt replaces an earlier one that was on time.")
 def test_the_files_of_a_late_canvas_attempt_replace_those_of_one_in_time(tmp_path: Path) -> None:
-    folder = download(
+    folder = write_download(
         tmp_path / "canvas",
         "doejane_7001_9001_draft.zip",
         "doejane_7001_9002_notes.pdf",
@@ -147,7 +147,7 @@ Poe,Zoë,zpoe,103,Yes
 """
 
 
-def receipts(folder: Path, **logins: str) -> None:
+def write_receipts(folder: Path, **logins: str) -> None:
     """Write the first lines of Blackboard's receipts, by the beginning of their names."""
     for path in folder.glob("*_attempt_????-??-??-??-??-??.txt"):
         login = logins.get(path.name[0], "")
@@ -159,8 +159,8 @@ def receipts(folder: Path, **logins: str) -> None:
     "A Blackboard receipt, a text file beside the submission, identifies the student.",
     "Text that a student typed in without attaching a file is listed, and the exit status is 1.",
 )
-def test_a_blackboard_download_holds_attempts_and_a_receipt_for_each(tmp_path: Path) -> None:
-    folder = download(
+def test_a_blackboard_download_contains_attempts_and_a_receipt_for_each(tmp_path: Path) -> None:
+    folder = write_download(
         tmp_path / "gradebook",
         "Chapter 13 Problems_jdoe3_attempt_2014-04-30-21-02-38.txt",
         "Chapter 13 Problems_jdoe3_attempt_2014-04-30-21-02-38_chapter (13).zip",
@@ -174,7 +174,7 @@ def test_a_blackboard_download_holds_attempts_and_a_receipt_for_each(tmp_path: P
         "E_nodes_eve_zpoe_attempt_2014-04-30-21-02-38.txt",
         "No_zpoe_attempt_2014-04-30-21-02-38_a.zip",
     )
-    receipts(folder, C="jdoe3", B="b_roe", Z="zpoe", E="eve_zpoe")
+    write_receipts(folder, C="jdoe3", B="b_roe", Z="zpoe", E="eve_zpoe")
     collected, entries = collect_entries(folder, BLACKBOARD)
     assert entries == {
         "jdoe3": "answer_2.zip + notes.pdf",
@@ -201,7 +201,7 @@ BRIGHTSPACE = """OrgDefinedId,Username,Last Name,First Name,Email,End-of-Line In
 
 @pytest.mark.promise("| Brightspace (D2L) |", "Brightspace names only the member who submitted")
 def test_a_brightspace_download_names_the_student_and_the_time_in_folders_or_files(tmp_path: Path) -> None:
-    folder = download(
+    folder = write_download(
         tmp_path / "Lab 1 Download",
         "index.html",
         "397063-2557369 - Mary-Ann Smith - Sep 24, 2024 1126 AM/answer.zip",
@@ -243,7 +243,7 @@ typist,typist,Text,Tom,0.0
 
 @pytest.mark.promise("| Sakai |", "So does every student named in a Sakai folder's name.")
 def test_a_sakai_download_has_a_folder_for_each_student_or_group(tmp_path: Path) -> None:
-    folder = download(
+    folder = write_download(
         tmp_path / "bulk_download",
         "Lab 00/grades.csv",
         "Lab 00/Late, Laura(llate2); Speedy, Sam (Sammy)(sspeedy2)/Submission attachment(s)/answer.zip",
@@ -267,7 +267,7 @@ def test_a_sakai_download_has_a_folder_for_each_student_or_group(tmp_path: Path)
 
 
 def test_a_sakai_download_without_folders_has_folder_names_in_its_file_names(tmp_path: Path) -> None:
-    folder = download(
+    folder = write_download(
         tmp_path / "bulk_download",
         "grades.csv",
         "Late, Laura(llate2)_Submission attachment(s)_work.zip",
@@ -353,7 +353,7 @@ def test_a_name_that_resembles_a_download_does_not_replace_another_student(tmp_p
     ]
     for number, (table, ada_item, name, pattern, is_plain) in enumerate(cases):
         eve_item = pattern.format(name)
-        folder = download(
+        folder = write_download(
             tmp_path / f"{number}" / "d",
             *(f"{path}answer.zip" if path[-1] == "/" else path for path in (ada_item, eve_item)),
         )
@@ -367,7 +367,7 @@ def test_a_name_that_resembles_a_download_does_not_replace_another_student(tmp_p
     "name", ["index.html", "earlier-marks.json", "handed_in.json", "results.json", "..", "x" * 256]
 )
 def test_a_student_whose_folder_conflicts_with_a_file_is_named(tmp_path: Path, name: str) -> None:
-    folder = download(tmp_path / "d", "Ada_1_assignsubmission_file_a.zip", "Eve_2_assignsubmission_file_a.zip")
+    folder = write_download(tmp_path / "d", "Ada_1_assignsubmission_file_a.zip", "Eve_2_assignsubmission_file_a.zip")
     collected, entries = collect_entries(folder, f"Identifier,Username\nParticipant 1,ada\nParticipant 2,{name}\n")
     assert list(entries) == ["ada"]
     (unmatched,) = collected.unmatched
@@ -376,7 +376,7 @@ def test_a_student_whose_folder_conflicts_with_a_file_is_named(tmp_path: Path, n
 
 
 def test_each_member_of_a_gradescope_group_has_the_submission(tmp_path: Path) -> None:
-    folder = download(tmp_path / "export", "submission_1/ws/src/p/package.xml", "submission_2/x", "notes.pdf")
+    folder = write_download(tmp_path / "export", "submission_1/ws/src/p/package.xml", "submission_2/x", "notes.pdf")
     (folder / "submission_metadata.yml").write_text(
         "---\nsubmission_1:\n  :submitters:\n  - :name: Pair One\n    :sid: '200'\n  - :name: Pair Two\n"
         "    :sid: '201'\n  - :name: Guest\n    :sid: '9'\n  :created_at: 2026-01-03 09:00:00 Z\n"
@@ -395,7 +395,7 @@ def test_each_member_of_a_gradescope_group_has_the_submission(tmp_path: Path) ->
 
 @pytest.mark.promise("Downloads from Moodle, Canvas, Gradescope and GitHub Classroom are graded")
 def test_the_list_of_a_gradescope_download_names_student_and_time_of_each_folder(tmp_path: Path) -> None:
-    folder = download(
+    folder = write_download(
         tmp_path / "export", *(f"assignment_1_export/submission_{n}/ws/src/p/package.xml" for n in (1, 2, 3, 4))
     )
     rows = [("1", "S1", "2026-01-02 10:00:00"), ("2", "S1", "2026-01-03 09:00:00"), ("3", "S2", ""), ("4", "S9", "")]
@@ -418,7 +418,7 @@ def test_the_list_of_a_gradescope_download_names_student_and_time_of_each_folder
 )
 def test_a_github_classroom_clone_is_assigned_by_the_account_in_its_name(tmp_path: Path) -> None:
     names = ("02-nodes-jane-doe/ws/src/p/x", "02-nodes-Zoe/ws/src/p/x", "02-nodes-doe/ws/src/p/x", "02-nodes-eve/x")
-    folder = download(tmp_path / "02-nodes-submissions", *names)
+    folder = write_download(tmp_path / "02-nodes-submissions", *names)
     table = "identifier,github_username,github_id,name\njane,jane-doe,1,\nzoë,zoe,2,\ndoe,doe,3,\n"
     collected, entries = collect_entries(folder, table)
     assert entries == {"jane": "02-nodes-jane-doe", "zoë": "02-nodes-Zoe", "doe": "02-nodes-doe"}
@@ -481,7 +481,7 @@ def test_a_clone_is_not_assigned_by_the_end_of_an_account_alone(
     tmp_path: Path, folder: str, names: list[str], entries: dict[str, str], strangers: dict[str, str]
 ) -> None:
     collected, assigned = collect_entries(
-        download(tmp_path / folder, *(f"{name}/ws/src/p/x" for name in names)), GITHUB
+        write_download(tmp_path / folder, *(f"{name}/ws/src/p/x" for name in names)), GITHUB
     )
     assert assigned == entries
     assert dict(collected.unmatched).keys() == strangers.keys()
@@ -489,7 +489,7 @@ def test_a_clone_is_not_assigned_by_the_end_of_an_account_alone(
 
 
 def test_the_layout_of_nbgrader_and_plain_names_are_assigned_to_students(tmp_path: Path) -> None:
-    folder = download(tmp_path / "submitted", f"jane/{CHAPTER}/{CHAPTER}.ipynb", "Jo Bloggs.zip")
+    folder = write_download(tmp_path / "submitted", f"jane/{CHAPTER}/{CHAPTER}.ipynb", "Jo Bloggs.zip")
     _, entries = collect_entries(folder, "id,first_name,last_name,email\njane,,,\nJo Bloggs,,,\n")
     assert entries == {"jane": f"jane/{CHAPTER}", "Jo Bloggs": "Jo Bloggs.zip"}
 
@@ -523,23 +523,23 @@ def test_a_table_without_students_is_a_usage_error(tmp_path: Path, table: str, r
 
 
 def test_the_times_of_submissions_are_those_of_the_newest_attempts(tmp_path: Path) -> None:
-    folder = download(tmp_path / "export", "submission_1/a.zip", "submission_2/b.zip")
+    folder = write_download(tmp_path / "export", "submission_1/a.zip", "submission_2/b.zip")
     (folder / "submission_metadata.yml").write_text(
         "submission_1:\n  :submitters: [{':sid': '101'}]\n  :created_at: 2026-05-04 18:00:00.5 -05:00\n"
         "submission_2:\n  :submitters: [{':sid': '102'}]\n"
     )
     collected, _ = collect_entries(folder, "SID,Name\n101,Ada\n102,Bob\n")
     assert collected.times == {"101": "2026-05-04 18:00:00.500000-05:00"}
-    folder = download(
+    folder = write_download(
         tmp_path / "gradebook",
         "C_jdoe3_attempt_2014-04-30-21-02-38_old.zip",
         "C_jdoe3_attempt_2014-05-01-08-00-00_new.zip",
         "C_jdoe3_attempt_2014-04-30-21-02-38.txt",
         "C_jdoe3_attempt_2014-05-01-08-00-00.txt",
     )
-    receipts(folder, C="jdoe3")
+    write_receipts(folder, C="jdoe3")
     assert collect_entries(folder, BLACKBOARD)[0].times == {"jdoe3": "2014-05-01 08:00:00"}
-    folder = download(tmp_path / "d2l", "1-2 - Jane Doe - Nov 9, 2025 1205 AM - a.zip")
+    folder = write_download(tmp_path / "d2l", "1-2 - Jane Doe - Nov 9, 2025 1205 AM - a.zip")
     assert collect_entries(folder, BLACKBOARD)[0].times == {"jdoe3": "2025-11-09 00:05"}
 
 
@@ -554,7 +554,7 @@ def test_the_times_of_submissions_are_those_of_the_newest_attempts(tmp_path: Pat
     ],
 )
 def test_moodles_table_says_how_late_a_submission_is(tmp_path: Path, status: str, late_by: int | None) -> None:
-    folder = download(tmp_path / "moodle", "Zoë Müller-Żak_101_assignsubmission_file_/a.zip")
+    folder = write_download(tmp_path / "moodle", "Zoë Müller-Żak_101_assignsubmission_file_/a.zip")
     collected, _ = collect_entries(folder, MOODLE.replace("Submitted for grading,", f'"{status}",', 1))
     assert collected.late_by == ({} if late_by is None else {"zoe@example.edu": late_by})
     assert collected.late == (() if late_by is None else ("zoe@example.edu",))

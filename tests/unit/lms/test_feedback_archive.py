@@ -55,7 +55,7 @@ def canvas_reads(path: str) -> tuple[str, str] | None:
     return numbers[0], numbers[1]
 
 
-def store(folder: Path, *results: Result) -> None:
+def store_results(folder: Path, *results: Result) -> None:
     for result in results:
         write_json(folder / "results" / result.student / "result.json", result.to_json())
 
@@ -73,7 +73,7 @@ def export(folder: Path, form: str, roster: str, *more: str) -> Ran:
 def test_moodle_gives_each_page_to_its_participant(tmp_path: Path, make_result: MakeResult) -> None:
     roster = MOODLE.replace("Jane  Doe", "Jane_999_assignsubmission_file_/../Doe")
     unclear = Diagnosis(Kind.UNCLEAR, "It holds two different answers.")
-    store(
+    store_results(
         tmp_path,
         make_result("zoe@example.edu"),
         make_result("jane@example.edu", status=Status.UNCLEAR, diagnosis=unclear, checks=()),
@@ -96,7 +96,7 @@ def test_moodle_gives_each_page_to_its_participant(tmp_path: Path, make_result: 
 def test_another_programs_reader_unpacks_the_zip_with_names_of_any_language(
     tmp_path: Path, make_result: MakeResult
 ) -> None:
-    store(tmp_path, make_result("zoe@example.edu"))
+    store_results(tmp_path, make_result("zoe@example.edu"))
     assert export(tmp_path, "moodle-feedback", MOODLE).exit_code == 0
     command = ["unzip", "-q", str(tmp_path / "feedback.zip"), "-d", str(tmp_path / "unpacked")]
     subprocess.run(command, check=True, env={"LC_ALL": "C.UTF-8"})
@@ -105,7 +105,7 @@ def test_another_programs_reader_unpacks_the_zip_with_names_of_any_language(
 
 
 def test_equal_results_make_equal_zips(tmp_path: Path, make_result: MakeResult) -> None:
-    store(tmp_path, make_result("zoe@example.edu"))
+    store_results(tmp_path, make_result("zoe@example.edu"))
     first, second = (
         (export(tmp_path, "moodle-feedback", MOODLE), (tmp_path / "feedback.zip").read_bytes())[1] for _ in range(2)
     )
@@ -155,7 +155,7 @@ def in_notebook(data: bytes) -> bytes:
 def test_canvas_gives_each_student_a_file_of_the_kind_that_they_handed_in(
     tmp_path: Path, make_result: MakeResult, name: str, read_page: Callable[[bytes], bytes]
 ) -> None:
-    store(tmp_path, make_result("zoe"))
+    store_results(tmp_path, make_result("zoe"))
     download = canvas_download(tmp_path, name, "doejane_7001_9001_answer.zip")
     completed = export(tmp_path, "canvas-feedback", CANVAS, "--download", str(download))
     assert completed.exit_code == 0, completed.output
@@ -170,7 +170,7 @@ def test_canvas_gives_each_student_a_file_of_the_kind_that_they_handed_in(
 def test_of_several_files_the_easiest_to_open_of_the_newest_attempt_is_used(
     tmp_path: Path, make_result: MakeResult
 ) -> None:
-    store(tmp_path, make_result("zoe"), make_result("jdoe"))
+    store_results(tmp_path, make_result("zoe"), make_result("jdoe"))
     download = canvas_download(
         tmp_path,
         "mllerzo_7002_9001_answer.zip",
@@ -188,7 +188,7 @@ def test_of_several_files_the_easiest_to_open_of_the_newest_attempt_is_used(
 
 
 def test_a_dry_run_lists_the_names_and_writes_no_zip(tmp_path: Path, make_result: MakeResult) -> None:
-    store(tmp_path, make_result("zoe"))
+    store_results(tmp_path, make_result("zoe"))
     download = canvas_download(tmp_path, "mllerzo_7002_9002_answer.zip")
     completed = export(tmp_path, "canvas-feedback", CANVAS, "--download", str(download), "--dry-run")
     assert completed.exit_code == 0
@@ -206,7 +206,7 @@ def test_a_dry_run_lists_the_names_and_writes_no_zip(tmp_path: Path, make_result
 def test_missing_input_for_a_zip_of_feedback_is_named(
     tmp_path: Path, make_result: MakeResult, form: str, roster: str, reason: str
 ) -> None:
-    store(tmp_path, make_result("zoe"))
+    store_results(tmp_path, make_result("zoe"))
     completed = export(tmp_path, form, roster)
     assert isinstance(completed.exception, UsageError)
     assert reason in str(completed.exception)

@@ -1,4 +1,4 @@
-"""What a late submission loses: deadlines, extensions, the grace period, penalties and the floor, in this order."""
+"""Deductions for late submissions: deadlines, extensions, the grace period, penalties and the floor, in this order."""
 
 from __future__ import annotations
 
@@ -221,7 +221,7 @@ def test_late_options_are_an_error_where_no_mark_would_change(graded: Path) -> N
     assert "--format csv, canvas, moodle, not junit" in str(export(graded, "--grace", "1", form="junit").exception)
 
 
-def test_a_dry_run_says_what_late_submissions_lose(graded: Path) -> None:
+def test_a_dry_run_shows_the_marks_of_late_submissions(graded: Path) -> None:
     completed = export(graded, "--due", "2026-05-04T18:00+02:00", "--late-per-day", "10", "--dry-run")
     assert ["zoe", "3.20"] in [line.split() for line in completed.output.splitlines()]
     assert not (graded / "out.csv").exists()

@@ -55,9 +55,9 @@ def test_without_copydetect_the_command_says_how_to_install_it(
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.delitem(sys.modules, "autograder.lms.similar")
     monkeypatch.setattr(sys, "meta_path", [Missing, *sys.meta_path])
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["similar", str(tmp_path), "--assignment", "02_nodes", "--out", str(tmp_path / "out")])
-    assert ended.value.code == 2
+    assert exit_info.value.code == 2
     assert "run `.venv/bin/pip install copydetect`" in capsys.readouterr().err
 
 
@@ -131,9 +131,9 @@ def test_similar_compares_a_class_and_names_unreadable_submissions(
         node.parent.mkdir(parents=True)
         node.write_text(text)
     (tmp_path / "class" / "dave.zip").write_bytes(b"no zip")
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["similar", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out")])
-    assert ended.value.code == 1  # one could not be read
+    assert exit_info.value.code == 1  # one could not be read
     captured = capsys.readouterr()
     assert "alice and bob: 100 % and 100 % of their own text alike" in captured.out
     assert "3 compared, 1 group to read" in captured.out
@@ -162,13 +162,13 @@ def test_a_download_of_moodle_is_compared_by_the_names_of_its_roster(
         archive.writestr("Jane Doe_102_assignsubmission_file_/b.zip", in_a_zip(RENAMED))
         archive.writestr("Bob Roe_103_assignsubmission_file_/c.zip", in_a_zip(OTHER))
     command = ["similar", str(download), "--assignment", "02_nodes", "--out", str(tmp_path / "out")]
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(command)
-    assert ended.value.code == 1
+    assert exit_info.value.code == 1
     assert "--roster" in capsys.readouterr().err
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main([*command, "--roster", str(tmp_path / "worksheet.csv"), "--json", str(tmp_path / "found.json")])
-    assert ended.value.code == 0
+    assert exit_info.value.code == 0
     assert "jane@example.edu and zoe@example.edu: 100 % and 100 %" in capsys.readouterr().out
     (group,) = json.loads((tmp_path / "found.json").read_text())
     assert group["students"] == ["jane@example.edu", "zoe@example.edu"]
@@ -186,9 +186,9 @@ def test_members_of_a_group_with_one_submission_are_not_alike(
         "submission_1:\n  :submitters: [{':sid': '1'}, {':sid': '2'}]\nsubmission_2:\n  :submitters: [{':sid': '3'}]\n"
     )
     arguments = ["--assignment", "02_nodes", "--out", str(tmp_path / "out"), "--roster", str(tmp_path / "roster.csv")]
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["similar", str(folder), *arguments])
-    assert ended.value.code == 0
+    assert exit_info.value.code == 0
     assert "2 compared, 0 groups to read" in capsys.readouterr().out
 
 
@@ -205,9 +205,9 @@ def test_without_two_comparable_submissions_the_command_says_so_and_exits_1(
     for name, text in texts.items():
         (tmp_path / "class" / name / "src").mkdir(parents=True)
         (tmp_path / "class" / name / "src" / "node.py").write_text(text)
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["similar", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out")])
-    assert ended.value.code == 1
+    assert exit_info.value.code == 1
     captured = capsys.readouterr()
     assert f"nothing was compared: {reason}" in captured.err
     assert "groups" not in captured.out

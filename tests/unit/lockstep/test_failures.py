@@ -20,7 +20,7 @@ from autograder.run.lockstep.protocol import REASONS, Crash, Deadlock
 from autograder.run.sandbox import Limits, Process
 
 
-def _ended(code: str, **limits: float) -> Process:
+def _ended_process(code: str, **limits: float) -> Process:
     process = Process([sys.executable, "-I", "-c", code], Limits(**limits))  # type: ignore[arg-type]
     with process:
         assert process.wait(60.0)
@@ -68,11 +68,11 @@ def test_a_service_callback_without_a_response_is_reported() -> None:
 
 def test_a_message_field_of_another_type_is_reported() -> None:
     code = 'import os; print("robot: Assertion `PyLong_Check(field)\' failed.", flush=True); os.abort()'
-    assert "a field, or the whole message, is of another type" in diagnose_exit(_ended(code)).sentence
+    assert "a field, or the whole message, is of another type" in diagnose_exit(_ended_process(code)).sentence
 
 
 def test_a_program_that_just_ends_gets_the_advice_to_spin() -> None:
-    diagnosis = diagnose_exit(_ended("print('bye')"))
+    diagnosis = diagnose_exit(_ended_process("print('bye')"))
     assert diagnosis.kind is Kind.ENDED_EARLY
     assert "(exit status 0)" in diagnosis.sentence
     assert "rclpy.spin(node)" in diagnosis.sentence
@@ -80,7 +80,7 @@ def test_a_program_that_just_ends_gets_the_advice_to_spin() -> None:
 
 
 def test_a_program_that_a_signal_ended_is_reported_with_the_signal() -> None:
-    diagnosis = diagnose_exit(_ended("import os; os.kill(os.getpid(), 11)"))
+    diagnosis = diagnose_exit(_ended_process("import os; os.kill(os.getpid(), 11)"))
     assert "(signal 11)" in diagnosis.sentence
 
 
@@ -106,7 +106,7 @@ def test_a_program_that_a_signal_ended_is_reported_with_the_signal() -> None:
 def test_a_program_over_a_limit_is_reported_with_the_limit(
     code: str, limits: dict[str, float], kind: Kind, words: str
 ) -> None:
-    diagnosis = diagnose_exit(_ended(code, **limits))
+    diagnosis = diagnose_exit(_ended_process(code, **limits))
     assert diagnosis.kind is kind
     assert words in diagnosis.sentence
 
@@ -126,11 +126,11 @@ def test_a_node_that_never_spins_and_a_node_that_hangs_have_different_diagnoses(
 
 
 def test_a_printed_traceback_names_the_crash() -> None:
-    diagnosis = diagnose_output(_ended("print('starting', flush=True)\nraise ValueError('no lidar')"))
+    diagnosis = diagnose_output(_ended_process("print('starting', flush=True)\nraise ValueError('no lidar')"))
     assert diagnosis is not None
     assert diagnosis.kind is Kind.CRASHED_AT_START
     assert "ValueError: no lidar" in diagnosis.sentence
-    assert diagnose_output(_ended("print('all is well')")) is None
+    assert diagnose_output(_ended_process("print('all is well')")) is None
 
 
 def test_only_the_end_of_a_long_output_is_kept() -> None:

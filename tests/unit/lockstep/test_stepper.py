@@ -84,7 +84,7 @@ while os.read(read, 999):
     assert _kind(steps) is Kind.TIMED_OUT
 
 
-def test_a_line_that_comes_in_pieces_is_read_whole(host: Open) -> None:
+def test_a_line_that_arrives_in_pieces_is_read_completely(host: Open) -> None:
     program = host(r"""
 for byte in b'{"event": "ready"}\n':
     os.write(write, bytes([byte]))

@@ -129,7 +129,7 @@ def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def course(generated: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Course:
-    """A copy of the generated course, with the grader replaced by what the test sets as `grade`."""
+    """A copy of the generated course, with the grader replaced by the function that the test sets as `grade`."""
     created = course_in(Path(shutil.copytree(generated, tmp_path / "course")))
 
     def grade(job: Job) -> Result:

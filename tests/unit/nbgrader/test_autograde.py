@@ -30,7 +30,7 @@ def cell(notebook: NotebookNode, id: str) -> NotebookNode:
     return next(cell for cell in notebook.cells if cell.id == id)
 
 
-def test_the_release_holds_the_stub_and_not_the_solution(course: Any) -> None:
+def test_the_release_contains_the_stub_and_not_the_solution(course: Any) -> None:
     solve = cell(course.released, "solve")
     assert "SECRET" not in solve.source
     assert solve.source.startswith(

@@ -26,7 +26,7 @@ def ws(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def alive(pid: int) -> bool:
+def is_alive(pid: int) -> bool:
     stat = Path(f"/proc/{pid}/stat")
     return stat.exists() and stat.read_text().rpartition(")")[2].split()[0] != "Z"
 
@@ -89,8 +89,8 @@ def test_the_block_begins_after_the_awaited_text_and_ctrl_c_ends_the_command(
 ) -> None:
     with running("echo $$; echo ready; sleep 600", until="ready", workspace=ws):
         pid = int(capsys.readouterr().out.split()[0])
-        assert alive(pid)
-    assert not alive(pid)
+        assert is_alive(pid)
+    assert not is_alive(pid)
 
 
 def test_a_block_that_starts_without_the_awaited_text_reports_it(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -108,7 +108,7 @@ def test_a_block_that_raises_leaves_nothing_running(ws: Path, capsys: pytest.Cap
 
     with pytest.raises(ZeroDivisionError):
         fail()
-    assert not alive(int(capsys.readouterr().out))
+    assert not is_alive(int(capsys.readouterr().out))
 
 
 def test_a_command_that_ignores_ctrl_c_is_killed_and_reported(

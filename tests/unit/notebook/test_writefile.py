@@ -87,7 +87,7 @@ def test_a_cell_writes_its_file_and_writes_it_again(run: Run) -> None:
     assert not Path("ws", REPLACED).exists()
 
 
-def test_an_untouched_cell_does_not_replace_what_the_editor_wrote(run: Run) -> None:
+def test_an_untouched_cell_does_not_replace_a_file_from_the_editor(run: Run) -> None:
     run(UNSOLVED)
     Path(FILE).write_text(SOLVED)
     assert f"{FILE} was kept as it is" in run(UNSOLVED)
@@ -137,7 +137,7 @@ def test_a_cell_makes_the_missing_folders_of_its_file_and_says_so(run: Run) -> N
 
 
 @pytest.mark.parametrize("below", ["robot.launch.py", "deep/er/robot.launch.py"])
-def test_a_file_in_the_place_of_a_folder_is_named(run: Run, below: str) -> None:
+def test_a_file_with_the_name_of_a_needed_folder_is_named(run: Run, below: str) -> None:
     Path("ws/src/pkg/launch").write_text("a file\n")
     with pytest.raises(
         UsageError, match=r"^ws/src/pkg/launch is a file, so the folder .* cannot be created: rename one"

@@ -15,9 +15,7 @@ from autograder.ros import activate
 @pytest.mark.parametrize(
     ("existing", "added"), [("test/__init__.py/a", "test/__init__.py"), ("wheels/new", "wheels/new/a.py")]
 )
-def test_a_folder_in_a_file_s_place_and_a_file_in_a_folder_s_are_the_student_s_fault(
-    existing: str, added: str, tmp_path: Path
-) -> None:
+def test_a_conflict_of_a_file_and_a_folder_is_the_student_s_fault(existing: str, added: str, tmp_path: Path) -> None:
     package = tmp_path / "ws" / "src" / "wheels"
     (package / existing).parent.mkdir(parents=True)
     (package / existing).write_text("")

@@ -49,13 +49,13 @@ def write(workspace: Workspace, text: str, name: str = "test_half.py") -> None:
     (workspace.root / "src/half/test" / name).write_text(text)
 
 
-def runs(workspace: Workspace, *orders: TestRun) -> list[Report]:
+def run_all(workspace: Workspace, *orders: TestRun) -> list[Report]:
     return run(workspace, take(workspace, "half"), [replace(order, shown=True) for order in orders])
 
 
 def test_good_tests_pass_on_a_right_version_and_fail_on_a_wrong_one(workspace: Workspace) -> None:
     write(workspace, GOOD)
-    right, wrong = runs(workspace, TestRun(("test_half.py",), RIGHT), TestRun(("test_half.py",), WRONG))
+    right, wrong = run_all(workspace, TestRun(("test_half.py",), RIGHT), TestRun(("test_half.py",), WRONG))
     assert right.passed
     assert right.executed == ("test_half::test_odd", "test_half::test_even")
     assert wrong.failed == ("test_half::test_odd",)
@@ -107,7 +107,7 @@ def test_a_run_on_a_hidden_version_returns_no_text_of_its_own(workspace: Workspa
     assert not hidden.claims.messages
     for text in ("return", "x // 2", "def half"):
         assert text not in repr(hidden)
-    (shown,) = runs(workspace, order)
+    (shown,) = run_all(workspace, order)
     assert "x // 2" in repr(shown)
     # The same test has the same name in each run, so that verdicts can be compared.
     assert hidden.claims.verdicts == repeated.claims.verdicts
@@ -116,7 +116,7 @@ def test_a_run_on_a_hidden_version_returns_no_text_of_its_own(workspace: Workspa
 
 def test_a_run_can_stop_at_the_first_failure_and_run_in_reverse_order(workspace: Workspace) -> None:
     write(workspace, GOOD)
-    first, backwards = runs(
+    first, backwards = run_all(
         workspace,
         TestRun(("test_half.py",), WRONG, first_failure=True),
         TestRun(("test_half.py",), RIGHT, backwards=True),
@@ -127,18 +127,18 @@ def test_a_run_can_stop_at_the_first_failure_and_run_in_reverse_order(workspace:
 
 def test_tests_that_cannot_be_imported_find_no_fault(workspace: Workspace) -> None:
     write(workspace, GOOD)
-    (right,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (right,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     write(workspace, "import no_such_module\n" + GOOD)
-    (unread,) = runs(workspace, TestRun(("test_half.py",), WRONG))
+    (unread,) = run_all(workspace, TestRun(("test_half.py",), WRONG))
     assert unread.status == 2
     assert not unread.detects_fault(right)
 
 
 def test_a_run_without_tests_does_not_pass(workspace: Workspace) -> None:
     write(workspace, "import pytest\n\n\n@pytest.mark.skip(reason='later')\ndef test_it():\n    assert False\n")
-    (skipped,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (skipped,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     write(workspace, "X = 1\n")
-    (empty,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (empty,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     assert skipped.status == 0
     assert not skipped.passed
     assert empty.status == 5
@@ -156,7 +156,7 @@ def test_a_run_without_tests_does_not_pass(workspace: Workspace) -> None:
 )
 def test_a_run_that_exits_early_reports_no_test(workspace: Workspace, trick: str) -> None:
     write(workspace, trick + "\n" + GOOD)
-    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (report,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     assert not report.passed
     assert "test_half::test_odd" not in report.executed
 
@@ -171,7 +171,7 @@ def test_an_invalid_reply_of_a_run_reports_no_test(workspace: Workspace, reply: 
     trick = f"import os, sys\nfor fd in range(3, 64):\n    try:\n        os.write(fd, b'{reply}')\n"
     trick += "    except OSError:\n        pass\nos._exit(0)\n"
     write(workspace, trick + GOOD)
-    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (report,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     assert not report.passed
     assert report.executed == ()
 
@@ -189,7 +189,7 @@ def folder(request):
 
 """
     write(workspace, trick + GOOD)
-    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (report,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     assert not report.passed
     assert report.executed == ()
 
@@ -198,7 +198,7 @@ def test_a_run_that_does_not_end_is_stopped(workspace: Workspace, monkeypatch: p
     limits = replace(TEST_RUN, wall_seconds=4.0)
     monkeypatch.setattr(student_test_runs.sandboxed, "__kwdefaults__", {"limits": limits, "network": False})
     write(workspace, GOOD + "\n\ndef test_for_ever():\n    import signal\n    while True:\n        signal.pause()\n")
-    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (report,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     assert report.exit_reason is ExitReason.WALL_TIME
     assert not report.passed
 
@@ -221,7 +221,7 @@ def test_the_only_stopped_run_is_repeated_once(
         return report if next(stopped) >= hangs else replace(report, exit_reason=ExitReason.WALL_TIME)
 
     monkeypatch.setattr(student_test_runs, "_run", run_or_stop)
-    reports = runs(workspace, TestRun(("test_half.py",), RIGHT), TestRun(("test_half.py",), WRONG))
+    reports = run_all(workspace, TestRun(("test_half.py",), RIGHT), TestRun(("test_half.py",), WRONG))
     assert tuple(report.exit_reason for report in reports) == ends
 
 
@@ -235,9 +235,9 @@ def test_a_run_ends_no_sooner_than_the_threads_of_its_tests(
         "import threading\n\n\ndef test_it():\n    threading.Thread(target=threading.Event().wait, daemon={}).start()\n"
     )
     write(workspace, text.format(True))
-    (short,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (short,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     write(workspace, text.format(False))
-    (endless,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (endless,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     assert short.exit_reason is ExitReason.EXITED
     assert endless.exit_reason is ExitReason.WALL_TIME
     assert short.passed
@@ -250,7 +250,7 @@ def test_no_run_sees_files_of_another_run(workspace: Workspace) -> None:
         "import os\nfrom pathlib import Path\n\n\ndef test_first():\n    mark = Path(os.environ['HOME'], 'mark')\n"
         "    assert not mark.exists()\n    mark.touch()\n",
     )
-    assert all(runs(workspace, TestRun(("test_half.py",), RIGHT))[0].passed for _ in range(3))
+    assert all(run_all(workspace, TestRun(("test_half.py",), RIGHT))[0].passed for _ in range(3))
 
 
 def test_the_paths_of_two_versions_differ_only_in_a_random_word(workspace: Workspace) -> None:
@@ -259,7 +259,7 @@ def test_the_paths_of_two_versions_differ_only_in_a_random_word(workspace: Works
     )
     write(workspace, f"import os, re, sys\n\nimport half\n\n\ndef test_place():\n    assert not hash({paths})\n")
     # One after the other: runs at the same time have ROS domains of their own.
-    reports = [runs(workspace, TestRun(("test_half.py",), version))[0] for version in (RIGHT, WRONG)]
+    reports = [run_all(workspace, TestRun(("test_half.py",), version))[0] for version in (RIGHT, WRONG)]
     messages = {report.claims.messages["test_half::test_place"] for report in reports}
     assert len(messages) == 1
     assert messages.pop().startswith("assert not ")
@@ -271,11 +271,11 @@ def test_a_context_that_a_test_does_not_shut_down_is_detected(workspace: Workspa
     )
     setup += "    rclpy.init(context=context)\n    node = rclpy.create_node('n', context=context)\n"
     write(workspace, setup + "    KEPT.append(node)\n")
-    (unclosed,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (unclosed,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     write(workspace, setup + "    node.destroy_node()\n    rclpy.try_shutdown(context=context)\n")
-    (clean,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (clean,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     write(workspace, setup + "    node.destroy_node()\n")
-    (dropped,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (dropped,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     assert unclosed.passed
     assert unclosed.left > 0
     assert clean.passed
@@ -300,14 +300,14 @@ def test_joining_the_default_domain_is_detected(workspace: Workspace, init: str,
     text += f"    rclpy.init(context=context, {init})\n    node = rclpy.create_node('n', context=context)\n"
     text += "    node.destroy_node()\n    rclpy.try_shutdown(context=context)\n"
     write(workspace, text)
-    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT, sniffed=True))
+    (report,) = run_all(workspace, TestRun(("test_half.py",), RIGHT, sniffed=True))
     assert report.passed, report.output
     assert report.joined_domain is joins
 
 
 def test_a_run_that_joins_no_domain_is_not_reported(workspace: Workspace) -> None:
     write(workspace, GOOD)
-    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT, sniffed=True))
+    (report,) = run_all(workspace, TestRun(("test_half.py",), RIGHT, sniffed=True))
     assert report.passed
     assert not report.joined_domain
 
@@ -315,12 +315,12 @@ def test_a_run_that_joins_no_domain_is_not_reported(workspace: Workspace) -> Non
 def test_only_tests_that_mention_launch_get_the_launch_plugin(workspace: Workspace) -> None:
     ask = "def test_it(pytestconfig):\n    assert {}pytestconfig.pluginmanager.has_plugin('lau' 'nch_pytest.plugin')\n"
     write(workspace, ask.format("not "))
-    (plain,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (plain,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     write(workspace, "# launch\n" + ask.format(""))
-    (mentioning,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (mentioning,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     write(workspace, ask.format(""))
     write(workspace, "# launch\n", "conftest.py")
-    (shared,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    (shared,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     assert [plain.passed, mentioning.passed, shared.passed] == [True, True, True]
 
 
@@ -340,7 +340,7 @@ def test_the_students_own_package_is_tested_as_it_was_built(workspace: Workspace
     site.mkdir(parents=True)
     (site / "__init__.py").write_text("def half(x):\n    return x / 2\n")
     write(workspace, GOOD)
-    (report,) = runs(workspace, TestRun(("test_half.py",)))
+    (report,) = run_all(workspace, TestRun(("test_half.py",)))
     assert report.passed
 
 
@@ -351,4 +351,4 @@ def test_a_full_disk_is_the_students_fault(workspace: Workspace, monkeypatch: py
     write(workspace, GOOD)
     monkeypatch.setattr(student_test_runs, "write_version", full)
     with pytest.raises(StudentError, match="no room left on the disk"):
-        runs(workspace, TestRun(("test_half.py",), RIGHT))
+        run_all(workspace, TestRun(("test_half.py",), RIGHT))

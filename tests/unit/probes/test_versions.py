@@ -77,7 +77,7 @@ def test_no_two_names_of_an_obfuscated_version_become_one() -> None:
     assert not attributes & locals_
 
 
-def test_each_function_class_and_file_of_a_version_holds_a_leak_marker() -> None:
+def test_each_function_class_and_file_of_a_version_contains_a_leak_marker() -> None:
     files = obfuscate(Version({"a/b.py": SOURCE, "config/a.yaml": "x: 1", "a/__init__.py": ""}, {}), 1).files
     kinds = ast.Module | ast.ClassDef | ast.FunctionDef
     documented = [node for node in ast.walk(ast.parse(files["a/b.py"])) if isinstance(node, kinds)]

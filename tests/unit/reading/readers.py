@@ -87,7 +87,7 @@ def _answer_of_calls(answer: Any, folder: Path) -> object:
 
 
 def _use(event: str, record: Any) -> object:
-    """Count, compare and pass on what a program reported, as a harness in lockstep does."""
+    """Count, compare and pass on the report of a program, as a harness in lockstep does."""
     if isinstance(record, protocol.Description):
         counts = _sum([record.early, record.kept, record.early]) + _sum([record.kept])
         json.dumps({"kept": dict(counts), "reads": sorted(record.reads)})
@@ -156,7 +156,7 @@ def _definition(package: str, kind: str) -> Callable[[bytes, Path], object]:
 
 
 def _bomb(form: str) -> bytes:
-    """Return a parameter file whose aliases stand for 9 to the power of 25 values."""
+    """Return a parameter file whose aliases expand to 9 to the power of 25 values."""
     names = [f"n{i}" for i in range(26)]
     lines = [f"  {name}: &{name} {form.format(', '.join([f'*{old}'] * 9))}" for old, name in pairwise(names)]
     return "\n".join(["scout:", " ros__parameters:", "  n0: &n0 {b: 1}", *lines, ""]).encode()

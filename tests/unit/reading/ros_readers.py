@@ -81,7 +81,7 @@ def _message(kind: Any, values: dict[str, Any]) -> Any:
     return message
 
 
-def obey(message: Twist, folder: Path) -> object:
+def drive_step(message: Twist, folder: Path) -> object:
     """Drive a step with a command, as a harness does."""
     simulation = Simulation(load_world(WORLD / "empty_room.yaml"))
     state = start(simulation)
@@ -118,7 +118,7 @@ def _own_type() -> Any:
 
 
 READERS: dict[str, Reader] = {
-    "command of a robot": Reader(obey, messages(Twist)),
+    "command of a robot": Reader(drive_step, messages(Twist)),
     "answer about a parameter": Reader(
         describe_parameter,
         messages(ParameterValue),

@@ -64,7 +64,7 @@ def test_the_maximum_comes_from_the_suite_even_when_no_check_was_recorded(make_r
     assert (result.score, result.max_score, result.percent) == (0.0, 10.0, 0.0)
 
 
-def test_a_group_holds_the_checks_of_one_grade_cell(make_result: MakeResult) -> None:
+def test_a_group_contains_the_checks_of_one_grade_cell(make_result: MakeResult) -> None:
     assert [check.id for check in make_result().group("graph")] == ["starts", "listens"]
     assert make_result().group("nothing") == ()
 

@@ -39,7 +39,7 @@ def claims() -> Iterator[ExitStack]:
         yield stack
 
 
-def held_by(claims: ExitStack, *command: str) -> tuple[subprocess.Popen[str], int]:
+def start_holder(claims: ExitStack, *command: str) -> tuple[subprocess.Popen[str], int]:
     """Start a program that prints its domain and keeps it; return it and the domain's number."""
     environ = {name: value for name, value in os.environ.items() if name != "ROS_DOMAIN_ID"}
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
@@ -49,7 +49,7 @@ def held_by(claims: ExitStack, *command: str) -> tuple[subprocess.Popen[str], in
     return process, int(process.stdout.readline())
 
 
-def alone(code: str) -> subprocess.CompletedProcess[str]:
+def run_in_separate_network(code: str) -> subprocess.CompletedProcess[str]:
     """Run Python code in a network without other programs, which would be refused while the code takes all domains."""
     network = ["unshare", "--user", "--map-root-user", "--net"]
     if subprocess.run([*network, "true"], capture_output=True, check=False).returncode != 0:
@@ -66,7 +66,7 @@ def test_two_claims_from_the_same_number_get_different_domains() -> None:
 
 
 def test_a_domain_of_another_process_is_free_after_its_end(claims: ExitStack) -> None:
-    process, number = held_by(claims, sys.executable, "-c", HOLD.format(30))
+    process, number = start_holder(claims, sys.executable, "-c", HOLD.format(30))
     start = DOMAINS.index(number)
     with Domain(start) as mine:
         assert mine.number != number
@@ -77,7 +77,7 @@ def test_a_domain_of_another_process_is_free_after_its_end(claims: ExitStack) ->
 
 
 def test_a_claim_is_refused_with_a_sentence_if_all_domains_are_in_use() -> None:
-    completed = alone(TAKE_ALL + "print(len({domain.number for domain in domains}), error)")
+    completed = run_in_separate_network(TAKE_ALL + "print(len({domain.number for domain in domains}), error)")
     assert completed.stdout == (
         "101 all 101 ROS domains of this machine are in use: stop notebooks and programs that you do not need, or try "
         "again later\n"
@@ -123,16 +123,16 @@ def test_a_users_programs_that_start_at_the_same_time_share_one_domain(claims: E
     "Your notebooks and terminals share one ROS domain",
     '`autograder ros COMMAND` and `eval "$(autograder ros)"` find it.',
 )
-def test_notebooks_terminals_and_what_they_start_are_in_the_users_one_domain(claims: ExitStack) -> None:
-    _, of_kernel = held_by(claims, sys.executable, "-c", KERNEL)
-    _, of_lab = held_by(claims, *AUTOGRADER, sys.executable, "-c", LAB)
-    _, of_terminal_of_lab = held_by(claims, *AUTOGRADER, *AUTOGRADER, sys.executable, "-c", KERNEL)
-    _, of_shell = held_by(claims, "bash", "-c", f'eval "$({" ".join(AUTOGRADER)})"; echo $ROS_DOMAIN_ID')
+def test_notebooks_terminals_and_their_programs_share_the_users_domain(claims: ExitStack) -> None:
+    _, of_kernel = start_holder(claims, sys.executable, "-c", KERNEL)
+    _, of_lab = start_holder(claims, *AUTOGRADER, sys.executable, "-c", LAB)
+    _, of_terminal_of_lab = start_holder(claims, *AUTOGRADER, *AUTOGRADER, sys.executable, "-c", KERNEL)
+    _, of_shell = start_holder(claims, "bash", "-c", f'eval "$({" ".join(AUTOGRADER)})"; echo $ROS_DOMAIN_ID')
     assert {of_kernel, of_lab, of_terminal_of_lab, of_shell} == {of_kernel}
 
 
 def test_a_command_keeps_the_domain_for_as_long_as_it_runs(claims: ExitStack) -> None:
-    process, number = held_by(claims, *AUTOGRADER, sys.executable, "-c", LAB)
+    process, number = start_holder(claims, *AUTOGRADER, sys.executable, "-c", LAB)
     with Domain(DOMAINS.index(number), user=ADA) as other:
         assert other.number != number
     process.kill()
@@ -142,6 +142,6 @@ def test_a_command_keeps_the_domain_for_as_long_as_it_runs(claims: ExitStack) ->
 @pytest.mark.promise("and so does `autograder ros`")
 def test_no_command_runs_if_no_domain_is_left() -> None:
     command = [*AUTOGRADER, "echo", "ran"]
-    completed = alone(TAKE_ALL + f"import subprocess; sys.exit(subprocess.run({command}).returncode)")
+    completed = run_in_separate_network(TAKE_ALL + f"import subprocess; sys.exit(subprocess.run({command}).returncode)")
     assert (completed.returncode, completed.stdout) == (1, "")
     assert completed.stderr.startswith("ROS 2: all 101 ROS domains of this machine are in use: stop notebooks")

@@ -17,7 +17,7 @@ ROS = RosEnvironment("wheels", (Path("/venv"),), Path("/venv/lib/rclpy"))
 ROS_VARIABLES = ("ROS_", "AMENT_", "CMAKE_PREFIX", "FASTDDS_", "RCUTILS_", "RMW_", "PYTHONPATH")
 
 
-def python(code: str, **variables: str) -> subprocess.CompletedProcess[str]:
+def run_python(code: str, **variables: str) -> subprocess.CompletedProcess[str]:
     """Run code in a new Python whose only ROS variables are `variables`."""
     clean = {name: value for name, value in os.environ.items() if not name.startswith(ROS_VARIABLES)}
     return subprocess.run(
@@ -26,7 +26,7 @@ def python(code: str, **variables: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_the_wheels_of_this_virtual_environment_are_found() -> None:
-    completed = python(
+    completed = run_python(
         "from autograder.ros import find; ros = find(); print(ros.kind, *ros.prefixes); print(ros.describe())"
     )
     assert completed.stdout.splitlines() == [f"wheels {sys.prefix}", f"ROS 2 Jazzy, wheels in {sys.prefix}"], (
@@ -44,7 +44,7 @@ node = rclpy.create_node("lonely")
 print(node.get_fully_qualified_name(), rclpy.utilities.get_rmw_implementation_identifier(), os.environ["ROS_DOMAIN_ID"])
 rclpy.shutdown()
 """
-    completed = python(code)
+    completed = run_python(code)
     assert completed.stdout.split() == ["/lonely", "rmw_fastrtps_cpp", "17"], completed.stderr
 
 
@@ -55,7 +55,7 @@ from autograder.ros import activate
 activate()
 print(os.environ["ROS_LOG_DIR"], os.environ["FASTDDS_BUILTIN_TRANSPORTS"], os.environ["ROS_DISTRO"])
 """
-    completed = python(code, ROS_LOG_DIR="/chosen", FASTDDS_BUILTIN_TRANSPORTS="LARGE_DATA")
+    completed = run_python(code, ROS_LOG_DIR="/chosen", FASTDDS_BUILTIN_TRANSPORTS="LARGE_DATA")
     assert completed.stdout.split() == ["/chosen", "LARGE_DATA", "jazzy"], completed.stderr
 
 
@@ -72,7 +72,7 @@ activate(); activate()
 print(before, shutil.which("colcon"), shutil.which("ros2"))
 print(os.environ["PATH"].split(os.pathsep).count(os.path.dirname(shutil.which("colcon"))))
 """
-    completed = python(code, PATH="/usr/bin:/bin")
+    completed = run_python(code, PATH="/usr/bin:/bin")
     scripts = Path(sys.executable).parent
     assert completed.stdout.split() == ["None", str(scripts / "colcon"), str(scripts / "ros2"), "1"], completed.stderr
 
@@ -88,38 +88,38 @@ except RosError as error:
 
 
 @pytest.fixture
-def elsewhere(tmp_path: Path) -> Path:
+def foreign_rclpy(tmp_path: Path) -> Path:
     """A folder outside the virtual environment from which rclpy would be imported, as when a ROS is sourced."""
     (tmp_path / "rclpy").mkdir()
     (tmp_path / "rclpy" / "__init__.py").touch()
     return tmp_path
 
 
-def test_a_sourced_jazzy_wins_over_the_wheels(elsewhere: Path) -> None:
-    prefixes = os.pathsep.join(["/home/me/ws/install", str(elsewhere), "/opt/more"])
-    completed = python(FIND, PYTHONPATH=str(elsewhere), ROS_DISTRO="jazzy", AMENT_PREFIX_PATH=prefixes)
-    description = f"sourced ROS 2 Jazzy, sourced from {elsewhere} {elsewhere} /opt/more"
+def test_a_sourced_jazzy_wins_over_the_wheels(foreign_rclpy: Path) -> None:
+    prefixes = os.pathsep.join(["/home/me/ws/install", str(foreign_rclpy), "/opt/more"])
+    completed = run_python(FIND, PYTHONPATH=str(foreign_rclpy), ROS_DISTRO="jazzy", AMENT_PREFIX_PATH=prefixes)
+    description = f"sourced ROS 2 Jazzy, sourced from {foreign_rclpy} {foreign_rclpy} /opt/more"
     assert completed.stdout.strip() == description, completed.stderr
 
 
 @pytest.mark.parametrize(("distro", "named"), [("humble", "is humble"), ("", "of no known distribution")])
-def test_another_distribution_is_refused_by_name(elsewhere: Path, distro: str, named: str) -> None:
-    completed = python(FIND, PYTHONPATH=str(elsewhere), ROS_DISTRO=distro, AMENT_PREFIX_PATH="/opt/ros/other")
+def test_another_distribution_is_refused_by_name(foreign_rclpy: Path, distro: str, named: str) -> None:
+    completed = run_python(FIND, PYTHONPATH=str(foreign_rclpy), ROS_DISTRO=distro, AMENT_PREFIX_PATH="/opt/ros/other")
     assert completed.stdout.startswith("WrongDistroError the sourced ROS 2 "), completed.stderr
     assert named in completed.stdout
     assert "source /opt/ros/jazzy/setup.bash" in completed.stdout
 
 
-def test_a_half_sourced_jazzy_is_reported_with_its_missing_parts(elsewhere: Path) -> None:
-    completed = python(FIND, PYTHONPATH=str(elsewhere), ROS_DISTRO="jazzy")
+def test_a_half_sourced_jazzy_is_reported_with_its_missing_parts(foreign_rclpy: Path) -> None:
+    completed = run_python(FIND, PYTHONPATH=str(foreign_rclpy), ROS_DISTRO="jazzy")
     assert completed.stdout.startswith(
-        f"RosNotFoundError rclpy is at {elsewhere / 'rclpy'}, but not in AMENT_PREFIX_PATH"
+        f"RosNotFoundError rclpy is at {foreign_rclpy / 'rclpy'}, but not in AMENT_PREFIX_PATH"
     )
 
 
 def test_without_any_ros_the_message_says_what_to_do() -> None:
     hide = "import sys, autograder.ros; sys.path = [entry for entry in sys.path if 'site-packages' not in entry]\n"
-    completed = python(hide + FIND)
+    completed = run_python(hide + FIND)
     assert completed.stdout.startswith("RosNotFoundError rclpy cannot be imported: run `make setup`"), completed.stderr
 
 
@@ -147,14 +147,14 @@ def test_each_test_has_a_domain_whose_ports_linux_does_not_give_to_other_program
     assert os.environ["ROS_DOMAIN_ID"] == str(ros_domain)
 
 
-def with_ros(*command: str) -> subprocess.CompletedProcess[str]:
+def run_with_ros(*command: str) -> subprocess.CompletedProcess[str]:
     """Run a command by `autograder ros`."""
     full_command = [sys.executable, "-m", "autograder", "ros", *command]
     return subprocess.run(full_command, capture_output=True, text=True, timeout=120, cwd=ROOT)
 
 
-def test_a_command_runs_with_ros_on_and_its_exit_status_comes_back() -> None:
-    completed = with_ros("sh", "-c", 'echo "$AMENT_PREFIX_PATH"; command -v colcon; exit 7')
+def test_a_command_runs_with_ros_activated_and_its_exit_status_is_returned() -> None:
+    completed = run_with_ros("sh", "-c", 'echo "$AMENT_PREFIX_PATH"; command -v colcon; exit 7')
     prefix = find().prefixes[0]
     assert (completed.returncode, completed.stdout.split()) == (
         7,
@@ -172,19 +172,19 @@ def test_without_a_command_the_variables_are_printed_for_a_shell() -> None:
 def test_logs_go_to_stderr_in_a_terminal_and_to_stdout_in_a_notebook(monkeypatch: pytest.MonkeyPatch) -> None:
     name = "RCUTILS_LOGGING_USE_STDOUT"
     monkeypatch.delenv(name)
-    assert with_ros("sh", "-c", f"echo ${name}").stdout == "\n"
+    assert run_with_ros("sh", "-c", f"echo ${name}").stdout == "\n"
     kernel = f"import os; from autograder.notebook import ros; ros(); print(os.environ['{name}'])"
-    assert with_ros(sys.executable, "-c", kernel).stdout == "1\n"
+    assert run_with_ros(sys.executable, "-c", kernel).stdout == "1\n"
 
 
 def test_a_missing_command_is_named() -> None:
-    completed = with_ros("no-such-command")
+    completed = run_with_ros("no-such-command")
     assert (completed.returncode, completed.stderr) == (127, "no-such-command: No such file or directory\n")
 
 
-def test_no_command_runs_without_a_usable_ros(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PYTHONPATH", str(elsewhere))
+def test_no_command_runs_without_a_usable_ros(foreign_rclpy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(foreign_rclpy))
     monkeypatch.setenv("ROS_DISTRO", "rolling")
-    completed = with_ros("echo", "ran")
+    completed = run_with_ros("echo", "ran")
     assert (completed.returncode, completed.stdout) == (1, "")
     assert completed.stderr.startswith("ROS 2: the sourced ROS 2 is rolling, the course needs Jazzy")

@@ -1,4 +1,4 @@
-"""The command line of `ros2`: its verbs, what it does not cover, and its exit status."""
+"""The command line of `ros2`: its verbs, the commands that it does not cover, and its exit status."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ VERBS = [
 
 @pytest.mark.parametrize("words", [(), *((name,) for name in COVERED), *VERBS], ids=" ".join)
 def test_every_help_says_that_this_is_a_stand_in(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         parse(COMMANDS, [*words, "--help"])
-    assert ended.value.code == 0
+    assert exit_info.value.code == 0
     printed = capsys.readouterr().out
     assert printed.startswith(" ".join(["usage: ros2", *words]))
     assert "This is a stand-in for ros2cli" in printed
@@ -44,7 +44,7 @@ def test_a_command_alone_prints_its_help(words: tuple[str, ...], capsys: pytest.
     "words",
     [("bag", "record"), ("daemon", "stop"), ("component", "list"), ("topic", "delay", "/x"), ("service", "echo", "/x")],
 )
-def test_a_command_that_is_not_covered_is_named_with_the_place_where_it_works(words: tuple[str, ...]) -> None:
+def test_an_uncovered_command_is_named_with_the_installation_that_has_it(words: tuple[str, ...]) -> None:
     outcome = main(words)
     assert isinstance(outcome, str)
     command_name = " ".join(words if words[0] in COVERED else words[:1]).split(" /")[0]
@@ -56,9 +56,9 @@ def test_a_command_that_is_not_covered_is_named_with_the_place_where_it_works(wo
 def test_a_mistyped_argument_is_an_error_of_argparse(
     words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(words)
-    assert ended.value.code == 2
+    assert exit_info.value.code == 2
     assert capsys.readouterr().err.startswith("usage: ros2")
 
 

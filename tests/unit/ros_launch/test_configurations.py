@@ -89,12 +89,14 @@ def test_a_configuration_set_in_a_group_ends_with_the_group(run: Run, record: Re
     assert recorded == ["outer", "inner", "outer"]
 
 
-def test_a_group_without_scope_leaves_what_it_sets(run: Run, record: Record, recorded: list[str]) -> None:
+def test_configurations_set_in_a_group_without_scope_outlive_it(run: Run, record: Record, recorded: list[str]) -> None:
     run(GroupAction([SetLaunchConfiguration("x", "inner")], scoped=False), record(X))
     assert recorded == ["inner"]
 
 
-def test_a_group_without_forwarding_sees_only_what_it_is_given(run: Run, record: Record, recorded: list[str]) -> None:
+def test_a_group_without_forwarding_sees_only_its_own_configurations(
+    run: Run, record: Record, recorded: list[str]
+) -> None:
     y = LaunchConfiguration("y", default="unset")
     run(
         SetLaunchConfiguration("x", "outer"),

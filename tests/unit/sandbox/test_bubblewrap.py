@@ -1,4 +1,4 @@
-"""What a sandbox's command line shows, hides and allows."""
+"""The command line of a sandbox: its mounts, hidden folders, namespaces and limits."""
 
 from __future__ import annotations
 

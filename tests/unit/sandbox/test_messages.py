@@ -17,7 +17,7 @@ from autograder.run.sandbox.trees import Entry, TreeError, read_tree, survey
 FOLDER = Entry("p", "folder")
 
 
-def sent(tree: dict[Entry, bytes]) -> dict[Entry, bytes]:
+def send_and_receive(tree: dict[Entry, bytes]) -> dict[Entry, bytes]:
     ours, theirs = Pipe()
     with ours, theirs:
         send_tree(theirs, tree)
@@ -27,9 +27,9 @@ def sent(tree: dict[Entry, bytes]) -> dict[Entry, bytes]:
 
 def test_a_file_has_the_size_that_the_list_says() -> None:
     with pytest.raises(MessageError, match="more than 1 bytes"):
-        sent({Entry("a", "file", False, 1): b"more"})
+        send_and_receive({Entry("a", "file", False, 1): b"more"})
     with pytest.raises(MessageError, match="a file of 9 bytes has 4"):
-        sent({Entry("a", "file", False, 9): b"less"})
+        send_and_receive({Entry("a", "file", False, 9): b"less"})
 
 
 def test_different_trees_have_different_keys() -> None:
@@ -83,7 +83,7 @@ def test_an_absolute_link_within_a_tree_is_relative_in_its_copy(tmp_path: Path) 
     (source / "p").mkdir(parents=True)
     (source / "p" / "link").symlink_to(source / "file")
     (source / "file").write_text("there")
-    write_received(sent(read_tree(source, SOURCES)), tmp_path / "copy")
+    write_received(send_and_receive(read_tree(source, SOURCES)), tmp_path / "copy")
     assert (tmp_path / "copy" / "p" / "link").readlink() == Path("../file")
 
 

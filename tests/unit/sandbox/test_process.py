@@ -23,7 +23,7 @@ def _python(code: str, *arguments: str) -> list[str]:
     return [sys.executable, "-I", "-c", code, *arguments]
 
 
-def _until(condition: Callable[[], bool], seconds: float = LONG) -> bool:
+def _wait_until(condition: Callable[[], bool], seconds: float = LONG) -> bool:
     deadline = time.monotonic() + seconds
     pause = threading.Event()
     while not condition():
@@ -33,7 +33,7 @@ def _until(condition: Callable[[], bool], seconds: float = LONG) -> bool:
     return True
 
 
-def _alive(pid: int) -> bool:
+def _is_alive(pid: int) -> bool:
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
     except OSError:
@@ -47,7 +47,7 @@ def test_a_program_that_ends_by_itself_leaves_its_status_and_output() -> None:
 
 
 def test_output_of_a_program_can_be_read_at_once() -> None:
-    """What a program has written is in the output at once, without a wait for the watcher."""
+    """Text that a program has written is in the output at once, without a wait for the watcher."""
     code = "import os, sys\nfor n in range(3000):\n    print(n, flush=True); os.write(int(sys.argv[1]), b'x')"
     read_end, write_end = os.pipe()
     try:
@@ -64,7 +64,7 @@ def test_output_of_a_program_can_be_read_at_once() -> None:
 
 def test_a_running_program_has_neither_a_status_nor_an_exit_reason() -> None:
     with Process(_python("import signal; print('up', flush=True); signal.pause()"), Limits()) as process:
-        assert _until(lambda: process.output == "up\n")
+        assert _wait_until(lambda: process.output == "up\n")
         assert (process.exit_reason, process.returncode) == (None, None)
     assert process.exit_reason is ExitReason.KILLED
     assert process.returncode == -signal.SIGKILL
@@ -132,11 +132,11 @@ print(child.pid, flush=True)
 signal.pause()
 """
     with Process(_python(code), Limits()) as process:
-        assert _until(lambda: process.output.endswith("\n"))
+        assert _wait_until(lambda: process.output.endswith("\n"))
         child = int(process.output)
         process.signal(signal.SIGTERM)
-        assert _alive(child)
-    assert _until(lambda: not _alive(process.pid) and not _alive(child))
+        assert _is_alive(child)
+    assert _wait_until(lambda: not _is_alive(process.pid) and not _is_alive(child))
 
 
 def test_bytes_that_are_not_utf_8_are_replaced() -> None:
@@ -154,7 +154,7 @@ print(subprocess.Popen([sys.executable, "-I", "-c", "import signal; signal.pause
         assert process.wait(LONG)
         grandchild = int(process.output)
         assert process.exit_reason is ExitReason.EXITED
-        assert _alive(grandchild)
+        assert _is_alive(grandchild)
     os.kill(grandchild, signal.SIGKILL)
 
 
@@ -184,7 +184,7 @@ print(child.pid, flush=True)
 signal.pause()
 """
     with Process(_python(code), Limits()) as process:
-        assert _until(lambda: process.output.endswith("\n"))
+        assert _wait_until(lambda: process.output.endswith("\n"))
         tree = measure(process.pid)
         assert set(tree.pids) == {process.pid, int(process.output)}
         assert tree.threads == 3

@@ -18,7 +18,9 @@ MAIN, CHILD = 11, 12  # process ids, and MAIN's thread
     [(0.0, 0.6), (0.2, 0.4), (0.6, 0.0), (9.0, 0.0)],
     ids=["others had the processor", "a child had it for a part", "a child had it", "many children had many"],
 )
-def test_a_wait_counts_without_what_the_submission_s_other_processes_used(child: float, expected: float) -> None:
+def test_time_that_the_submission_s_other_processes_used_is_subtracted_from_a_wait(
+    child: float, expected: float
+) -> None:
     before = Use({MAIN: ThreadTime(1.0, 2.0)}, {MAIN: CpuTime(1.0), CHILD: CpuTime(3.0)})
     after = Use({MAIN: ThreadTime(1.3, 2.6)}, {MAIN: CpuTime(1.3), CHILD: CpuTime(3.0 + child)})
     assert max(0.0, starved(before, after)) == pytest.approx(expected)

@@ -22,7 +22,7 @@ def submission(tmp_path: Path) -> Path:
     return tmp_path / "home" / "sub"
 
 
-def meanwhile(monkeypatch: pytest.MonkeyPatch, looked_up: str, change: Callable[[], object]) -> None:
+def change_after_lookup(monkeypatch: pytest.MonkeyPatch, looked_up: str, change: Callable[[], object]) -> None:
     """Make a change right after a name of the submission has been looked up."""
     real = os.stat
 
@@ -46,7 +46,7 @@ def test_a_link_that_replaced_a_listed_file_is_not_followed(
         listed.rename(tmp_path / "away")
         listed.symlink_to(target)
 
-    meanwhile(monkeypatch, listed.name, swap)
+    change_after_lookup(monkeypatch, listed.name, swap)
     copy_submission(submission, tmp_path / "copy")
     assert (tmp_path / "copy" / "zzz").read_text() == "last"
     assert not [path for path in (tmp_path / "copy").rglob("*") if path.is_file() and "secret" in path.read_text()]

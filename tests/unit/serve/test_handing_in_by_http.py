@@ -32,7 +32,7 @@ def answer(text: str = "ada") -> bytes:
     return zipped({MANIFEST: text.encode()})
 
 
-def started(classroom: Classroom, shown: str = "everything") -> Classroom:
+def start_service(classroom: Classroom, shown: str = "everything") -> Classroom:
     classroom.settings = SETTINGS.replace("SHOWN", shown)
     classroom.start()
     classroom.wait(classroom.listens)
@@ -40,7 +40,7 @@ def started(classroom: Classroom, shown: str = "everything") -> Classroom:
 
 
 def test_an_answer_is_graded_and_its_student_alone_and_instructors_see_its_page(classroom: Classroom) -> None:
-    started(classroom)
+    start_service(classroom)
     receipt = classroom.hand_in("ada", answer())
     assert receipt.page == f"{PREFIX}feedback/{receipt.number}"
     classroom.wait_for_marks(1)
@@ -59,7 +59,7 @@ def test_an_answer_is_graded_and_its_student_alone_and_instructors_see_its_page(
 
 
 def test_the_class_and_its_results_are_for_instructors(classroom: Classroom, tmp_path: Path) -> None:
-    started(classroom)
+    start_service(classroom)
     for student in ("ada", "bob"):
         classroom.hand_in(student, answer(student))
     classroom.wait_for_marks(2)
@@ -79,10 +79,10 @@ def test_the_class_and_its_results_are_for_instructors(classroom: Classroom, tmp
         ("nothing", "Received and graded", "53"),
     ],
 )
-def test_before_it_is_due_a_student_sees_what_the_settings_say(
+def test_before_the_due_time_a_student_sees_only_what_the_settings_allow(
     classroom: Classroom, shown: str, visible: str, hidden: str
 ) -> None:
-    started(classroom, shown)
+    start_service(classroom, shown)
     number = classroom.hand_in("ada", answer()).number
     classroom.wait_for_marks(1)
     page = classroom.get("ada", f"feedback/{number}")[1]
@@ -99,7 +99,7 @@ def test_before_it_is_due_a_student_sees_what_the_settings_say(
 
 
 def test_an_invalid_hand_in_is_refused_with_a_reason_and_costs_no_try(classroom: Classroom) -> None:
-    started(classroom)
+    start_service(classroom)
     for student, assignment, data, sentence in (
         ("late", "02_nodes", answer(), "02_nodes was due at 2001-01-01 12:00. Ask your instructor."),
         ("ada", "09_assessment", answer(), "There is no such assignment here."),
@@ -120,7 +120,7 @@ def test_an_invalid_hand_in_is_refused_with_a_reason_and_costs_no_try(classroom:
 def test_an_answer_that_is_too_large_is_refused_before_all_of_it_is_read(
     classroom: Classroom, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    started(classroom)
+    start_service(classroom)
     sent = iter(bytes(2**20) for _ in range(100))  # without a length
     url = f"{classroom.url}hand-ins/02_nodes/{KEY}"
     headers = {"Authorization": f"token {classroom.hub.token('ada')}"}
@@ -133,8 +133,8 @@ def test_an_answer_that_is_too_large_is_refused_before_all_of_it_is_read(
     assert "Nothing yet" in classroom.get("ada")[1]
 
 
-def test_the_same_key_is_the_same_hand_in(classroom: Classroom) -> None:
-    started(classroom)
+def test_a_repeated_key_is_the_same_hand_in(classroom: Classroom) -> None:
+    start_service(classroom)
     assert {classroom.hand_in("ada", answer(), KEY).number for _ in range(3)} == {1}
     assert classroom.hand_in("bob", answer(), KEY).number == 2  # keys are a student's own
     with pytest.raises(HandInError, match="This key is that of another hand-in"):
@@ -153,7 +153,7 @@ def test_students_take_turns_however_much_one_of_them_hands_in(classroom: Classr
     assert order.read_text().split() == ["ada", "bob", "cleo", "ada", "bob", "ada", "ada"]
 
 
-def logged_in(classroom: Classroom, user: str) -> tuple[urllib.request.OpenerDirector, str]:
+def log_in(classroom: Classroom, user: str) -> tuple[urllib.request.OpenerDirector, str]:
     """Log a user in by the hub's form; return the browser, and the page to which it is sent back."""
     jar = http.cookiejar.CookieJar()
     browser = urllib.request.build_opener(urllib.request.HTTPCookieProcessor(jar))
@@ -168,23 +168,23 @@ def logged_in(classroom: Classroom, user: str) -> tuple[urllib.request.OpenerDir
 
 
 def test_a_browser_is_sent_to_the_login_of_the_hub_and_back(classroom: Classroom) -> None:
-    started(classroom)
+    start_service(classroom)
     classroom.hand_in("ada", answer())
-    browser, page = logged_in(classroom, "ada")
+    browser, page = log_in(classroom, "ada")
     assert "<h1>Handed in</h1>" in page
     with pytest.raises(urllib.error.HTTPError, match="403"):  # a cookie does not authorise a hand-in
         browser.open(urllib.request.Request(f"{classroom.url}hand-ins/02_nodes/{KEY}", answer(), method="PUT"))
 
 
 def test_an_instructor_can_have_a_class_graded_again(classroom: Classroom) -> None:
-    started(classroom)
+    start_service(classroom)
     order = classroom.folder / serving.ORDER
     for student in ("ada", "bob"):
         classroom.hand_in(student, answer(student))
     classroom.wait_for_marks(2)
     address = f"{classroom.url}class/02_nodes"
     assert ask(f"{address}/regrade", classroom.hub.token("ada"), "POST", b"")[0] == 403
-    browser, _ = logged_in(classroom, "grace")
+    browser, _ = log_in(classroom, "grace")
     with pytest.raises(urllib.error.HTTPError, match="403"):  # a form of another page
         browser.open(f"{address}/regrade", b"")
     assert len(order.read_text().split()) == 2

@@ -1,7 +1,7 @@
 """The service is killed at any instant, and started again: each answer has one mark, and none is lost.
 
-An instant is a line of the service's own code, in whichever thread. Students hand in all the while, and hand in again
-under the same key if no reply came.
+An instant is a line of the service's own code, in any thread. Students keep handing in, and repeat a hand-in with the
+same key if no reply came.
 """
 
 from __future__ import annotations

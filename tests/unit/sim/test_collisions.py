@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from sim import BOX_NAMES, Command, Mover, Pose, RobotSpec, Simulation, State, World, box, clearance, start, step
 from sim.engine import shapes
 from sim.engine.index import layout
-from tests.unit.sim.worlds import ENGINES, at, random_world
+from tests.unit.sim.worlds import ENGINES, random_world, simulation_at
 
 ROOM = World.from_segments(box(4.0, 3.0), segment_names=BOX_NAMES)
 SQUARE = ((-0.15, -0.1), (0.15, -0.1), (0.15, 0.1), (-0.15, 0.1))
@@ -26,7 +26,7 @@ FAST: dict[str, Any] = {
 }
 
 
-def through(simulation: Simulation, command: Command, seconds: float, dt: float = 0.1) -> list[State]:
+def drive(simulation: Simulation, command: Command, seconds: float, dt: float = 0.1) -> list[State]:
     states = [start(simulation)]
     for _ in range(round(seconds / dt)):
         states.append(step(simulation, states[-1], command, dt))
@@ -36,8 +36,8 @@ def through(simulation: Simulation, command: Command, seconds: float, dt: float 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("footprint", [None, SQUARE])
 def test_a_robot_stops_at_a_wall_and_the_contact_is_recorded_once(engine: str, footprint: Any) -> None:
-    subject = at(Pose(), ROOM, engine, footprint=footprint)
-    states = through(subject, Command(0.5, 0.0), 6.0)
+    subject = simulation_at(Pose(), ROOM, engine, footprint=footprint)
+    states = drive(subject, Command(0.5, 0.0), 6.0)
     robot = states[-1].robots[0]
     reach = 0.15 if footprint else 0.105
     assert robot.pose.x == pytest.approx(2.0 - reach, abs=1e-5)
@@ -55,8 +55,8 @@ def test_a_robot_stops_at_a_wall_and_the_contact_is_recorded_once(engine: str, f
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_robot_can_turn_away_and_back_off_from_a_wall(engine: str) -> None:
-    subject = at(Pose(1.8, 0.0), ROOM, engine)
-    blocked = through(subject, Command(0.5, 0.0), 1.0)[-1]
+    subject = simulation_at(Pose(1.8, 0.0), ROOM, engine)
+    blocked = drive(subject, Command(0.5, 0.0), 1.0)[-1]
     turned = step(subject, blocked, Command(0.0, 1.0), 0.5)
     assert turned.robots[0].pose.theta == pytest.approx(0.5, abs=0.1)
     back = step(subject, blocked, Command(-0.5, 0.0), 0.4)
@@ -67,11 +67,11 @@ def test_a_robot_can_turn_away_and_back_off_from_a_wall(engine: str) -> None:
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("footprint", [None, SQUARE])
 def test_a_sliding_robot_keeps_the_part_of_its_motion_along_the_wall(engine: str, footprint: Any) -> None:
-    subject = at(Pose(0.0, 1.0, math.pi / 4), ROOM, engine, on_collision="slide", footprint=footprint)
-    robot = through(subject, Command(0.4, 0.0), 4.0)[-1].robots[0]
+    subject = simulation_at(Pose(0.0, 1.0, math.pi / 4), ROOM, engine, on_collision="slide", footprint=footprint)
+    robot = drive(subject, Command(0.4, 0.0), 4.0)[-1].robots[0]
     assert robot.pose.x > 0.8
     assert robot.velocity.linear == 0.4
-    corner = through(replace(subject, engine="numba"), Command(0.4, 0.0), 20.0)[-1]
+    corner = drive(replace(subject, engine="numba"), Command(0.4, 0.0), 20.0)[-1]
     assert clearance(subject, corner).distance > 0.0
     assert corner.robots[0].pose.x > 1.8
 
@@ -111,17 +111,17 @@ def test_no_robot_enters_or_jumps_a_wall_at_any_speed(
 
 
 def crosses(a: Pose, b: Pose, wall: list[float]) -> bool:
-    def left(px: float, py: float, qx: float, qy: float, x: float, y: float) -> bool:
+    def is_left(px: float, py: float, qx: float, qy: float, x: float, y: float) -> bool:
         return (qx - px) * (y - py) - (qy - py) * (x - px) > 0
 
     x1, y1, x2, y2 = wall
-    apart = left(x1, y1, x2, y2, a.x, a.y) != left(x1, y1, x2, y2, b.x, b.y)
-    return apart and left(a.x, a.y, b.x, b.y, x1, y1) != left(a.x, a.y, b.x, b.y, x2, y2)
+    apart = is_left(x1, y1, x2, y2, a.x, a.y) != is_left(x1, y1, x2, y2, b.x, b.y)
+    return apart and is_left(a.x, a.y, b.x, b.y, x1, y1) != is_left(a.x, a.y, b.x, b.y, x2, y2)
 
 
 def test_a_thin_wall_is_not_jumped_at_20_metres_a_second() -> None:
     world = World.from_segments([[1.0, -1.0, 1.0, 1.0]])
-    subject = at(Pose(), world, **FAST)
+    subject = simulation_at(Pose(), world, **FAST)
     state = step(subject, start(subject), Command(20.0, 0.0), 0.5)
     assert state.robots[0].pose.x == pytest.approx(1.0 - 0.105, abs=1e-5)
 
@@ -143,8 +143,8 @@ def test_robots_collide_with_each_other() -> None:
 def test_a_mover_that_runs_into_a_robot_is_a_collision_and_the_robot_can_drive_away(engine: str) -> None:
     mover = Mover(((1.0, 0.0), (-1.0, 0.0)), radius=0.2, speed=0.5, phase=0.0, name="cart")
     world = World.from_segments(box(4.0, 3.0), movers=[mover])
-    subject = at(Pose(), world, engine)
-    states = through(subject, Command(), 2.0)
+    subject = simulation_at(Pose(), world, engine)
+    states = drive(subject, Command(), 2.0)
     assert [event.what for state in states for event in state.events] == ["robot met cart at 0.00 m/s"]
     assert clearance(subject, states[-1]).distance < 0.0
     assert clearance(subject, states[-1]).what == "cart"
@@ -154,9 +154,9 @@ def test_a_mover_that_runs_into_a_robot_is_a_collision_and_the_robot_can_drive_a
 
 
 def test_a_robot_that_starts_inside_a_wall_can_get_out() -> None:
-    subject = at(Pose(1.95, 0.0), ROOM)
+    subject = simulation_at(Pose(1.95, 0.0), ROOM)
     assert clearance(subject, start(subject)).distance == pytest.approx(0.05 - 0.105)
-    out = through(subject, Command(-0.5, 0.0), 1.0)[-1]
+    out = drive(subject, Command(-0.5, 0.0), 1.0)[-1]
     assert clearance(subject, out).distance > 0.0
 
 
@@ -169,11 +169,11 @@ def test_clearance_names_the_nearest_thing_and_where_it_is() -> None:
         (Pose(1.5, 0.0), "east wall", 0.395, (2.0, 0.0)),
         (Pose(-1.0, 0.5), "post", 0.145, (-1.0, 0.75)),
     ):
-        subject = at(pose, world)
+        subject = simulation_at(pose, world)
         nearest = clearance(subject, start(subject))
         assert (nearest.what, nearest.distance) == (what, pytest.approx(distance))
         assert (nearest.x, nearest.y) == pytest.approx(point)
-    unnamed = at(Pose(0.0, 1.0), World.from_segments(box(4.0, 3.0)))
+    unnamed = simulation_at(Pose(0.0, 1.0), World.from_segments(box(4.0, 3.0)))
     assert clearance(unnamed, start(unnamed)).what == "wall 2"
 
 

@@ -39,7 +39,7 @@ from sim import (
 from sim.engine import arrays, engine, loops, motion, shapes, traverse
 from sim.engine.index import grid_of, layout
 from sim.scene import beams_of
-from tests.unit.sim.worlds import ENGINES, FULL_TURN, at, random_pose, random_world, wander
+from tests.unit.sim.worlds import ENGINES, FULL_TURN, random_pose, random_world, simulation_at, wander
 
 SQUARE = ((-0.15, -0.1), (0.15, -0.1), (0.15, 0.1), (-0.15, 0.1))
 # The hash of the scans of `golden`, the same on every machine.
@@ -104,7 +104,7 @@ def test_both_engines_cast_the_same_fans_of_beams(lidar: LidarSpec) -> None:
         pose = random_pose(random)
         if number % 3 == 0:  # in line with walls, at beams through corners
             pose = Pose(float(round(pose.x)), float(round(pose.y)), 0.0)
-        ranges = [cast(at(pose, world, name), pose, lidar) for name in ENGINES]
+        ranges = [cast(simulation_at(pose, world, name), pose, lidar) for name in ENGINES]
         np.testing.assert_array_equal(ranges[0], ranges[1])
 
 
@@ -114,7 +114,7 @@ def test_single_beams_and_fans_agree_bit_for_bit() -> None:
     walls, beams = layout(world.segments), beams_of(FULL_TURN)
     for _ in range(20):
         pose = random_pose(random)
-        fan = cast(at(pose, world), pose, FULL_TURN)
+        fan = cast(simulation_at(pose, world), pose, FULL_TURN)
         origins = np.tile([pose.x, pose.y], (FULL_TURN.beams, 1))
         for name in ENGINES:
             singles = engine(name).rays(walls, world.circles.copy(), origins, directions(pose, FULL_TURN))  # type: ignore[arg-type]
@@ -129,7 +129,8 @@ def test_leaving_out_walls_out_of_range_does_not_change_a_scan() -> None:
     for _ in range(40):
         pose = random_pose(random, 30.0)
         near, far = (
-            cast(at(pose, world, lidar=lidar), pose, lidar) for lidar in (replace(FULL_TURN, range_max=3.0), FULL_TURN)
+            cast(simulation_at(pose, world, lidar=lidar), pose, lidar)
+            for lidar in (replace(FULL_TURN, range_max=3.0), FULL_TURN)
         )
         np.testing.assert_array_equal(near, np.where(far > 3.0, np.inf, far))
 
@@ -137,10 +138,10 @@ def test_leaving_out_walls_out_of_range_does_not_change_a_scan() -> None:
 @pytest.mark.parametrize("walls", [301, 3000])
 def test_the_grid_does_not_change_a_bit_of_a_scan(walls: int) -> None:
     world = random_world(3, walls=walls, size=30.0)
-    assert at(Pose(), world, "numba").scene.grid is not None
-    assert at(Pose(), world, "numpy").scene.grid is None
+    assert simulation_at(Pose(), world, "numba").scene.grid is not None
+    assert simulation_at(Pose(), world, "numpy").scene.grid is None
     random = np.random.default_rng(4)
-    simulations = [at(Pose(), world, name) for name in ENGINES]
+    simulations = [simulation_at(Pose(), world, name) for name in ENGINES]
     for number in range(60):
         pose = random_pose(random, 34.0)  # from outside, too
         if number % 3 == 0:

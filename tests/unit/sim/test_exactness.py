@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from sim import LidarSpec, Pose, World, cast, directions
 from tests.unit.sim.oracle import extended, rational, rational_disc
-from tests.unit.sim.worlds import ENGINES, FULL_TURN, at, random_pose, random_world
+from tests.unit.sim.worlds import ENGINES, FULL_TURN, random_pose, random_world, simulation_at
 
 TOLERANCE = 1e-12
 numbers = st.floats(-8, 8).map(lambda value: value if abs(value) >= 1e-50 else 0.0)
@@ -22,14 +22,14 @@ points = st.tuples(small, small) | st.tuples(numbers, numbers)
 walls = st.lists(st.tuples(points, points).map(lambda ends: (*ends[0], *ends[1])), min_size=1, max_size=6)
 
 
-def compare(scans: int, seed: int, engine: str) -> float:
+def largest_error(scans: int, seed: int, engine: str) -> float:
     """Cast scans in random worlds, assert that hits and misses agree, and return the largest error."""
     random = np.random.default_rng(seed)
     worst = 0.0
     for number in range(scans):
         if number % 100 == 0:
             world = random_world(int(random.integers(1 << 30)), walls=20)
-            simulation = at(Pose(), world, engine)
+            simulation = simulation_at(Pose(), world, engine)
         pose = random_pose(random)
         ranges = cast(simulation, pose, FULL_TURN)
         truth = extended((pose.x, pose.y), directions(pose, FULL_TURN), world.segments, world.circles)
@@ -42,15 +42,15 @@ def compare(scans: int, seed: int, engine: str) -> float:
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_sample_of_beams_agrees_with_extended_precision(engine: str) -> None:
-    assert compare(60, 1, engine) <= TOLERANCE
+    assert largest_error(60, 1, engine) <= TOLERANCE
 
 
 @pytest.mark.nightly
 def test_a_million_beams_agree_with_extended_precision() -> None:
-    assert compare(2800, 2, "numba") <= TOLERANCE
+    assert largest_error(2800, 2, "numba") <= TOLERANCE
 
 
-def check(origin: tuple[float, float], yaw: float, segments: list[tuple[float, float, float, float]]) -> None:
+def check_fan(origin: tuple[float, float], yaw: float, segments: list[tuple[float, float, float, float]]) -> None:
     """Compare a fan of beams with rational arithmetic in both engines."""
     world = World.from_segments(segments)
     lidar = LidarSpec(beams=8, angle_increment=math.tau / 8, range_min=0.0, range_max=50.0)
@@ -58,7 +58,7 @@ def check(origin: tuple[float, float], yaw: float, segments: list[tuple[float, f
     beam_directions = directions(pose, lidar)
     truth = [rational(origin, (float(x), float(y)), world.segments.tolist()) for x, y in beam_directions]
     for engine in ENGINES:
-        ranges = cast(at(pose, world, engine), pose, lidar)
+        ranges = cast(simulation_at(pose, world, engine), pose, lidar)
         for beam, (measured, exact) in enumerate(zip(ranges.tolist(), truth, strict=True)):
             if exact is None or exact > 50:
                 assert measured == math.inf, (
@@ -81,7 +81,7 @@ def check(origin: tuple[float, float], yaw: float, segments: list[tuple[float, f
 def test_beams_hit_walls_where_rational_arithmetic_says(
     origin: tuple[float, float], yaw: float, segments: list[tuple[float, float, float, float]]
 ) -> None:
-    check(origin, yaw, segments)
+    check_fan(origin, yaw, segments)
 
 
 @settings(deadline=None, max_examples=150)
@@ -98,7 +98,7 @@ def test_walls_that_a_beam_touches_or_runs_along_are_decided_exactly(
             py = math.nextafter(py, math.copysign(math.inf, steps))
         return px, py
 
-    check(origin, yaw, [(*beside(near, left), *beside(far, right))])
+    check_fan(origin, yaw, [(*beside(near, left), *beside(far, right))])
 
 
 @pytest.mark.slow
@@ -117,7 +117,7 @@ def test_no_beam_slips_through_a_closed_outline_at_its_corners(
         lidar = LidarSpec(beams=1, range_min=0.0, range_max=100.0)
         truth = rational(origin, tuple(directions(Pose(*origin, yaw), lidar)[0].tolist()), world.segments.tolist())  # type: ignore[arg-type]
         for engine in ENGINES:
-            measured = cast(at(Pose(*origin, yaw), world, engine), Pose(*origin, yaw), lidar)[0]
+            measured = cast(simulation_at(Pose(*origin, yaw), world, engine), Pose(*origin, yaw), lidar)[0]
             assert (measured < math.inf) == (truth is not None)
 
 
@@ -133,7 +133,7 @@ def test_a_beam_tangent_to_a_pillar_or_nearly_is_measured_to_a_picometre(
     circle = (pose.x + distance * x - beside * y, pose.y + distance * y + beside * x, radius)
     truth = rational_disc((pose.x, pose.y), (x, y), circle)
     for engine in ENGINES:
-        measured = cast(at(pose, World.from_segments([], circles=[circle]), engine), pose, lidar)[0]
+        measured = cast(simulation_at(pose, World.from_segments([], circles=[circle]), engine), pose, lidar)[0]
         assert measured == math.inf if truth is None else abs(measured - truth) <= TOLERANCE
 
 
@@ -143,4 +143,4 @@ def test_a_robot_inside_a_wall_or_a_pillar_measures_only_too_close(engine: str) 
         World.from_segments([[-1.0, 0.0, 1.0, 0.0]]),
         World.from_segments([], circles=[[0.1, 0.1, 0.5]]),
     ):
-        assert (cast(at(Pose(), world, engine), Pose(), FULL_TURN) <= 1e-300).all()
+        assert (cast(simulation_at(Pose(), world, engine), Pose(), FULL_TURN) <= 1e-300).all()

@@ -33,12 +33,12 @@ from sim import (
     start,
     step,
 )
-from tests.unit.sim.worlds import ENGINES, at, random_world
+from tests.unit.sim.worlds import ENGINES, random_world, simulation_at
 
 ROOM = World.from_segments(box(4.0, 3.0))
 
 
-def look(simulation: Simulation, state: State | None = None, robot: str | None = None) -> Scan:
+def scan_of(simulation: Simulation, state: State | None = None, robot: str | None = None) -> Scan:
     scan = observe(simulation, state or start(simulation), robot)
     assert scan is not None
     return scan
@@ -46,7 +46,7 @@ def look(simulation: Simulation, state: State | None = None, robot: str | None =
 
 @pytest.mark.parametrize("lidar", [LDS_01, RPLIDAR_A1, UTM_30LX])
 def test_a_preset_fills_every_field_of_a_laserscan(lidar: LidarSpec) -> None:
-    scan = look(at(Pose(), ROOM, lidar=lidar))
+    scan = scan_of(simulation_at(Pose(), ROOM, lidar=lidar))
     assert scan.frame_id == "laser"
     assert scan.stamp_ns == 0
     assert scan.ranges.dtype == scan.intensities.dtype == np.float32
@@ -61,7 +61,7 @@ def test_a_preset_fills_every_field_of_a_laserscan(lidar: LidarSpec) -> None:
 
 
 def test_the_lds_01_starts_straight_ahead_and_never_doubles_a_beam() -> None:
-    scan = look(at(Pose(), ROOM, lidar=LDS_01))
+    scan = scan_of(simulation_at(Pose(), ROOM, lidar=LDS_01))
     assert scan.ranges[0] == 2.0  # 2 m to the east wall
     assert scan.ranges[90] == 1.5
     assert (LDS_01.beams, LDS_01.angle_min) == (360, 0.0)
@@ -69,7 +69,7 @@ def test_the_lds_01_starts_straight_ahead_and_never_doubles_a_beam() -> None:
 
 
 def test_the_utm_30lx_covers_270_degrees_with_1081_beams_and_looks_ahead_in_the_middle() -> None:
-    scan = look(at(Pose(), ROOM, lidar=UTM_30LX))
+    scan = scan_of(simulation_at(Pose(), ROOM, lidar=UTM_30LX))
     assert math.isclose(scan.angle_max - scan.angle_min, math.radians(270))
     assert scan_angles(scan)[540] == pytest.approx(0.0, abs=1e-12)
     assert scan.ranges[540] == 2.0
@@ -79,7 +79,7 @@ def test_the_utm_30lx_covers_270_degrees_with_1081_beams_and_looks_ahead_in_the_
 def test_ranges_follow_rep_117(engine: str) -> None:
     lidar = LidarSpec(beams=4, angle_increment=math.tau / 4, range_min=0.5, range_max=3.0)
     world = World.from_segments([[0.2, -1, 0.2, 1], [-1, 1, 1, 1], [-9, -1, -9, 1], [-1, -3.0, 1, -3.0]])
-    ranges = look(at(Pose(), world, engine, lidar)).ranges
+    ranges = scan_of(simulation_at(Pose(), world, engine, lidar)).ranges
     assert ranges[0] == -np.inf  # 0.2 m ahead: too close to measure
     assert ranges[1] == 1.0
     assert ranges[2] == np.inf  # 9 m behind: no return
@@ -87,27 +87,27 @@ def test_ranges_follow_rep_117(engine: str) -> None:
 
 
 def test_a_lost_beam_is_nan_and_returns_nothing() -> None:
-    scan = look(at(Pose(), ROOM, lidar=replace(LDS_01, dropout=0.3)))
+    scan = scan_of(simulation_at(Pose(), ROOM, lidar=replace(LDS_01, dropout=0.3)))
     lost = np.isnan(scan.ranges)
     assert 60 < lost.sum() < 160
     assert (scan.intensities[lost] == 0.0).all()
 
 
 def test_intensities_fall_with_the_distance_and_are_empty_where_the_lidar_has_none() -> None:
-    scan = look(at(Pose(), World.from_segments(box(4.0, 30.0)), lidar=LDS_01))
+    scan = scan_of(simulation_at(Pose(), World.from_segments(box(4.0, 30.0)), lidar=LDS_01))
     assert scan.intensities[0] == np.float32(1000 / (1 + 2.0**2))
     assert scan.intensities[90] == 0.0  # no return
-    assert len(look(at(Pose(), ROOM, lidar=replace(LDS_01, intensities=False))).intensities) == 0
+    assert len(scan_of(simulation_at(Pose(), ROOM, lidar=replace(LDS_01, intensities=False))).intensities) == 0
 
 
 def test_noise_is_gaussian_of_the_given_size_and_new_at_each_tick() -> None:
     lidar = replace(UTM_30LX, noise=0.03)
-    noisy, exact = at(Pose(), ROOM, lidar=lidar), at(Pose(), ROOM, lidar=UTM_30LX)
+    noisy, exact = simulation_at(Pose(), ROOM, lidar=lidar), simulation_at(Pose(), ROOM, lidar=UTM_30LX)
     state = start(noisy)
-    truth = look(exact).ranges.astype(float)
+    truth = scan_of(exact).ranges.astype(float)
     errors = []
     for _ in range(20):
-        errors.append(look(noisy, state).ranges - truth)
+        errors.append(scan_of(noisy, state).ranges - truth)
         state = step(noisy, state)
     flat = np.concatenate(errors)
     assert abs(flat.mean()) < 4 * 0.03 / math.sqrt(len(flat))
@@ -120,18 +120,18 @@ def test_noise_depends_on_seed_and_robot() -> None:
     robots = (RobotSpec(name="a", lidar=lidar), RobotSpec(name="b", lidar=lidar, start=Pose(1.0, 0.5)))
     first, second = (Simulation(ROOM, robots, seed=seed) for seed in (1, 2))
     noise = [
-        look(subject, robot=name).ranges - look(at(pose, ROOM, lidar=LDS_01)).ranges
+        scan_of(subject, robot=name).ranges - scan_of(simulation_at(pose, ROOM, lidar=LDS_01)).ranges
         for subject in (first, second)
         for name, pose in (("a", Pose()),)
     ]
     assert not np.array_equal(noise[0], noise[1])
     alone = Simulation(ROOM, (replace(robots[1], start=Pose()),), seed=1)
-    assert not np.array_equal(look(alone).ranges, look(Simulation(ROOM, robots[:1], seed=1)).ranges)
+    assert not np.array_equal(scan_of(alone).ranges, scan_of(Simulation(ROOM, robots[:1], seed=1)).ranges)
 
 
 def test_a_lidar_is_mounted_at_its_own_frame() -> None:
     mount = Pose(0.5, 0.25, math.pi / 2)
-    scan = look(at(Pose(0.0, 0.0, math.pi / 2), ROOM, lidar=replace(LDS_01, mount=mount)))
+    scan = scan_of(simulation_at(Pose(0.0, 0.0, math.pi / 2), ROOM, lidar=replace(LDS_01, mount=mount)))
     # the robot looks north: its lidar is 0.25 m west and 0.5 m north of it, and looks west
     assert scan.ranges[0] == pytest.approx(2.0 - 0.25)
     assert scan.ranges[270] == pytest.approx(1.5 - 0.5)
@@ -145,7 +145,7 @@ def test_lidars_see_the_other_robots_and_the_movers() -> None:
         RobotSpec(name="b", start=Pose(1.5, 0.0), radius=0.25),
         RobotSpec(name="c", start=Pose(-1.5, 0.0), footprint=square),
     )
-    ranges = look(Simulation(world, robots), robot="a").ranges
+    ranges = scan_of(Simulation(world, robots), robot="a").ranges
     assert ranges[0] == 1.25
     assert ranges[90] == 1.5
     assert ranges[180] == pytest.approx(1.3)
@@ -153,7 +153,7 @@ def test_lidars_see_the_other_robots_and_the_movers() -> None:
 
 
 def test_a_failed_lidar_sends_no_scan() -> None:
-    subject = at(Pose(), ROOM, faults=Faults(dead=(Window(0.1, 0.2),)))
+    subject = simulation_at(Pose(), ROOM, faults=Faults(dead=(Window(0.1, 0.2),)))
     state = start(subject)
     sent = []
     for _ in range(5):
@@ -163,13 +163,13 @@ def test_a_failed_lidar_sends_no_scan() -> None:
 
 
 def test_a_frozen_lidar_repeats_one_scan_with_new_stamps() -> None:
-    subject = at(
+    subject = simulation_at(
         Pose(), random_world(1, movers=2), lidar=replace(LDS_01, noise=0.01), faults=Faults(frozen=(Window(0.1, 0.3),))
     )
     states = [start(subject)]
     for _ in range(4):
         states.append(step(subject, states[-1], Command(0.3, 0.4), 0.1))
-    scans = [look(subject, state) for state in states]
+    scans = [scan_of(subject, state) for state in states]
     np.testing.assert_array_equal(scans[1].ranges, scans[2].ranges)
     assert [scan.stamp_ns for scan in scans] == [0, 100_000_000, 200_000_000, 300_000_000, 400_000_000]
     assert not np.array_equal(scans[0].ranges, scans[1].ranges)
@@ -178,42 +178,42 @@ def test_a_frozen_lidar_repeats_one_scan_with_new_stamps() -> None:
 
 def test_a_failed_sector_gives_nan_also_across_angle_zero() -> None:
     sector = DeadSector(math.radians(-10.5), math.radians(20.5), Window(0.0, 1.0))
-    subject = at(Pose(), ROOM, lidar=LDS_01, faults=Faults(sectors=(sector,)))
-    lost = np.flatnonzero(np.isnan(look(subject).ranges)).tolist()
+    subject = simulation_at(Pose(), ROOM, lidar=LDS_01, faults=Faults(sectors=(sector,)))
+    lost = np.flatnonzero(np.isnan(scan_of(subject).ranges)).tolist()
     assert lost == [*range(21), *range(350, 360)]
     later = step(subject, start(subject), dt=1.0)
-    assert not np.isnan(look(subject, later).ranges).any()
+    assert not np.isnan(scan_of(subject, later).ranges).any()
     everything = DeadSector(0.0, math.tau)
-    assert np.isnan(look(at(Pose(), ROOM, faults=Faults(sectors=(everything,)))).ranges).all()
+    assert np.isnan(scan_of(simulation_at(Pose(), ROOM, faults=Faults(sectors=(everything,)))).ranges).all()
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_skewed_scan_takes_each_beam_from_where_the_robot_was(engine: str) -> None:
     """At 0.5 m/s and 5 scans a second, the first beam is measured almost 0.1 m before the last one."""
     lidar = replace(LDS_01, skew=True)
-    subject = at(Pose(0.5, 0.0), World.from_segments(box(6.0, 4.0)), engine, lidar)
+    subject = simulation_at(Pose(0.5, 0.0), World.from_segments(box(6.0, 4.0)), engine, lidar)
     state = step(subject, start(subject), Command(0.5, 0.0), 0.4)
-    scan = look(subject, state)
+    scan = scan_of(subject, state)
     sweep = 359 * scan.time_increment
     assert scan.time_increment == pytest.approx(0.2 / 360)
     assert scan.stamp_ns == state.time_ns - round(sweep * 1e9)
     assert scan.ranges[0] == pytest.approx(3.0 - state.robots[0].pose.x + 0.5 * sweep, abs=1e-6)
-    still = at(state.robots[0].pose, subject.world, engine, LDS_01)
-    assert scan.ranges[359] == look(still).ranges[359]
+    still = simulation_at(state.robots[0].pose, subject.world, engine, LDS_01)
+    assert scan.ranges[359] == scan_of(still).ranges[359]
 
 
 def test_a_skewed_scan_is_the_same_from_both_engines_while_turning() -> None:
     bits = set()
     for engine in ENGINES:
-        subject = at(Pose(), random_world(4), engine, replace(LDS_01, skew=True))
+        subject = simulation_at(Pose(), random_world(4), engine, replace(LDS_01, skew=True))
         state = step(subject, start(subject), Command(0.4, 1.5), 0.5)
-        bits.add(look(subject, state).ranges.tobytes())
+        bits.add(scan_of(subject, state).ranges.tobytes())
     assert len(bits) == 1
 
 
 @given(st.integers(0, 359))
 def test_scan_angles_put_zero_ahead_and_left_positive(beam: int) -> None:
-    angle = scan_angles(look(at(Pose(), ROOM, lidar=LDS_01)))[beam]
+    angle = scan_angles(scan_of(simulation_at(Pose(), ROOM, lidar=LDS_01)))[beam]
     assert -math.pi <= angle < math.pi
     assert math.isclose(math.cos(angle), math.cos(math.radians(beam)), abs_tol=1e-9)
     assert math.isclose(math.sin(angle), math.sin(math.radians(beam)), abs_tol=1e-9)

@@ -37,7 +37,7 @@ from sim import (
 from tests.unit.sim.worlds import ENGINES, random_world, wander
 
 
-def everything(engine: str = "numpy") -> Simulation:
+def full_simulation(engine: str = "numpy") -> Simulation:
     faults = Faults((Window(1.0, 1.5),), (Window(2.0, 3.0),), (DeadSector(0.1, 0.4, Window(0.5)),))
     square = ((-0.15, -0.1), (0.15, -0.1), (0.15, 0.1), (-0.15, 0.1))
     robots = (
@@ -49,7 +49,7 @@ def everything(engine: str = "numpy") -> Simulation:
 
 @pytest.fixture(scope="module")
 def recording() -> Recording:
-    return run(everything(), wander(4, ("a", "b")), 6.0)
+    return run(full_simulation(), wander(4, ("a", "b")), 6.0)
 
 
 @pytest.fixture
@@ -100,8 +100,8 @@ def test_a_replay_computes_every_state_again(recording: Recording, saved: Path, 
 
 
 def test_the_hash_differs_between_runs_and_not_between_engines(recording: Recording) -> None:
-    same = run(everything("numba"), wander(4, ("a", "b")), 6.0)
-    other = run(everything(), wander(5, ("a", "b")), 6.0)
+    same = run(full_simulation("numba"), wander(4, ("a", "b")), 6.0)
+    other = run(full_simulation(), wander(5, ("a", "b")), 6.0)
     assert same.sha256() == recording.sha256() != other.sha256()
 
 

@@ -38,7 +38,9 @@ def random_pose(random: np.random.Generator, size: float = 10.0) -> Pose:
     return Pose(x, y, float(random.uniform(-math.pi, math.pi)))
 
 
-def at(pose: Pose, world: World, engine: str = "numpy", lidar: LidarSpec = FULL_TURN, **robot: object) -> Simulation:
+def simulation_at(
+    pose: Pose, world: World, engine: str = "numpy", lidar: LidarSpec = FULL_TURN, **robot: object
+) -> Simulation:
     """A simulation of one robot that starts at `pose`."""
     return Simulation(world, (RobotSpec(start=pose, lidar=lidar, **robot),), engine=engine)  # type: ignore[arg-type]
 

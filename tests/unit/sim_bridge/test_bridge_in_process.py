@@ -74,7 +74,7 @@ def bridge(ros_domain: int) -> Iterator[Bridge]:
         yield running
 
 
-def until(condition: Callable[[], bool], bridge: Bridge) -> None:
+def wait_until(condition: Callable[[], bool], bridge: Bridge) -> None:
     """Wait until the bridge's thread fulfils the condition."""
     deadline = time.monotonic() + PATIENCE
     while not condition():
@@ -83,7 +83,7 @@ def until(condition: Callable[[], bool], bridge: Bridge) -> None:
 
 
 def test_the_bridge_runs_pauses_steps_and_resets(bridge: Bridge) -> None:
-    until(lambda: bridge.driver.state.time_ns > 1_000_000_000, bridge)
+    wait_until(lambda: bridge.driver.state.time_ns > 1_000_000_000, bridge)
     bridge.pause()
     paused = bridge.driver.state.time_ns
     bridge.step(0.5)

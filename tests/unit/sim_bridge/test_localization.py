@@ -69,14 +69,14 @@ def listener(ros_domain: int) -> Iterator[Listener]:
 
 
 @contextmanager
-def driven(domain: int, **settings: Any) -> Iterator[Bridge]:
+def driving_bridge(domain: int, **settings: Any) -> Iterator[Bridge]:
     """A bridge whose robot drives a curve, with odometry that drifts."""
     with Bridge(WORLD, domain_id=domain, engine="numpy", speed=2.0, **settings) as bridge:
         bridge.driver.command("robot", Command(0.3, 0.4))
         yield bridge
 
 
-def planar(transform: Any) -> np.ndarray[Any, Any]:
+def planar_matrix(transform: Any) -> np.ndarray[Any, Any]:
     """A transform as a matrix, (3, 3)."""
     position, rotation = transform.transform.translation, transform.transform.rotation
     assert rotation.z**2 + rotation.w**2 == pytest.approx(1.0)
@@ -92,7 +92,7 @@ def stamp(header: Any) -> tuple[int, int]:
 def test_a_reliable_scan_serves_reliable_and_best_effort_subscriptions(ros_domain: int, listener: Listener) -> None:
     reliable = listener.collect(LaserScan, "/scan", RELIABLE)
     best_effort = listener.collect(LaserScan, "/scan", qos_profile_sensor_data)
-    with driven(ros_domain, scan_qos="reliable"):
+    with driving_bridge(ros_domain, scan_qos="reliable"):
         listener.until(lambda: bool(reliable) and bool(best_effort))
     assert len(reliable[0].ranges) == 360
 
@@ -102,7 +102,7 @@ def test_each_scan_can_be_transformed_to_the_map_at_its_own_time(ros_domain: int
     moving, standing = listener.collect(TFMessage, "/tf", TF_QOS), listener.collect(TFMessage, "/tf_static", LATCHED)
     truth = listener.collect(Odometry, "/ground_truth", RELIABLE)
     settings = {"tf": "map", "ground_truth": True, "lidar_x": 0.1, "lidar_yaw": 0.5, "drift_linear": 0.1}
-    with driven(ros_domain, **settings):
+    with driving_bridge(ros_domain, **settings):
         listener.until(lambda: len(scans) > 3 and len(moving) > 20 and bool(standing) and len(truth) > 20)
     parents: dict[str, set[str]] = {}
     transforms_at: dict[tuple[int, int], dict[str, Any]] = {}
@@ -115,18 +115,18 @@ def test_each_scan_can_be_transformed_to_the_map_at_its_own_time(ros_domain: int
     assert known
     true_poses = {stamp(odometry.header): odometry for odometry in truth}
     laser = standing[0].transforms[0]
-    assert planar(laser)[:2, 2] == pytest.approx([0.1, 0.0])
+    assert planar_matrix(laser)[:2, 2] == pytest.approx([0.1, 0.0])
     for scan in known:
         frames = transforms_at[stamp(scan.header)]
         assert scan.header.frame_id == "laser"
-        base = planar(frames["odom"]) @ planar(frames["base_link"])
+        base = planar_matrix(frames["odom"]) @ planar_matrix(frames["base_link"])
         pose = true_poses[stamp(scan.header)].pose.pose
         assert base[:2, 2] == pytest.approx([pose.position.x, pose.position.y], abs=1e-9)
         assert true_poses[stamp(scan.header)].header.frame_id == "map"
 
 
 def test_a_late_subscription_gets_the_map(ros_domain: int, listener: Listener) -> None:
-    with driven(ros_domain, publish_map=True, map_resolution=0.1):
+    with driving_bridge(ros_domain, publish_map=True, map_resolution=0.1):
         maps = listener.collect(OccupancyGrid, "/map", LATCHED)
         listener.until(lambda: bool(maps))
     grid, (received,) = grid_of(load_world(WORLD), 0.1), maps
@@ -139,6 +139,6 @@ def test_a_late_subscription_gets_the_map(ros_domain: int, listener: Listener) -
 
 
 def test_without_the_options_only_scan_odom_and_clock_are_published(ros_domain: int) -> None:
-    with driven(ros_domain) as bridge:
+    with driving_bridge(ros_domain) as bridge:
         topics = {name for name, _ in bridge._node.get_publisher_names_and_types_by_node("simulator", "/")}
     assert topics == {"/clock", "/odom", "/scan", "/parameter_events", "/rosout"}

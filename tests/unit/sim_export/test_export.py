@@ -82,7 +82,7 @@ class _Page(HTMLParser):
         self.tags.append((tag, dict(attrs)))
 
 
-def test_a_page_holds_the_run_and_loads_nothing(recording: Recording, tmp_path: Path) -> None:
+def test_a_page_contains_the_run_and_loads_nothing(recording: Recording, tmp_path: Path) -> None:
     text = to_html(recording, tmp_path / "run.html").read_text(encoding="utf-8")
     page = _Page(text)
     addresses = [attrs[name] or "" for _, attrs in page.tags for name in ("src", "href") if name in attrs]
@@ -103,7 +103,7 @@ def test_a_name_cannot_break_out_of_the_page(tmp_path: Path) -> None:
     assert len([tag for tag, _ in _Page(text).tags if tag == "script"]) == 2
 
 
-def test_a_bag_holds_every_message_in_the_order_of_time(recording: Recording, tmp_path: Path) -> None:
+def test_a_bag_contains_every_message_in_order_of_time(recording: Recording, tmp_path: Path) -> None:
     folder = to_mcap(recording, tmp_path / "run.mcap")
     assert folder == tmp_path / "run"
     store = get_typestore(Stores.ROS2_JAZZY)

@@ -262,7 +262,7 @@ def test_an_invalid_tolerance_is_refused(tmp_path: Path, tolerance: float) -> No
         load_map(write(tmp_path), tolerance=tolerance)
 
 
-def complaint(path: Path) -> str | None:
+def load_error(path: Path) -> str | None:
     """Load a map; return the message of the WorldError, or None for a map with walls. Anything else fails."""
     try:
         world = load_map(path)
@@ -280,7 +280,7 @@ _shared = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], 
 @given(content=st.binary(max_size=300) | st.text(max_size=300).map(str.encode))
 def test_any_bytes_as_a_picture_are_a_map_or_a_world_error(tmp_path: Path, content: bytes) -> None:
     for head in (b"", b"P5\n3 3\n255\n", b"P2\n", b"\x89PNG\r\n\x1a\n"):
-        message = complaint(write(tmp_path, head + content))
+        message = load_error(write(tmp_path, head + content))
         assert message is None or "map.pgm" in message
 
 
@@ -292,7 +292,7 @@ def test_any_bytes_as_a_picture_are_a_map_or_a_world_error(tmp_path: Path, conte
     | st.sampled_from(["~", "{}", "[]", "&a", "*a", "!x", "|", "'"]),
 )
 def test_any_value_of_any_field_is_a_map_or_a_world_error(tmp_path: Path, key: str, value: str) -> None:
-    message = complaint(write(tmp_path, **{key: value}))
+    message = load_error(write(tmp_path, **{key: value}))
     assert message is None or str(tmp_path) in message
 
 
@@ -301,5 +301,5 @@ def test_any_value_of_any_field_is_a_map_or_a_world_error(tmp_path: Path, key: s
 def test_one_wrong_byte_in_a_png_is_a_map_or_a_world_error(tmp_path: Path, offset: int, byte: int) -> None:
     picture = bytearray(png(Image.fromarray(ROOM)))
     picture[offset % len(picture)] = byte
-    message = complaint(write(tmp_path, bytes(picture), name="map.png"))
+    message = load_error(write(tmp_path, bytes(picture), name="map.png"))
     assert message is None or "map.png" in message

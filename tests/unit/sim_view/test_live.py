@@ -31,17 +31,17 @@ def outside_of_grading(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("AUTOGRADER_GRADING", raising=False)
 
 
-def go(scan: Scan) -> Command:
+def drive_forward(scan: Scan) -> Command:
     return Command(0.3, 0.0)
 
 
-def paused(source: Any, controller: Any = None) -> LiveView:
+def paused_view(source: Any, controller: Any = None) -> LiveView:
     view = live(source, controller, play=False)
     assert isinstance(view, LiveView)
     return view
 
 
-async def until(condition: Callable[[], bool]) -> None:
+async def wait_until(condition: Callable[[], bool]) -> None:
     deadline = time.monotonic() + PATIENCE
     while not condition():
         assert time.monotonic() < deadline, "the condition never held"
@@ -69,7 +69,7 @@ def widgets_of(view: LiveView) -> dict[str, Any]:
 
 def test_the_view_plays_on_the_event_loop_without_blocking_it(world: World) -> None:
     async def play() -> None:
-        view = live(world, go)
+        view = live(world, drive_forward)
         assert isinstance(view, LiveView)
         ticks = 0
 
@@ -80,7 +80,7 @@ def test_the_view_plays_on_the_event_loop_without_blocking_it(world: World) -> N
                 await asyncio.sleep(0)
 
         task = asyncio.get_running_loop().create_task(other())
-        await until(lambda: view.time > 0.5)
+        await wait_until(lambda: view.time > 0.5)
         assert view.playing
         assert view.fps > 0.0
         assert ticks > 10
@@ -93,7 +93,7 @@ def test_the_view_plays_on_the_event_loop_without_blocking_it(world: World) -> N
 
 
 def test_steps_are_exact(world: World) -> None:
-    view = paused(world, go)
+    view = paused_view(world, drive_forward)
     view.step(0.1)
     view.step(0.5)
     assert view.time == pytest.approx(0.6)
@@ -101,7 +101,7 @@ def test_steps_are_exact(world: World) -> None:
 
 
 def test_a_view_can_seek_to_the_past_and_continue_from_there(world: World) -> None:
-    view = paused(world, go)
+    view = paused_view(world, drive_forward)
     view.step(2.0)
     newest = widgets_of(view)["Image"].value
     view.seek(0.5)
@@ -115,7 +115,7 @@ def test_a_view_can_seek_to_the_past_and_continue_from_there(world: World) -> No
 
 
 def test_reset_discards_the_run(world: World) -> None:
-    view = paused(world, go)
+    view = paused_view(world, drive_forward)
     first = widgets_of(view)["Image"].value
     view.step(2.0)
     view.reset()
@@ -124,7 +124,7 @@ def test_reset_discards_the_run(world: World) -> None:
 
 
 def test_the_pad_drives_until_the_robot_is_given_back_to_the_callback(world: World) -> None:
-    view = paused(world, go)
+    view = paused_view(world, drive_forward)
     view.step(1.0)
     pad = widgets_of(view)
     pad["Turn left"].click()
@@ -139,14 +139,14 @@ def test_the_pad_drives_until_the_robot_is_given_back_to_the_callback(world: Wor
 
 
 def test_without_a_callback_the_robot_cannot_be_given_back(world: World) -> None:
-    assert "Let your code drive" not in widgets_of(paused(world))
+    assert "Let your code drive" not in widgets_of(paused_view(world))
 
 
 def test_an_exception_of_the_callback_stops_time_and_is_shown_without_internal_frames(world: World) -> None:
     def broken(scan: Scan) -> Command:
         raise LookupError("no such wall")
 
-    view = paused(world, broken)
+    view = paused_view(world, broken)
     view.step(1.0)
     (shown,) = widgets_of(view)["Output"].outputs
     assert shown["name"] == "stderr"
@@ -159,14 +159,14 @@ def test_an_exception_of_the_callback_stops_time_and_is_shown_without_internal_f
 
 
 def test_a_callback_that_returns_another_type_is_an_error_with_the_right_type(world: World) -> None:
-    view = paused(world, lambda scan: 0.3)
+    view = paused_view(world, lambda scan: 0.3)
     view.step(1.0)
     assert "must return a Command or None, not float" in widgets_of(view)["Output"].outputs[0]["text"]
 
 
 def test_a_callback_gets_each_scan_once(world: World) -> None:
     stamps: list[int] = []
-    view = paused(world, lambda scan: stamps.append(scan.stamp_ns))
+    view = paused_view(world, lambda scan: stamps.append(scan.stamp_ns))
     view.step(1.0)
     view.step(0.1)
     assert stamps == [0, SECOND // 5, 2 * SECOND // 5, 3 * SECOND // 5, 4 * SECOND // 5, SECOND]
@@ -182,7 +182,7 @@ def test_a_recording_is_played_without_other_files(recording: Recording) -> None
 
 
 def test_the_slider_seeks_while_time_is_paused(world: World) -> None:
-    view = paused(world, go)
+    view = paused_view(world, drive_forward)
     view.step(2.0)
     slider = widgets_of(view)["FloatSlider"]
     assert slider.value == pytest.approx(2.0)
@@ -196,7 +196,7 @@ def test_the_view_is_a_picture_while_a_notebook_is_graded(
     monkeypatch.setenv("AUTOGRADER_GRADING", "1")
 
     async def make() -> list[Any]:
-        views = [live(source, go) for source in (world, Simulation(world), recording)]
+        views = [live(source, drive_forward) for source in (world, Simulation(world), recording)]
         assert len(asyncio.all_tasks()) == 1  # this one
         return views
 
@@ -204,7 +204,7 @@ def test_the_view_is_a_picture_while_a_notebook_is_graded(
 
 
 def test_without_an_event_loop_the_view_does_not_play(world: World) -> None:
-    view = in_other_thread(live, world, go)
+    view = in_other_thread(live, world, drive_forward)
     assert isinstance(view, LiveView)
     assert not view.playing
     assert repr(view) == "<live view of 'the lab' at 0.00 s, paused>"
@@ -218,7 +218,7 @@ def test_an_invalid_speed_is_refused(world: World, speed: float) -> None:
 
 def test_a_recording_does_not_accept_a_callback(recording: Recording) -> None:
     with pytest.raises(ValueError, match="a callback can't drive a recording"):
-        live(recording, go)
+        live(recording, drive_forward)
 
 
 def test_a_session_stops_growing_at_its_longest_time() -> None:
@@ -230,7 +230,7 @@ def test_a_session_stops_growing_at_its_longest_time() -> None:
 
 @pytest.mark.parametrize("theme", [LIGHT, DARK])
 def test_a_blitted_frame_is_the_same_as_a_fresh_one(world: World, theme: Any) -> None:
-    session = Session(Simulation(world), go)
+    session = Session(Simulation(world), drive_forward)
     session.advance(3 * SECOND)
     used = Renderer(session.simulation, theme)
     for frame in session.frames[::20]:

@@ -53,7 +53,7 @@ def words(code: str) -> Iterator[str]:
                 yield name
 
 
-def test_no_code_holds_a_fact_of_the_distribution() -> None:
+def test_no_code_states_a_fact_of_the_distribution() -> None:
     assert len(CODE) > 300
     facts = {
         str(path.relative_to(ROOT)): mentions
@@ -63,7 +63,7 @@ def test_no_code_holds_a_fact_of_the_distribution() -> None:
     assert facts == {}, "read it from autograder.ros.distribution"
 
 
-def test_no_recipe_holds_a_fact_of_the_distribution() -> None:
+def test_no_recipe_states_a_fact_of_the_distribution() -> None:
     for path in RECIPES:
         lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
         assert [line for line in lines if FACT.search(line)] == [], path

@@ -20,7 +20,7 @@ DOCUMENTS = (
     *(f"docs/{p.name}" for p in ROOT.glob("docs/*.md")),
 )
 FOLDERS = sorted(path.name for path in ROOT.iterdir() if path.is_dir())
-MADE = (".build/", ".venv", "made/")  # what a command makes
+MADE = (".build/", ".venv", "made/")  # created by commands
 MADE_PAGES = {path.name.replace("_page.py", ".md") for path in ROOT.glob("docs/*_page.py")}  # by `make docs`
 IN_A_CHAPTER = ("ws/src", "support/contract.py", "hidden/conftest.py")  # paths in a chapter's folder
 

@@ -1,4 +1,4 @@
-"""A regular expression of the grader takes steps in proportion to the text's length, whatever a student's text is."""
+"""A regular expression of the grader takes steps in proportion to the text's length, for any text of a student."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def _text(node: ast.expr) -> Any:
 
 
 @pytest.fixture(autouse=True, scope="module")
-def deep() -> Iterator[None]:
+def recursion_limit() -> Iterator[None]:
     """Raise the recursion limit, because a repeated group recurses for each repetition."""
     before = sys.getrecursionlimit()
     sys.setrecursionlimit(10_000)
@@ -97,7 +97,7 @@ def deep() -> Iterator[None]:
     sys.setrecursionlimit(before)
 
 
-def steepest(use: Use) -> tuple[float, str]:
+def steepest_growth(use: Use) -> tuple[float, str]:
     """Return the growth of the steps on the hardest text, and a short form of this text."""
 
     def steps(text: str) -> int:
@@ -121,7 +121,7 @@ USES = list(uses())
 
 @pytest.mark.parametrize("use", USES, ids=lambda use: str(use.location))
 def test_the_steps_of_a_pattern_grow_in_proportion_to_the_text(use: Use) -> None:
-    growth, text = steepest(use)
+    growth, text = steepest_growth(use)
     assert growth < STEEP, f"{use.location}: {use.pattern.pattern!r} on texts such as {text!r}"
 
 
@@ -147,7 +147,7 @@ def test_patterns_are_found_in_modules_and_in_calls() -> None:
     ],
 )
 def test_a_pattern_that_is_slow_on_some_text_is_found(pattern: str, anchored: bool) -> None:
-    growth, _ = steepest(Use("", re.compile(pattern), anchored, anchored))
+    growth, _ = steepest_growth(Use("", re.compile(pattern), anchored, anchored))
     assert growth > STEEP
 
 

@@ -53,7 +53,7 @@ def read(release: Path) -> NotebookNode:
 
 
 def write(release: Path, answer: str) -> None:
-    """Do what a student does: answer the exercise, add a cell, run one."""
+    """Act like a student: answer the exercise, add a cell, run one."""
     notebook = read(release)
     notebook.cells[2].source = answer
     notebook.cells.insert(1, new_code_cell("1 + 1", id="own", execution_count=1))

@@ -43,7 +43,7 @@ def test_every_wrong_answer_is_explained_without_naming_the_right_one(name: str)
     assert len(set(question.hints)) == 2
 
 
-def test_the_reference_holds_the_key_and_the_release_does_not() -> None:
+def test_the_reference_contains_the_key_and_the_release_does_not() -> None:
     sheet = (course_paths.SOLUTIONS / contract.SHEET).read_text()
     assert parse(sheet) == {name: question.right for name, question in QUESTIONS.items()}
     released = in_form(Chapter(course_paths.chapter(ASSIGNMENT)).read(), Form.RELEASED)

@@ -25,7 +25,7 @@ SELF_TEST = 20.0  # percent that the self-test needs
 EXACT = 1e-6  # percent: far more than adding up the legs in another order can change
 
 
-def test_no_trip_has_more_legs_than_its_message_holds() -> None:
+def test_no_trip_has_more_legs_than_fit_into_its_message() -> None:
     for seed in SEEDS:
         draw = random.Random(f"{seed}:test_trip_level")
         legs = [*(trip.legs for trip in draw_trips(draw)), *draw_too_far(draw, 20), *dict(draw_bad_legs(draw)).values()]
@@ -33,7 +33,7 @@ def test_no_trip_has_more_legs_than_its_message_holds() -> None:
         assert max(map(len, legs)) <= MAX_LEGS
 
 
-def test_some_trip_has_as_many_legs_as_its_message_holds() -> None:
+def test_some_trip_has_as_many_legs_as_fit_into_its_message() -> None:
     lengths = {len(trip.legs) for seed in range(50) for trip in draw_trips(random.Random(seed))}
     assert max(lengths) == MAX_LEGS
 

@@ -87,7 +87,7 @@ def test_constructs_that_cannot_be_rewritten_safely_are_kept() -> None:
     text = rewritten(MODULE)
     assert "return first() < second()" in text  # the order of the calls
     assert "if 0.1 <= readin_ < 10.0" in text  # a chain has no mirror image
-    assert "closest = min(nea_, default=math.inf)" in text  # an f-string holds the name
+    assert "closest = min(nea_, default=math.inf)" in text  # an f-string contains the name
     assert "def turn(left, right)" in text
 
 

@@ -1,4 +1,4 @@
-"""Each operator makes one mutation at one place, and does not change text for people."""
+"""Each operator makes one mutation in one place, and does not change text for people."""
 
 from __future__ import annotations
 
