@@ -75,7 +75,7 @@ def main() -> None:
 
     def run(*command: str) -> int:
         quiet = subprocess.DEVNULL
-        return subprocess.call(command, stdin=quiet, stdout=quiet, stderr=quiet)
+        return subprocess.call(command, cwd="/", stdin=quiet, stdout=quiet, stderr=quiet)
 
     if missing := missing_packages(headers, browser=options.browser):
         install(missing, tried, os.geteuid(), run)
