@@ -28,14 +28,14 @@ from autograder.probes.given_files import strip_licence
 
 _SCHEMA = json.loads(Path(__file__).with_name("metadata.schema.json").read_text("utf-8"))
 _METADATA = Draft202012Validator(_SCHEMA)
-WHOLE = "`course`"
+WHOLE = "`course`"  # the metadata in sentences about them
 
 
 @dataclass(frozen=True)
 class CopiedFile:
     """A reference file that a cell copies.
 
-    Its hidden functions are `hide` in the metadata, the parts of them that are hidden `parts`, its hidden lines `cut`.
+    `hidden_functions`, `hidden_parts` and `hidden_lines` are `hide`, `parts` and `cut` in the metadata.
     """
 
     source: PurePosixPath
@@ -45,7 +45,7 @@ class CopiedFile:
     hidden_parts: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
     def expected_text(self) -> str:
-        """Return the source that the cell must have. Raises CourseError if something is missing in the reference."""
+        """Return the source that the cell must have. Raises CourseError if the reference lacks a part of it."""
         text = strip_licence(read_solution(self.source))
         try:
             if self.hidden_functions:
@@ -98,13 +98,13 @@ def metadata(node: NotebookNode) -> Mapping[str, Any]:
     """Return the `course` metadata of a cell or notebook. Raises CourseError if they do not match the schema."""
     course: Mapping[str, Any] = node.metadata.get("course", {})
     if not _METADATA.is_valid(course):
-        wrong = "; ".join(sentence for _, sentence in broken_schema(course, _SCHEMA, WHOLE))
-        raise CourseError(f"the metadata are invalid: {wrong}")
+        problems = "; ".join(sentence for _, sentence in broken_schema(course, _SCHEMA, WHOLE))
+        raise CourseError(f"the metadata are invalid: {problems}")
     return course
 
 
 def broken_metadata(name: str, notebook: NotebookNode) -> Iterator[Finding]:
-    """Yield the problems in the `course` metadata of a notebook with this name, and of its cells."""
+    """Yield the problems in the `course` metadata of a notebook and its cells, with `name` as the notebook's name."""
     for cell, node in ((None, notebook), *((cell.id, cell) for cell in notebook.cells)):
         for _, sentence in broken_schema(node.metadata.get("course", {}), _SCHEMA, WHOLE):
             yield Finding(name, cell, f"the metadata are invalid: {sentence}")

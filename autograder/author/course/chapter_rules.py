@@ -16,20 +16,20 @@ from nbformat import NotebookNode
 
 from autograder import course_paths
 from autograder.author.course.cells import broken_metadata, is_graded
-from autograder.author.course.contract_rules import broken_cells, broken_holding
+from autograder.author.course.contract_rules import broken_cells, broken_coverage
 from autograder.author.course.exceptions import CourseError
-from autograder.author.course.findings import Finding
+from autograder.author.course.findings import Finding, display_path
 from autograder.author.course.mutant_rules import broken_mutants, unproven_checks
 from autograder.author.course.notebook_rules import broken_rules
 from autograder.author.course.reference_rules import broken_packages, broken_python, broken_variants
-from autograder.author.course.suite_rules import read_suite, shown
+from autograder.author.course.suite_rules import read_suite
 from autograder.author.course.sync import Chapter, find_outdated
 from autograder.author.course.tables import titles_of
 from autograder.author.course.workload import outdated_time_sentence
 from autograder.exceptions import AutograderError
 from autograder.suite import Check, Visibility, suites
 
-KINDS = (suites.VISIBLE, suites.HIDDEN)
+SUITE_KINDS = (suites.VISIBLE, suites.HIDDEN)
 
 
 @dataclass(frozen=True)
@@ -40,13 +40,13 @@ class ReadChecks:
         findings: the problems in these files.
         checks: the visible and the hidden checks, or None if they cannot be imported.
         points: the points of each group of hidden checks, or None if they cannot be imported.
-        places: file and line of each check, by `VISIBILITY ID`.
+        locations: file and line of each check, by `VISIBILITY ID`.
     """
 
     findings: tuple[Finding, ...]
     checks: tuple[Check, ...] | None
     points: dict[str, float] | None
-    places: dict[str, tuple[str, int]]
+    locations: dict[str, tuple[str, int]]
 
 
 @dataclass(frozen=True)
@@ -66,76 +66,81 @@ class ReadChapter:
 
 def read_chapter(chapter: Chapter) -> ReadChapter:
     """Read a chapter, its checks and its reference, and apply all rules to them."""
-    notebook, unreadable = _notebook(chapter)
+    notebook, findings = _read_notebook(chapter)
     folder = course_paths.CHECKS / f"ch{chapter.assignment}"
     graded = (folder / suites.HIDDEN).is_dir() or (notebook is not None and any(map(is_graded, notebook.cells)))
     read = read_checks(chapter.assignment) if graded else ReadChecks((), (), None, {})
-    name, path = chapter.notebook_path.name, shown(chapter.notebook_path)
-    problems = [*unreadable]
+    name = chapter.notebook_path.name
     if notebook is not None:
         text = chapter.notebook_path.read_text(encoding="utf-8")
-        usable = not (wrong := [*broken_metadata(name, notebook)])
-        more = _broken_notebook(chapter, notebook, read) if usable else [*wrong, *broken_rules(name, notebook)]
-        problems += [placed(each, text) if each.file == name else each for each in more]
-        notebook = notebook if usable else None
+        invalid_metadata = [*broken_metadata(name, notebook)]
+        if invalid_metadata:
+            findings = [*invalid_metadata, *broken_rules(name, notebook)]
+        else:
+            findings = _broken_notebook(chapter, notebook, read)
+        findings = [with_line(each, text) if each.file == name else each for each in findings]
+        notebook = None if invalid_metadata else notebook
+    path = display_path(chapter.notebook_path)
+    findings = [replace(each, file=path) if each.file == name else each for each in findings]
     hidden = None if read.checks is None else tuple(c for c in read.checks if c.visibility is Visibility.HIDDEN)
-    findings = [replace(each, file=path) if each.file == name else each for each in problems]
-    later = [] if not hidden else list(_outdated_titles(chapter.assignment))
-    unproven = unproven_checks(folder, shown(folder), [check.id for check in hidden]) if hidden else ()
-    return ReadChapter((*read.findings, *unproven, *later, *findings), notebook, hidden)
+    if hidden:
+        unproven = unproven_checks(folder, [check.id for check in hidden])
+        findings = [*unproven, *_outdated_titles(chapter.assignment), *findings]
+    return ReadChapter((*read.findings, *findings), notebook, hidden)
 
 
 def read_checks(assignment: str) -> ReadChecks:
     """Read the checks of a chapter, the mutants and variants beside them, and the packages that they grade."""
     folder = course_paths.CHECKS / f"ch{assignment}"
-    read = {kind: read_suite(assignment, kind) for kind in KINDS}
-    findings = [finding for kind in KINDS for finding in read[kind].findings]
+    read = {kind: read_suite(assignment, kind) for kind in SUITE_KINDS}
+    findings = [finding for suite in read.values() for finding in suite.findings]
     findings += broken_python(folder)
-    places = {f"{kind} {id}": place for kind in KINDS for id, place in read[kind].places.items()}
+    locations = {f"{kind} {id}": where for kind, suite in read.items() for id, where in suite.locations.items()}
     checks, points = None, None
     try:
         hidden, visible = suites.hidden(assignment), suites.visible(assignment)
         checks, points = (*visible.checks, *hidden.checks), hidden.groups
     except Exception as error:  # an author's module may raise anything
         findings += [] if findings else [_import_error(error, folder)]  # earlier findings are more precise
-    written = read[suites.HIDDEN]
-    sources = written.sources
+    hidden_suite = read[suites.HIDDEN]
+    sources = hidden_suite.sources
     if not all((course_paths.SOLUTIONS / source).is_dir() for source in sources):
         sources = ()  # one of the names is wrong, which was already reported
-    known = None if checks is None else [check.id for check in checks if check.visibility is Visibility.HIDDEN]
-    ids = [*written.places] if known is None and written.is_complete else known
+    ids = None if checks is None else [check.id for check in checks if check.visibility is Visibility.HIDDEN]
+    if ids is None and hidden_suite.is_complete:
+        ids = [*hidden_suite.locations]
     findings += broken_packages(sources)
-    findings += broken_mutants(folder, shown(folder), ids, sources)
+    findings += broken_mutants(folder, ids, sources)
     findings += broken_variants(folder / "variants", sources)
-    return ReadChecks(tuple(findings), checks, points, places)
+    return ReadChecks(tuple(findings), checks, points, locations)
 
 
 def require_checks(assignments: Iterable[str]) -> None:
     """Raise a CourseError with all problems of the suites that cannot be imported."""
     graded = suites.graded_assignments()
     read = [read_checks(name) for name in assignments if name in graded]
-    if wrong := [str(finding) for each in read if each.checks is None for finding in each.findings]:
-        raise CourseError("\n".join(dict.fromkeys(wrong)))
+    if problems := [str(finding) for each in read if each.checks is None for finding in each.findings]:
+        raise CourseError("\n".join(dict.fromkeys(problems)))
 
 
 def _outdated_titles(assignment: str) -> Iterator[Finding]:
-    """Yield that the list of hidden checks is out of date, which students read when all visible checks pass."""
+    """Yield a finding if the titles of hidden checks are out of date. Students with full marks read them."""
     path = course_paths.hidden_titles(assignment)
     if not path.is_file() or path.read_text(encoding="utf-8") != titles_of(assignment):
-        yield Finding(shown(path), None, "is not the list of the hidden checks: run `autograder course tables`", 1)
+        yield Finding(display_path(path), None, "is out of date: run `autograder course tables`", 1)
 
 
 def _import_error(error: Exception, folder: Path) -> Finding:
     """Return the finding for a suite that raises an error, at the last line of the traceback in the chapter."""
     frames = [each for each in traceback.extract_tb(error.__traceback__) if Path(each.filename).is_relative_to(folder)]
-    top = folder / (suites.VISIBLE if suites.VISIBLE in str(error) else suites.HIDDEN) / "__init__.py"
-    file, line = (shown(Path(frames[-1].filename)), frames[-1].lineno) if frames else (shown(top), 1)
-    known = isinstance(error, AutograderError)
-    message = str(error) if known else f"cannot be imported: {type(error).__name__}: {error}"
-    return Finding(file, None, message, line)
+    init_path = folder / (suites.VISIBLE if suites.VISIBLE in str(error) else suites.HIDDEN) / "__init__.py"
+    file, line = (Path(frames[-1].filename), frames[-1].lineno) if frames else (init_path, 1)
+    is_explained = isinstance(error, AutograderError)
+    message = str(error) if is_explained else f"cannot be imported: {type(error).__name__}: {error}"
+    return Finding(display_path(file), None, message, line)
 
 
-def _notebook(chapter: Chapter) -> tuple[NotebookNode | None, list[Finding]]:
+def _read_notebook(chapter: Chapter) -> tuple[NotebookNode | None, list[Finding]]:
     """Return the notebook of a chapter, or None and the reason why it cannot be read."""
     try:
         return chapter.read(), []
@@ -143,8 +148,8 @@ def _notebook(chapter: Chapter) -> tuple[NotebookNode | None, list[Finding]]:
         name, message, line = chapter.notebook_path.name, str(error), 1
         try:
             json.loads(chapter.notebook_path.read_text(encoding="utf-8"))
-        except json.JSONDecodeError as wrong:
-            message, line = f"is not JSON: {wrong.msg}", wrong.lineno
+        except json.JSONDecodeError as json_error:
+            message, line = f"is not JSON: {json_error.msg}", json_error.lineno
         return None, [Finding(name, None, message.removeprefix(f"{name} ").removeprefix(f"{name}: "), line)]
 
 
@@ -158,12 +163,12 @@ def _broken_notebook(chapter: Chapter, notebook: NotebookNode, read: ReadChecks)
         lambda: broken_rules(name, notebook),
         lambda: outdated_time_sentence(name, notebook),
         lambda: broken_cells(name, notebook),
-        lambda: () if not read.checks else broken_holding(name, notebook, read.checks, read.places),
+        lambda: () if not read.checks else broken_coverage(name, notebook, read.checks, read.locations),
     )
-    return [finding for rule in rules for finding in _applied(name, rule)]
+    return [finding for rule in rules for finding in _apply(name, rule)]
 
 
-def _applied(name: str, rule: Callable[[], Iterable[Finding]]) -> Iterator[Finding]:
+def _apply(name: str, rule: Callable[[], Iterable[Finding]]) -> Iterator[Finding]:
     """Yield the findings of a rule, including nbgrader's own errors for cells that it cannot release."""
     try:
         yield from rule()
@@ -171,18 +176,18 @@ def _applied(name: str, rule: Callable[[], Iterable[Finding]]) -> Iterator[Findi
         yield Finding(name, None, str(error))
 
 
-def placed(finding: Finding, text: str) -> Finding:
-    """Add the line to a finding in a notebook: that of the quoted text, of its cell, or the first line."""
+def with_line(finding: Finding, text: str) -> Finding:
+    """Add the line to a finding in a notebook: that of a name in its message, of its cell, or the first line."""
     if finding.line is not None:
         return finding
     lines = text.splitlines()
-    first = _line(lines, f'"id": "{finding.cell}"', 0) if finding.cell else None
-    named = re.findall(r"(?:['`]|given file )([^'` ]+)", finding.message.partition("\n")[0])
-    after = (_line(lines, f'"{name}"', first or 0) for name in named)
-    end = len(lines) if first is None else _line(lines, '"cell_type":', first) or len(lines)
-    inside = next((line for line in after if line is not None and line < end), first)
-    return replace(finding, line=1 if inside is None else inside + 1)
+    start = _line_index(lines, f'"id": "{finding.cell}"', 0) if finding.cell else None
+    end = len(lines) if start is None else _line_index(lines, '"cell_type":', start) or len(lines)
+    names = re.findall(r"(?:['`]|given file )([^'` ]+)", finding.message.partition("\n")[0])
+    indices = (_line_index(lines, f'"{name}"', start or 0) for name in names)
+    index = next((each for each in indices if each is not None and each < end), start)
+    return replace(finding, line=1 if index is None else index + 1)
 
 
-def _line(lines: Sequence[str], text: str, start: int) -> int | None:
+def _line_index(lines: Sequence[str], text: str, start: int) -> int | None:
     return next((index for index in range(start, len(lines)) if text in lines[index]), None)

@@ -1,4 +1,4 @@
-"""The rules for a chapter's requirements: each one occurs in the cell that names it, and has a check.
+"""The rules for a chapter's requirements: the cell that names a requirement contains it, and a check covers it.
 
 A cell that names requirements must name all of them. Each table row, each bullet, and the docstring of each function
 that the student writes must contain a requirement or a text in `explains`.
@@ -19,26 +19,18 @@ from autograder.suite.contract import requirements
 from autograder.suite.quotation import quote
 
 
-def broken_contract(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> list[Finding]:
-    """Return the requirements without a check, the checks without a requirement, and texts that students do not see.
-
-    Findings refer to the notebook by `name`. `checks` are all checks of its chapter, visible and hidden.
-    """
-    return [*broken_cells(name, notebook), *broken_holding(name, notebook, checks, {})]
-
-
 def broken_cells(name: str, notebook: NotebookNode) -> Iterator[Finding]:
-    """Yield the cells whose requirements differ from the released text."""
+    """Yield the problems with the requirements of a notebook's cells, with `name` as the notebook's name."""
     for cell in in_form(notebook, Form.RELEASED).cells:
-        yield from (Finding(name, cell.id, message) for message in _cell(cell))
+        yield from (Finding(name, cell.id, message) for message in _broken_cell(cell))
 
 
-def broken_holding(
-    name: str, notebook: NotebookNode, checks: Sequence[Check], places: Mapping[str, tuple[str, int]]
+def broken_coverage(
+    name: str, notebook: NotebookNode, checks: Sequence[Check], locations: Mapping[str, tuple[str, int]]
 ) -> Iterator[Finding]:
-    """Yield the requirements without a check, and the checks without a requirement.
+    """Yield the requirements of a notebook without a check, and the checks of its chapter without a requirement.
 
-    `places` maps `VISIBILITY ID` of a check to its file and line. A check without one is attributed to the notebook.
+    `locations` maps `VISIBILITY ID` of a check to its file and line. A check without one is attributed to the notebook.
     """
     known = requirements(notebook.cells)
     covered = {name for check in checks for name in check.covers}
@@ -52,17 +44,17 @@ def broken_holding(
         unknown = ", ".join(repr(each) for each in check.covers if each not in known)
         if unknown or not check.covers:
             message = f"covers {unknown}, which no cell names" if unknown else "covers no requirement"
-            file, line = places.get(f"{check.visibility.value} {check.id}", (name, None))
+            file, line = locations.get(f"{check.visibility.value} {check.id}", (name, None))
             yield Finding(file, None, f"the {check.visibility.value} check {check.id!r} {message}", line)
 
 
-def _cell(cell: NotebookNode) -> Iterator[str]:
+def _broken_cell(cell: NotebookNode) -> Iterator[str]:
     """Yield the problems with the requirements of a released cell."""
     course = metadata(cell)
     contract, explains = course.get("contract", {}), course.get("explains", [])
-    named = {name: [texts] if isinstance(texts, str) else texts for name, texts in contract.items()}
+    quotes = {name: [texts] if isinstance(texts, str) else texts for name, texts in contract.items()}
     released_text = _words(cell.source)
-    for name, text in [(name, text) for name, texts in named.items() for text in texts] + [
+    for name, text in [(name, text) for name, texts in quotes.items() for text in texts] + [
         ("explains", text) for text in explains
     ]:
         if _words(text) not in released_text:
@@ -70,9 +62,9 @@ def _cell(cell: NotebookNode) -> Iterator[str]:
         elif quote(cell, text) is None:
             yield f"{name!r}: {text!r} is not a row, a sentence or part of one in the released text"
     for name in course.get("unchecked", {}):
-        if name not in named:
+        if name not in quotes:
             yield f"{name!r} is marked as unchecked, but is not a requirement of the cell"
-    texts = [_words(text) for each in (*named.values(), explains) for text in each]
+    texts = [_words(text) for each in (*quotes.values(), explains) for text in each]
     hidden = course.get("hide", [])
     for piece in _pieces(cell, hidden) if contract or hidden else ():
         if not any(text in piece for text in texts):
@@ -93,9 +85,9 @@ def _pieces(cell: NotebookNode, hidden: Sequence[str]) -> Iterator[str]:
         return
     pieces: list[list[str]] = []
     lines = cell.source.splitlines()
-    for line, after in zip(lines, [*lines[1:], ""], strict=True):
-        row = line.startswith("|") and not _is_rule(line)
-        if line.startswith("- ") or (row and not _is_rule(after)):
+    for line, following in zip(lines, [*lines[1:], ""], strict=True):
+        is_row = line.startswith("|") and not _is_delimiter_row(line)
+        if line.startswith("- ") or (is_row and not _is_delimiter_row(following)):
             pieces.append([line])
         elif line.startswith("  ") and pieces:
             pieces[-1].append(line)
@@ -106,6 +98,6 @@ def _words(text: str) -> str:
     return " ".join(text.split())
 
 
-def _is_rule(line: str) -> bool:
-    """Return whether a line is the rule below the head of a table."""
+def _is_delimiter_row(line: str) -> bool:
+    """Return whether a line is the row of dashes below the head of a table."""
     return line.startswith("|") and set(line) <= set("|-: ")

@@ -8,9 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from autograder import course_paths
-from autograder.author.course.chapter_rules import KINDS, ReadChapter, placed
-from autograder.author.course.findings import Finding
-from autograder.author.course.suite_rules import shown
+from autograder.author.course.chapter_rules import SUITE_KINDS, ReadChapter, with_line
+from autograder.author.course.findings import Finding, display_path
 from autograder.author.course.syllabus import Syllabus, find_coverage
 from autograder.author.course.sync import Chapter
 from autograder.author.course.yaml_files import read_yaml
@@ -18,10 +17,10 @@ from sim import WorldError, load_world
 
 
 def broken_course_file() -> tuple[Finding, ...]:
-    """Return the problems in the current `course.yaml`, without which no other part of the course can be read."""
+    """Return the problems in the current `course.yaml`. Reading any other part of the course requires this file."""
     root = Path(os.environ.get(course_paths.COURSE_VARIABLE) or course_paths.ROOT)
     path = root / course_paths.COURSE_FILE
-    return read_yaml(path, str(path)).findings if path.is_file() else ()
+    return read_yaml(path, shown=str(path)).findings if path.is_file() else ()
 
 
 def broken_course(read: Mapping[str, ReadChapter], *, whole: bool) -> list[Finding]:
@@ -31,54 +30,56 @@ def broken_course(read: Mapping[str, ReadChapter], *, whole: bool) -> list[Findi
         read: chapters by their names.
         whole: whether these are all chapters. Rules that need all of them are skipped otherwise.
     """
-    findings = list(_coverage(read, whole))
-    return [*_folders(), *_worlds(), *findings] if whole else findings
+    findings = list(_broken_coverage(read, whole))
+    return [*_misnamed_folders(), *_broken_worlds(), *findings] if whole else findings
 
 
-def _folders() -> Iterator[Finding]:
+def _misnamed_folders() -> Iterator[Finding]:
     """Yield a finding for each folder that looks like a chapter but would be ignored because of its name."""
-    known = course_paths.assignments()
+    assignments = course_paths.assignments()
     for folder in sorted(
         path for path in course_paths.CHAPTERS.glob("*") if path.is_dir() and path.name[:1] not in "._"
     ):
-        if folder.name not in known and (books := sorted(path.name for path in folder.glob("*.ipynb"))):
-            message = f"is not a chapter: it has no {folder.name}.ipynb, and it has {', '.join(books)}"
-            yield Finding(shown(folder), None, message)
+        if folder.name not in assignments and (notebooks := sorted(path.name for path in folder.glob("*.ipynb"))):
+            message = f"is not a chapter: it has no {folder.name}.ipynb, only {', '.join(notebooks)}"
+            yield Finding(display_path(folder), None, message)
     for folder in sorted(path for path in course_paths.CHECKS.glob("ch*") if path.is_dir()):
         name = folder.name.removeprefix("ch")
-        if name not in known and any((folder / kind).is_dir() for kind in KINDS):
-            yield Finding(shown(folder), None, f"contains checks of {name!r}, and there is no such chapter")
+        if name not in assignments and any((folder / kind).is_dir() for kind in SUITE_KINDS):
+            yield Finding(display_path(folder), None, f"contains checks of {name!r}, but there is no such chapter")
 
 
-def _worlds() -> Iterator[Finding]:
+def _broken_worlds() -> Iterator[Finding]:
     for path in sorted(course_paths.WORLDS.glob("*.yaml")) if course_paths.WORLDS.is_dir() else ():
         try:
             if "image:" not in path.read_text(encoding="utf-8"):  # a map for map_server
                 load_world(path)
         except WorldError as error:
-            yield Finding(shown(path), None, f"{error.problem}. {error.remedy}", error.line)
+            yield Finding(display_path(path), None, f"{error.problem}. {error.remedy}", error.line)
 
 
-def _coverage(read: Mapping[str, ReadChapter], whole: bool) -> Iterator[Finding]:
+def _broken_coverage(read: Mapping[str, ReadChapter], whole: bool) -> Iterator[Finding]:
     """Yield the differences between the syllabus and the readable chapters."""
     path = course_paths.course().root / course_paths.course().syllabus
     if not path.is_file():
-        yield Finding(shown(path), None, "is missing: it names the objectives of the course")
+        yield Finding(display_path(path), None, "is missing: it names the objectives of the course")
         return
-    file = read_yaml(path, shown(path), "syllabus.yaml")
+    file = read_yaml(path, schema="syllabus.yaml")
     yield from file.findings
     if file.findings:
         return
-    usable = [(name, each.notebook, each.hidden) for name, each in read.items()]
-    covered = find_coverage(
-        Syllabus.read(path), [(name, book, hidden) for name, book, hidden in usable if book and hidden is not None]
-    )
-    complete = whole and all(each.notebook and each.hidden is not None for each in read.values())
-    lines = {place[-1]: line for place, line in file.lines.items() if len(place) == 2}
-    for finding in covered.findings:
+    readable = [
+        (name, each.notebook, each.hidden)
+        for name, each in read.items()
+        if each.notebook is not None and each.hidden is not None
+    ]
+    coverage = find_coverage(Syllabus.read(path), readable)
+    complete = whole and len(readable) == len(read)
+    lines = {key_path[-1]: line for key_path, line in file.lines.items() if len(key_path) == 2}
+    for finding in coverage.findings:
         if finding.file != course_paths.course().syllabus:
             chapter = Chapter(course_paths.CHAPTERS / finding.file.removesuffix(".ipynb"))
             text = chapter.notebook_path.read_text(encoding="utf-8")
-            yield replace(placed(finding, text), file=shown(chapter.notebook_path))
+            yield replace(with_line(finding, text), file=display_path(chapter.notebook_path))
         elif complete:
             yield replace(finding, line=next((n for key, n in lines.items() if repr(key) in finding.message), 1))

@@ -28,7 +28,7 @@ from autograder.ros.domains import Domain
 # warnings of Jupyter's start-up or of the tools that a cell calls (colcon, CMake).
 STRICT = """import warnings
 warnings.simplefilter('error')
-# A warning of ipykernel's own when it shuts down. As an error, it would prevent the kernel from ending.
+# ipykernel itself emits this warning when it shuts down. As an error, it would prevent the kernel from ending.
 warnings.filterwarnings('default', message='For consistency across implementations')
 """
 
@@ -92,18 +92,18 @@ def execute(notebook: NotebookNode, folder: Path, timeout: float, domain: int) -
     client = NotebookClient(
         notebook, kernel_name="python3", timeout=timeout, resources={"metadata": {"path": str(folder)}}
     )
-    # Sockets in our own folder, because another process may take a port between choosing and binding it.
+    # Use sockets in a private folder, because another process could take a port before the kernel binds it.
     manager = client.create_kernel_manager()
     manager.transport = "ipc"
     manager.ip, manager.connection_file = str(folder.parent / "k"), str(folder.parent / "k.json")
     notebook.cells.insert(0, new_code_cell(STRICT))
-    begun: list[str] = []
-    client.on_cell_start = lambda cell, cell_index: begun.append(cell.id)
+    started_cells: list[str] = []
+    client.on_cell_start = lambda cell, cell_index: started_cells.append(cell.id)
     try:
         # asyncio.run closes its loop, but nbclient's own call leaves one open in each thread.
         asyncio.run(client.async_execute(env={**os.environ, "ROS_DOMAIN_ID": str(domain)}))
     except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
-        return f"cell {begun[-1]!r}: {clean(str(error))}"
+        return f"cell {started_cells[-1]!r}: {clean(str(error))}"
     finally:
         del notebook.cells[0]
     return None

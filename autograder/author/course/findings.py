@@ -1,9 +1,12 @@
-"""A problem in a file of a course, and its location."""
+"""Problems in the files of a course, and their locations."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
+
+from autograder import course_paths
 
 
 @dataclass(frozen=True)
@@ -23,9 +26,15 @@ class Finding:
     line: int | None = None
 
     def __str__(self) -> str:
-        place = self.file if self.line is None else f"{self.file}:{self.line}"
-        where = place if self.cell is None else f"{place}, cell {self.cell!r}"
-        return f"{where}: {self.message}"
+        line = "" if self.line is None else f":{self.line}"
+        cell = "" if self.cell is None else f", cell {self.cell!r}"
+        return f"{self.file}{line}{cell}: {self.message}"
+
+
+def display_path(path: Path) -> str:
+    """Return a file's path for findings: relative to the course's folder, if it is inside."""
+    root = course_paths.course().root
+    return str(path.relative_to(root) if path.is_relative_to(root) else path)
 
 
 # A finding with a function that fixes it in place, or None if the author has to fix it.

@@ -11,10 +11,10 @@ from pathlib import Path
 
 from autograder.author.course.findings import Finding
 from autograder.author.course.python_files import Function, PythonFile, declaration, decorators, literal, read_python
-from autograder.author.course.schema_sentences import meant
+from autograder.author.course.schema_sentences import suggestion
 
-OF_EVERY_CHAPTER = ("workspace", "builds", "seed", "draw", "artifacts")  # of `autograder.grade.plugin`
-OF_PYTEST = ("request", "tmp_path", "tmp_path_factory", "monkeypatch", "capsys", "capfd", "caplog", "recwarn")
+GRADER_FIXTURES = ("workspace", "builds", "seed", "draw", "artifacts")  # of `autograder.grade.plugin`
+PYTEST_FIXTURES = ("request", "tmp_path", "tmp_path_factory", "monkeypatch", "capsys", "capfd", "caplog", "recwarn")
 
 
 def unknown_fixtures(folder: Path, modules: Iterable[PythonFile]) -> Iterator[Finding]:
@@ -24,24 +24,18 @@ def unknown_fixtures(folder: Path, modules: Iterable[PythonFile]) -> Iterator[Fi
         folder: the folder of a suite, in the folder of its chapter's checks.
         modules: the modules of the suite.
     """
-    conftests = [
-        read_python(path, path.name)
-        for path in (folder.parent / "conftest.py", folder / "conftest.py")
-        if path.is_file()
-    ]
-    shared = {name for file in conftests for name in _fixtures(file)}
+    conftests = [path for path in (folder.parent / "conftest.py", folder / "conftest.py") if path.is_file()]
+    shared = {name for path in conftests for name in _fixtures(read_python(path))}
     for module in modules:
-        known = [*shared, *_fixtures(module), *OF_EVERY_CHAPTER]
+        known = [*shared, *_fixtures(module), *GRADER_FIXTURES]
         for function in module.functions():
-            is_body = "check_each_row" in decorators(function)
-            if not (declaration(function) or is_body):
+            takes_row = "check_each_row" in decorators(function)  # as its first argument
+            if not (declaration(function) or takes_row):
                 continue
-            arguments = [*function.args.args, *function.args.kwonlyargs][1 if is_body else 0 :]
-            for each in arguments:
-                if each.arg not in (*known, *OF_PYTEST, *_parameters(function)):
-                    yield module.finding(
-                        each, f"`{function.name}` asks for a fixture `{each.arg}`: {meant(each.arg, known)}"
-                    )
+            for each in [*function.args.args, *function.args.kwonlyargs][1 if takes_row else 0 :]:
+                if each.arg not in (*known, *PYTEST_FIXTURES, *_parameters(function)):
+                    message = f"`{function.name}` uses the unknown fixture `{each.arg}`: {suggestion(each.arg, known)}"
+                    yield module.finding(each, message)
 
 
 def _fixtures(file: PythonFile) -> list[str]:
@@ -53,9 +47,6 @@ def _fixtures(file: PythonFile) -> list[str]:
 
 def _parameters(function: Function) -> list[str]:
     """Return the arguments that `pytest.mark.parametrize` provides."""
-    calls = (each for each in decorators(function).items() if each[0] == "parametrize")
-    arguments: list[str] = []
-    for _, call in calls:
-        names = literal(call.args[0]) if isinstance(call, ast.Call) and call.args else None
-        arguments += names.replace(",", " ").split() if isinstance(names, str) else names or []
-    return arguments
+    call = decorators(function).get("parametrize")
+    names = literal(call.args[0]) if isinstance(call, ast.Call) and call.args else None
+    return names.replace(",", " ").split() if isinstance(names, str) else list(names or [])

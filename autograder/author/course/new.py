@@ -14,7 +14,7 @@ from pathlib import Path
 from autograder import course_paths
 from autograder.author.course.package_names import is_package_name, taken_by
 from autograder.author.course.sync import Chapter, sync_chapter
-from autograder.author.course.tables import titles
+from autograder.author.course.tables import titles_of
 from autograder.author.course.workload import effort, time_sentence
 from autograder.exceptions import UsageError
 
@@ -36,12 +36,12 @@ def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple
     Raises:
         UsageError: a name is invalid or taken, or one of the folders exists. In that case nothing is written.
     """
-    named = NAME.fullmatch(assignment)
-    if named is None or not is_package_name(named[1]):
+    match = NAME.fullmatch(assignment)
+    if match is None or not is_package_name(match[1]):
         raise UsageError(f"{assignment!r} is not a chapter name: use two digits and a name, such as 10_mapping")
-    title = named[1].replace("_", " ").capitalize()
-    package = package or named[1]
-    _require_free("package", package, f"autograder new chapter {assignment} --package my_{named[1]}")
+    title = match[1].replace("_", " ").capitalize()
+    package = package or match[1]
+    _require_free("package", package, f"autograder new chapter {assignment} --package my_{match[1]}")
     _require_free("node", node, f"autograder new chapter {assignment} --node my_{node}")
     node_class = node.title().replace("_", "")
     if node_class in IMPORTED_CLASSES:
@@ -53,7 +53,7 @@ def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple
         course_paths.CHECKS / f"ch{assignment}",
         course_paths.SOLUTIONS / package,
     )
-    words = {
+    placeholders = {
         "NEW_CHAPTER": assignment,
         "NEW_PACKAGE": package,
         "NEW_NODE": node,
@@ -62,11 +62,11 @@ def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple
     }
     _require_new(*folders)
     for part, folder in zip(("chapter", "checks", "solution"), folders, strict=True):
-        _write(TEMPLATES / "chapter" / part, folder, words)
+        _write(TEMPLATES / "chapter" / part, folder, placeholders)
     syllabus = course_paths.course().root / course_paths.course().syllabus
-    listed = syllabus.read_text(encoding="utf-8") if syllabus.is_file() else OBJECTIVES
+    text = syllabus.read_text(encoding="utf-8") if syllabus.is_file() else OBJECTIVES
     objective = f"{OBJECTIVES}  {package}: {title}\n"
-    syllabus.write_text(listed.replace(OBJECTIVES, objective, 1), encoding="utf-8")
+    syllabus.write_text(text.replace(OBJECTIVES, objective, 1), encoding="utf-8")
     _complete(Chapter(folders[0]))
     return folders
 
@@ -79,8 +79,8 @@ def write_course(folder: Path) -> None:
     _require_new(folder)
     title = folder.name.replace("_", " ").replace("-", " ").capitalize()
     # Git would apply a .gitignore among the templates to this repository.
-    words = {"NEW_COURSE": folder.name, "NEW_TITLE": title, "NEW_DOT_": "."}
-    _write(TEMPLATES / "course", folder, words)
+    placeholders = {"NEW_COURSE": folder.name, "NEW_TITLE": title, "NEW_DOT_": "."}
+    _write(TEMPLATES / "course", folder, placeholders)
 
 
 def _require_free(kind: str, name: str, alternative: str) -> None:
@@ -96,11 +96,11 @@ def _require_new(*folders: Path) -> None:
             raise UsageError(f"{folder} already exists: choose another name")
 
 
-def _write(template: Path, folder: Path, words: Mapping[str, str]) -> None:
-    """Copy a folder of text files, with placeholders replaced in names and texts."""
+def _write(template: Path, folder: Path, placeholders: Mapping[str, str]) -> None:
+    """Copy a folder of text files, with placeholders replaced by their values in names and texts."""
 
     def filled(text: str) -> str:
-        for placeholder, value in words.items():
+        for placeholder, value in placeholders.items():
             text = text.replace(placeholder, value)
         return text
 
@@ -111,12 +111,11 @@ def _write(template: Path, folder: Path, words: Mapping[str, str]) -> None:
 
 
 def _complete(chapter: Chapter) -> None:
-    """Write the generated parts: copies of the reference, points, minutes, and the titles of hidden checks."""
+    """Write the generated parts of a chapter: copies of the reference, points, minutes and titles of hidden checks."""
     importlib.invalidate_caches()  # Python may have cached the folder without the new checks
     sync_chapter(chapter)
     notebook = chapter.read()
     first = notebook.cells[0]
     first.source = first.source.replace("NEW_MINUTES", time_sentence(effort(notebook)))
     chapter.write(notebook)
-    later = course_paths.hidden_titles(chapter.assignment)
-    later.write_text(titles()[later], encoding="utf-8")
+    course_paths.hidden_titles(chapter.assignment).write_text(titles_of(chapter.assignment), encoding="utf-8")

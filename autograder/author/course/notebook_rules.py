@@ -64,9 +64,9 @@ def _headings(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
         for match in _HEADING.finditer(_FENCE.sub("", cell.source)):
             depth = len(match[1])
             if level == 0 and depth != 1:
-                yield cell.id, "the first heading of a notebook is its title, with one #"
+                yield cell.id, "the first heading of a notebook must be its title, with one #"
             elif level and depth == 1:
-                yield cell.id, "a notebook has one title; a section starts with ##"
+                yield cell.id, "a notebook must have only one title; sections start with ##"
             elif depth > level + 1:
                 yield cell.id, f"a heading of level {depth} follows one of level {level}; do not skip levels"
             level = depth
@@ -80,37 +80,37 @@ def _nbgrader(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
     for cell in notebook.cells:
         nbgrader_data = cell.metadata.get("nbgrader")
         if nbgrader_data is not None and nbgrader_data.get("schema_version") != SCHEMA_VERSION:
-            yield cell.id, f"its nbgrader metadata must say schema_version {SCHEMA_VERSION}"
+            yield cell.id, f"its nbgrader metadata must have schema_version {SCHEMA_VERSION}"
             return
     try:
         MetadataValidator().validate_nb(notebook)
     except ValidationError as error:
-        yield None, f"its nbgrader metadata is not valid: {error}"
+        yield None, f"its nbgrader metadata are invalid: {error}"
         return
     for cell in notebook.cells:
         nbgrader_data = cell.metadata.get("nbgrader", {})
         try:
-            named = group(cell)
+            group_name = group(cell)
         except CourseError as error:
             yield cell.id, str(error)
             continue
-        if is_graded(cell) and not is_manually_graded(cell) and (not nbgrader_data.get("locked") or named is None):
-            yield cell.id, 'a grade cell is locked and names its group of checks: {"course": {"group": ...}}'
+        if is_graded(cell) and not is_manually_graded(cell) and (not nbgrader_data.get("locked") or group_name is None):
+            yield cell.id, 'a grade cell must be locked and name its group of checks: {"course": {"group": ...}}'
         if is_manually_graded(cell):
-            yield from ((cell.id, message) for message in _manual(cell, named))
+            yield from ((cell.id, message) for message in _manual(cell, group_name))
         if MARK_SCHEME in cell.source and not nbgrader_data.get("locked"):
             yield cell.id, "contains a mark scheme but is not locked: lock it, so that autograding can restore it"
         if "BEGIN SOLUTION" in cell.source and not nbgrader_data.get("solution"):
             yield cell.id, "contains a solution but is not marked as a solution cell"
 
 
-def _manual(cell: NotebookNode, named: str | None) -> Iterator[str]:
-    marks = cell.metadata.nbgrader
-    if marks.get("locked"):
+def _manual(cell: NotebookNode, group_name: str | None) -> Iterator[str]:
+    nbgrader_data = cell.metadata.nbgrader
+    if nbgrader_data.get("locked"):
         yield "is locked, but students must write in it: unlock it"
-    if not marks.get("points"):
+    if not nbgrader_data.get("points"):
         yield "a manually graded cell needs points above 0"
-    if named is not None:
-        yield f"is graded by a person and cannot also belong to the group {named!r} of checks"
+    if group_name is not None:
+        yield f"is graded by a person and cannot also belong to the group {group_name!r} of checks"
     if "BEGIN SOLUTION" not in cell.source:
         yield "a manually graded cell needs a model answer between the solution markers"

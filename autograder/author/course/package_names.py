@@ -1,7 +1,7 @@
 """Names that a new package or node must not have, because Python, pip, ROS or colcon uses them.
 
-A student's package is found before installed ones. A package called `launch` would hide ROS's own, and programs that
-import it would fail for a reason that a student cannot see.
+Python finds a student's package before installed ones. A package called `launch` would hide ROS's own, and programs
+that import it would fail for a reason that a student cannot see.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from functools import cache
 from importlib import metadata
 from pathlib import Path
 
-FORM = re.compile(r"[a-z](?:_?[a-z0-9]+)*")
+NAME = re.compile(r"[a-z](?:_?[a-z0-9]+)*")
 # Released ROS packages. Most are not installed here, but students will meet them elsewhere.
 ROS_PACKAGES = Path(__file__).with_name("ros_packages.json")
 # PyPI packages that are not installed with the course, but that robot programs often import.
@@ -29,7 +29,7 @@ USED_BY_TOOLS = {"build", "install", "log", "src", "ws", "setup", "conftest", "t
 
 def is_package_name(name: str) -> bool:
     """Return whether a name is valid for a ROS package and a Python module."""
-    return FORM.fullmatch(name) is not None and not keyword.iskeyword(name)
+    return NAME.fullmatch(name) is not None and not keyword.iskeyword(name)
 
 
 def taken_by(name: str) -> str:
@@ -55,8 +55,8 @@ def _ros_packages() -> frozenset[str]:
 @cache
 def _pip_packages() -> frozenset[str]:
     """Return the normalized names of the packages that pip installed."""
-    named = (str(distribution.metadata["Name"]) for distribution in metadata.distributions())
-    return frozenset(re.sub(r"[-_.]+", "-", name).lower() for name in named)
+    names = (str(distribution.metadata["Name"]) for distribution in metadata.distributions())
+    return frozenset(re.sub(r"[-_.]+", "-", name).lower() for name in names)
 
 
 def _is_importable(name: str) -> bool:

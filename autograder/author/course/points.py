@@ -23,20 +23,20 @@ def point_differences(name: str, notebook: NotebookNode, points: Mapping[str, fl
     for cell in notebook.cells:
         if not is_graded(cell) or is_manually_graded(cell):
             continue
-        named, has = group(cell), cell.metadata.nbgrader.get("points")
-        if named is None or named not in points:
-            message = f"names the unknown group {named!r}; the suite's groups are {', '.join(points) or 'none'}"
+        group_name, cell_points = group(cell), cell.metadata.nbgrader.get("points")
+        if group_name is None or group_name not in points:
+            message = f"names the unknown group {group_name!r}; the suite's groups are {', '.join(points) or 'none'}"
             yield Finding(name, cell.id, message), None
-        elif named in seen:
-            yield Finding(name, cell.id, f"is the second cell of group {named!r}"), None
-        elif has != points[named]:
-            message = f"has {has} points, but the checks of {named!r} have {points[named]:g}"
-            set_points = partial(cell.metadata.nbgrader.__setitem__, "points", points[named])
+        elif group_name in seen:
+            yield Finding(name, cell.id, f"is the second cell of group {group_name!r}"), None
+        elif cell_points != points[group_name]:
+            message = f"has {cell_points} points, but the checks of {group_name!r} have {points[group_name]:g}"
+            set_points = partial(cell.metadata.nbgrader.__setitem__, "points", points[group_name])
             yield Finding(name, cell.id, message), set_points
-        seen.setdefault(str(named))
-    for named in points:
-        if named not in seen:
-            yield Finding(name, None, f"group {named!r} has no grade cell"), None
-    order = [named for named in points if named in seen]
-    if [named for named in seen if named in points] != order:
+        seen.setdefault(str(group_name))
+    for group_name in points:
+        if group_name not in seen:
+            yield Finding(name, None, f"group {group_name!r} has no grade cell"), None
+    order = [group_name for group_name in points if group_name in seen]
+    if [group_name for group_name in seen if group_name in points] != order:
         yield Finding(name, None, f"its grade cells are not in the order of the suite: {', '.join(order)}"), None

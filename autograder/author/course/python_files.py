@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from autograder.author.course.findings import Finding
+from autograder.author.course.findings import Finding, display_path
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -45,14 +45,14 @@ class PythonFile:
                     yield target.id, value
 
 
-def read_python(path: Path, shown: str) -> PythonFile:
+def read_python(path: Path) -> PythonFile:
     """Parse an existing Python file."""
+    shown = display_path(path)
     try:
         return PythonFile(shown, ast.parse(path.read_bytes(), filename=shown))
-    except SyntaxError as error:
-        return PythonFile(shown, findings=(Finding(shown, None, f"is not Python: {error.msg}", error.lineno or 1),))
-    except ValueError as error:  # a null byte
-        return PythonFile(shown, findings=(Finding(shown, None, f"is not Python: {error}", 1),))
+    except (SyntaxError, ValueError) as error:  # a ValueError for a null byte
+        reason, line = getattr(error, "msg", error), getattr(error, "lineno", None) or 1
+        return PythonFile(shown, findings=(Finding(shown, None, f"is not Python: {reason}", line),))
 
 
 def decorator_name(decorator: ast.expr) -> str:

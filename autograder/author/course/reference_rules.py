@@ -1,4 +1,4 @@
-"""The rules for the packages of the reference, and for other files beside a chapter's suites."""
+"""The rules for the reference's packages, and for the other files of a chapter's checks."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 
 from autograder import course_paths
-from autograder.author.course.findings import Finding
+from autograder.author.course.findings import Finding, display_path
 from autograder.author.course.python_files import read_python
-from autograder.author.course.schema_sentences import meant
-from autograder.author.course.suite_rules import shown
+from autograder.author.course.schema_sentences import suggestion
 
 MANIFEST = "package.xml"
 
@@ -22,13 +21,13 @@ def broken_packages(packages: Collection[str]) -> Iterator[Finding]:
         if (folder / MANIFEST).is_file():
             yield from _manifest(folder / MANIFEST, name)
         for path in sorted(folder.rglob("*.py")):
-            yield from read_python(path, shown(path)).findings
+            yield from read_python(path).findings
 
 
 def broken_python(folder: Path) -> Iterator[Finding]:
     """Yield a finding for each unparsable Python file of a chapter's checks, except the suites' own files."""
     for path in sorted([*folder.glob("*.py"), *folder.glob("support/**/*.py"), *folder.glob("*/conftest.py")]):
-        yield from read_python(path, shown(path)).findings
+        yield from read_python(path).findings
 
 
 def broken_variants(folder: Path, packages: Collection[str]) -> Iterator[Finding]:
@@ -36,20 +35,18 @@ def broken_variants(folder: Path, packages: Collection[str]) -> Iterator[Finding
     for variant in sorted(path for path in folder.glob("*") if path.is_dir()):
         for package in sorted(path.name for path in variant.iterdir()):
             if packages and package not in packages:
-                yield Finding(
-                    shown(variant / package),
-                    None,
-                    f"`{package}` is in no package of the suite: {meant(package, [*packages])}",
-                )
+                message = f"`{package}` is not a package of the suite: {suggestion(package, packages)}"
+                yield Finding(display_path(variant / package), None, message)
 
 
 def _manifest(path: Path, package: str) -> Iterator[Finding]:
     try:
         name = ET.parse(path).getroot().findtext("name")
     except ET.ParseError as error:
-        yield Finding(shown(path), None, f"is not XML: {error}", error.position[0])
+        yield Finding(display_path(path), None, f"is not XML: {error}", error.position[0])
         return
     if name != package:
         lines = path.read_text(encoding="utf-8").splitlines()
         line = next((number for number, text in enumerate(lines, 1) if "<name>" in text), 1)
-        yield Finding(shown(path), None, f"names the package {name!r}, and its folder is called {package!r}", line)
+        message = f"names the package {name!r}, but its folder is called {package!r}"
+        yield Finding(display_path(path), None, message, line)

@@ -20,7 +20,7 @@ from autograder.author.course.sync import Chapter, chapters
 from autograder.author.student_release import write_manifest
 from autograder.exceptions import UsageError
 
-# Files and folders that are copied in addition to the course.
+# Files and folders of this repository that a release contains in addition to the course.
 IMAGE = (".binder", ".devcontainer")
 COPIED = ("sim", "autograder", "assets/worlds", "pyproject.toml", "requirements.lock", "LICENSE", *IMAGE)
 STUDENT_FILES = course_paths.ROOT / "assets" / "students"  # the README and the Makefile of a student release

@@ -24,8 +24,8 @@ def mark_functions(text: str, hide: Sequence[str], parts: Mapping[str, tuple[str
     """Return Python source with solution markers around the bodies of the functions in `hide`.
 
     Signature, decorators and docstring are outside the markers, because the student needs them. Names are qualified:
-    `main`, `RobotController.control_loop`. Of a function in `parts`, only the lines of its body between two lines are
-    marked, which are given as in `mark_lines`. Raises CourseError if one of the bodies cannot be marked.
+    `main`, `RobotController.control_loop`. For a function in `parts`, the markers enclose only the part of its body
+    between two lines, which are given as in `mark_lines`. Raises CourseError if one of the bodies cannot be marked.
     """
     parts = parts or {}
     if unknown := sorted(parts.keys() - set(hide)):

@@ -20,7 +20,7 @@ from autograder import course_paths
 from autograder.author.course.cells import metadata
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding
-from autograder.author.course.yaml_files import read_yaml
+from autograder.author.course.yaml_files import load_yaml
 from autograder.suite import Check
 
 PARTS = ("sections", "examples", "steps", "questions")
@@ -44,10 +44,7 @@ class Syllabus:
         path = path or course_paths.course().root / course_paths.course().syllabus
         if not path.is_file():
             raise CourseError(f"{path}: is missing: it names the objectives of the course")
-        file = read_yaml(path, str(path), "syllabus.yaml")
-        if file.findings:
-            raise CourseError("\n".join(map(str, file.findings)))
-        data = file.data
+        data = load_yaml(path, schema="syllabus.yaml")
         items = {key: text for part in PARTS for key, text in (data.get(part) or {}).items()}
         errata = (data.get("errata") or {}).items()
         return cls(data["objectives"] or {}, items, {n: (wrong, right) for n, (wrong, right) in errata})
@@ -63,7 +60,7 @@ class Location:
 
 @dataclass(frozen=True)
 class ExerciseRow:
-    """The heading of an exercise, the key of its objective, and the hidden checks that test it."""
+    """The key of an objective, the heading of an exercise for it, and the hidden checks that test it."""
 
     objective: str
     chapter: str
@@ -101,14 +98,14 @@ def find_coverage(
                     findings.append(Finding(f"{name}.ipynb", cell, f"the syllabus has no {key!r}"))
                 elif location not in covered[key]:
                     covered[key].append(location)
-        exercises, wrong = _rows(name, notebook, checks, syllabus)
-        rows += exercises
-        findings += wrong
-    served = {row.objective for row in rows if row.checks}
+        chapter_rows, problems = _rows(name, notebook, checks, syllabus)
+        rows += chapter_rows
+        findings += problems
+    tested = {row.objective for row in rows if row.checks}
     findings += [
-        Finding(course_paths.course().syllabus, None, f"no {what} covers {key!r}: {text}")
-        for what, missing in (
-            ("hidden check", {k: t for k, t in syllabus.objectives.items() if k not in served}),
+        Finding(course_paths.course().syllabus, None, f"no {kind} covers {key!r}: {text}")
+        for kind, missing in (
+            ("hidden check", {k: t for k, t in syllabus.objectives.items() if k not in tested}),
             ("notebook", {k: t for k, t in syllabus.items.items() if not items[k]}),
             ("notebook", {n: wrong for n, (wrong, _) in syllabus.errata.items() if not errata[n]}),
         )
@@ -138,13 +135,13 @@ def _rows(
     for entry in metadata(notebook).get("objectives", []):
         objective, exercise, named = entry["objective"], entry["exercise"], set(entry["groups"])
         named_groups |= named
-        for wrong, what in (
+        for is_wrong, message in (
             (objective not in syllabus.objectives, f"the syllabus has no objective {objective!r}"),
             (exercise not in headings, f"there is no cell {exercise!r}"),
             (not named <= groups, f"the suite has no group {', '.join(sorted(named - groups))}"),
         ):
-            if wrong:
-                findings.append(Finding(f"{name}.ipynb", None, what))
+            if is_wrong:
+                findings.append(Finding(f"{name}.ipynb", None, message))
         tested_by = tuple(check for check in checks if check.group in named)
         rows.append(ExerciseRow(objective, name, headings.get(exercise, exercise), tested_by))
     if groups - named_groups:

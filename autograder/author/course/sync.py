@@ -64,7 +64,7 @@ class Chapter:
 
 
 def chapters(names: Sequence[str] = ()) -> list[Chapter]:
-    """Return the chapters of these names, or all in order. A UsageError lists the existing ones."""
+    """Return the chapters with these names, by default all in order. Raises UsageError if one does not exist."""
     return [Chapter(course_paths.chapter(name)) for name in names or course_paths.assignments()]
 
 
@@ -92,12 +92,12 @@ def sync_chapter(chapter: Chapter, *, write: bool = True) -> list[Finding]:
     graded = any(map(is_graded, notebook.cells))
     points = suites.hidden(chapter.assignment).groups if graded else None
     differences = list(_differences(chapter, notebook, points))
-    for finding, correct in differences:
-        if correct is None:
+    for finding, fix in differences:
+        if fix is None:
             raise CourseError(str(finding))
-    for _, correct in differences if write else ():
-        if correct is not None:
-            correct()
+    for _, fix in differences if write else ():
+        if fix is not None:
+            fix()
     if write and any(finding.cell is not None for finding, _ in differences):
         chapter.write(notebook)
     return [finding for finding, _ in differences]
@@ -109,13 +109,13 @@ def _differences(chapter: Chapter, notebook: NotebookNode, points: Mapping[str, 
         yield from point_differences(name, notebook, points)
     for cell in notebook.cells:
         try:
-            source = copied_file(cell)
-            expected = None if source is None else source.expected_text()
+            copied = copied_file(cell)
+            expected = None if copied is None else copied.expected_text()
         except CourseError as error:
             yield Finding(name, cell.id, str(error)), None
             continue
-        if expected is not None and source is not None and cell.source != expected:
-            message = f"differs from solutions/{source.source}; run `autograder course sync`"
+        if expected is not None and copied is not None and cell.source != expected:
+            message = f"differs from solutions/{copied.source}; run `autograder course sync`"
             finding = Finding(name, cell.id, message + _diff(cell.source, expected))
             yield finding, partial(setattr, cell, "source", expected)
     try:
@@ -128,8 +128,8 @@ def _differences(chapter: Chapter, notebook: NotebookNode, points: Mapping[str, 
         path = chapter.folder / target
         current = path.read_text(encoding="utf-8") if path.is_file() else None
         if current != text:
-            what = "is missing" if current is None else "differs"
-            message = f"the given file {target} {what}; its source is solutions/{pairs[target]}; "
+            state = "is missing" if current is None else "differs"
+            message = f"the given file {target} {state}; its source is solutions/{pairs[target]}; "
             message += "run `autograder course sync`" + _diff(current or "", text)
             yield Finding(name, None, message), partial(write_atomically, path, text.encode())
 
@@ -138,5 +138,5 @@ def _diff(current: str, expected: str) -> str:
     """Return the first differing lines, indented."""
     lines = difflib.unified_diff(current.splitlines(), expected.splitlines(), "notebook", "reference", n=1, lineterm="")
     differing = list(lines)[2:]
-    more = [f"... and {len(differing) - SHOWN_LINES} more lines"] if len(differing) > SHOWN_LINES else []
-    return "".join(f"\n    {line}" for line in differing[:SHOWN_LINES] + more)
+    omitted = [f"... and {len(differing) - SHOWN_LINES} more lines"] if len(differing) > SHOWN_LINES else []
+    return "".join(f"\n    {line}" for line in differing[:SHOWN_LINES] + omitted)

@@ -1,7 +1,8 @@
 """Estimates how long a beginner takes for a chapter. The chapter's first cell states this time.
 
-Chapters 0 to 4, worked through as by a beginner, were estimated at 27, 90, 130, 230 and 100 minutes. Given the first
-two rates, MINUTES_A_LINE is the least-squares fit to these five times. The largest error is half an hour.
+Chapters 0 to 4, worked through as by a beginner, were estimated at 27, 90, 130, 230 and 100 minutes. Given
+WORDS_A_MINUTE and MINUTES_A_CELL, MINUTES_A_LINE is the least-squares fit to these five times. The largest error is
+half an hour.
 """
 
 from __future__ import annotations
@@ -51,19 +52,19 @@ def effort(source: NotebookNode) -> Effort:
     texts = [cell.source for cell in source.cells if cell.cell_type == "markdown"]
     code = [cell.source for cell in source.cells if cell.cell_type == "code"]
     lines = [line for cell in code for answer in _ANSWER.findall(cell) for line in answer.split("\n") if line.strip()]
-    stretches = [0.0]
+    readings = [0.0]  # minutes before, between and after the cells in which students write
     for cell in source.cells:
         if is_solution(cell):
-            stretches.append(0.0)
+            readings.append(0.0)
         else:
-            prose = cell.cell_type == "markdown"
-            stretches[-1] += len(cell.source.split()) / FLUENT_WORDS_A_MINUTE if prose else MINUTES_A_CELL
-    return Effort(sum(len(text.split()) for text in texts), len(code), len(lines), max(stretches))
+            is_prose = cell.cell_type == "markdown"
+            readings[-1] += len(cell.source.split()) / FLUENT_WORDS_A_MINUTE if is_prose else MINUTES_A_CELL
+    return Effort(sum(len(text.split()) for text in texts), len(code), len(lines), max(readings))
 
 
-def time_sentence(needed: Effort) -> str:
+def time_sentence(work: Effort) -> str:
     """Return the sentence about the required time for the first cell of a chapter."""
-    return f"{duration_text(needed.reading)} to read and run, {duration_text(needed.writing)} for the exercises"
+    return f"{duration_text(work.reading)} to read and run, {duration_text(work.writing)} for the exercises"
 
 
 def duration_text(minutes: float) -> str:
@@ -76,7 +77,7 @@ def duration_text(minutes: float) -> str:
 
 def outdated_time_sentence(name: str, source: NotebookNode) -> list[Finding]:
     """Return a finding if the time in the first cell of a source notebook differs from the estimate."""
-    words = time_sentence(effort(source))
-    if words in " ".join(source.cells[0].source.split()):
+    sentence = time_sentence(effort(source))
+    if sentence in " ".join(source.cells[0].source.split()):
         return []
-    return [Finding(name, source.cells[0].id, f"its time is out of date; write: {words}")]
+    return [Finding(name, source.cells[0].id, f"its time is out of date; write: {sentence}")]

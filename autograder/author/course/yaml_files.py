@@ -1,16 +1,17 @@
-"""Reads a YAML file of a course: its data, the line of each part, and its problems."""
+"""Reads the YAML files of a course: their data, the line of each part, and their problems."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import yaml
 
-from autograder.author.course.findings import Finding
-from autograder.author.course.schema_sentences import Place, broken_schema, file_schema
+from autograder.author.course.exceptions import CourseError
+from autograder.author.course.findings import Finding, display_path
+from autograder.author.course.schema_sentences import KeyPath, broken_schema, file_schema
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # equivalent; the C version is ten times as fast
 
@@ -22,35 +23,36 @@ class YamlFile:
     Attributes:
         shown: its path in findings.
         data: its data, or None if it is empty or unusable.
-        lines: the line of each key and list entry, by its place.
+        lines: the line of each key and list entry, by its key path.
         findings: its problems. If there are none, the data match the schema.
     """
 
     shown: str
     data: Any
-    lines: Mapping[Place, int]
+    lines: Mapping[KeyPath, int]
     findings: tuple[Finding, ...] = ()
 
-    def finding(self, place: Place, message: str) -> Finding:
-        """Return a finding at a place, or at the nearest enclosing place in the file."""
-        around = (place[:length] for length in range(len(place), 0, -1))
-        return Finding(self.shown, None, message, next((self.lines[p] for p in around if p in self.lines), 1))
+    def finding(self, path: KeyPath, message: str) -> Finding:
+        """Return a finding at a key path, or at the innermost part around it that the file has."""
+        around = (path[:length] for length in range(len(path), 0, -1))
+        return Finding(self.shown, None, message, next((self.lines[each] for each in around if each in self.lines), 1))
 
 
-def read_yaml(path: Path, shown: str, schema: str = "") -> YamlFile:
+def read_yaml(path: Path, *, shown: str = "", schema: str = "") -> YamlFile:
     """Read an existing YAML file.
 
     Args:
         path: the file.
-        shown: its path in findings.
+        shown: its path in findings, by default relative to the course.
         schema: name of its schema in `files.schema.json`, by default the file's name.
     """
+    shown = shown or display_path(path)
     try:
         loader = LOADER(path.read_text(encoding="utf-8"))
         top = loader.get_single_node()
         data = None if top is None else loader.construct_document(top)
     except UnicodeDecodeError as error:
-        return YamlFile(shown, None, {}, (Finding(shown, None, f"is not text in UTF-8: {error.reason}", 1),))
+        return YamlFile(shown, None, {}, (Finding(shown, None, f"is not UTF-8 text: {error.reason}", 1),))
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         context = f", {error.context}" if error.context else ""
@@ -58,26 +60,36 @@ def read_yaml(path: Path, shown: str, schema: str = "") -> YamlFile:
         return YamlFile(shown, None, {}, (Finding(shown, None, message, mark.line + 1 if mark else 1),))
     except (yaml.YAMLError, ValueError) as error:  # a character that YAML forbids, or an invalid date
         return YamlFile(shown, None, {}, (Finding(shown, None, f"cannot be read as YAML: {error}", 1),))
-    lines: dict[Place, int] = {}
-    repeated = [] if top is None else list(_walk(top, (), lines))
-    read = YamlFile(shown, data, lines)
-    findings = [read.finding(place, f"`{place[-1]}` occurs twice: only the last one would count") for place in repeated]
-    findings += [
-        read.finding(place, message) for place, message in broken_schema(data, file_schema(schema or path.name))
-    ]
-    return YamlFile(shown, data, lines, tuple(findings))
+    lines: dict[KeyPath, int] = {}
+    duplicates = [] if top is None else list(_walk(top, (), lines))
+    file = YamlFile(shown, data, lines)
+    problems = [(key, f"`{key[-1]}` occurs twice: only the last one would count") for key in duplicates]
+    problems += broken_schema(data, file_schema(schema or path.name))
+    return replace(file, findings=tuple(file.finding(key, message) for key, message in problems))
 
 
-def _walk(node: yaml.Node, place: Place, lines: dict[Place, int]) -> Iterator[Place]:
-    """Add the lines of all parts of a node to `lines`, and yield the duplicate keys."""
+def load_yaml(path: Path, *, schema: str = "") -> Any:
+    """Return the data of a YAML file.
+
+    Raises:
+        CourseError: it is not YAML, or violates its schema. The message lists all problems, line by line.
+    """
+    file = read_yaml(path, shown=str(path), schema=schema)
+    if file.findings:
+        raise CourseError("\n".join(map(str, file.findings)))
+    return file.data
+
+
+def _walk(node: yaml.Node, path: KeyPath, lines: dict[KeyPath, int]) -> Iterator[KeyPath]:
+    """Add the lines of all parts of a node to `lines`, and yield the key paths of duplicate keys."""
     if isinstance(node, yaml.SequenceNode):
         for index, entry in enumerate(node.value):
-            part = (*place, str(index))
+            part = (*path, str(index))
             lines[part] = entry.start_mark.line + 1
             yield from _walk(entry, part, lines)
     elif isinstance(node, yaml.MappingNode):
         for key, value in node.value:
-            part = (*place, str(key.value))
+            part = (*path, str(key.value))
             if part in lines:
                 yield part
             lines[part] = key.start_mark.line + 1

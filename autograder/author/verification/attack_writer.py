@@ -1,4 +1,4 @@
-"""Writes attacks: the reference, or a mutant with known failures, with a payload added."""
+"""Writes attacks: the reference, or a mutant with known failures, with an added payload."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _is_told(names={names!r}):
 
 @dataclass(frozen=True)
 class Chapter:
-    """A chapter whose reference and mutants are turned into attacks."""
+    """A chapter whose reference and mutants form the basis of attacks."""
 
     assignment: str
 
@@ -83,17 +83,17 @@ class Chapter:
             for name, text in files.items():
                 (home / name).parent.mkdir(parents=True, exist_ok=True)
                 (home / name).write_text(text)
-            for name, (find, put) in swaps.items():
+            for name, (find, replacement) in swaps.items():
                 text = (home / name).read_text()
                 assert text.count(find) == 1, find
-                (home / name).write_text(text.replace(find, put))
+                (home / name).write_text(text.replace(find, replacement))
             for name, head in heads.items():
                 (home / name).write_text(f"{head}\n{(home / name).read_text()}")
 
         return write
 
     def evasions(self, manner: str, mistake: str, base: str, file: str, swap: tuple[str, str]) -> tuple[Attack, ...]:
-        """Return two attacks that try to hide a mistake: one in real time, one unless it detects a hidden check.
+        """Return two attacks that try to hide a mistake: one runs in real time, one behaves well if it detects a check.
 
         Args:
             manner: how the program behaves, for the ids of the attacks.

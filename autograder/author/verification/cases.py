@@ -1,4 +1,4 @@
-"""The test cases of the verification: each submission, how it is written, and its expected result."""
+"""The test cases of the verification: how to write each submission, and the result that it must get."""
 
 from __future__ import annotations
 
@@ -50,13 +50,13 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
     selected = [
         Case(assignment, CaseKind.REFERENCE, "reference", partial(write_reference, sources), verify_full_marks),
         Case(assignment, CaseKind.RELEASE, "release", partial(write_released, chapter), verify_zero),
-        *_variants(assignment, sources),
+        *_variant_cases(assignment, sources),
     ]
     if quick:
-        selected += [_mutant(assignment, mutant, sources, only) for mutant, only in one_mutant_per_check(assignment)]
+        selected += [_mutant_case(assignment, m, sources, only) for m, only in one_mutant_per_check(assignment)]
     else:
-        selected += [_mutant(assignment, mutant, sources) for mutant in mutants(assignment)]
-        selected += [_attack(assignment, attack) for attack in attacks(assignment)]
+        selected += [_mutant_case(assignment, mutant, sources) for mutant in mutants(assignment)]
+        selected += [_attack_case(assignment, attack) for attack in attacks(assignment)]
         selected += rewritten_cases(assignment)
     return tuple(selected)
 
@@ -84,12 +84,12 @@ def one_mutant_per_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]
     return [(m, suite.with_dependencies(*chosen[m.id])) for m in candidates if m.id in chosen]
 
 
-def _mutant(assignment: str, mutant: Mutant, sources: tuple[str, ...], only: tuple[str, ...] = ()) -> Case:
+def _mutant_case(assignment: str, mutant: Mutant, sources: tuple[str, ...], only: tuple[str, ...] = ()) -> Case:
     write, verify = partial(write_mutant, mutant, sources), partial(verify_mutant, mutant, only=frozenset(only))
     return Case(assignment, CaseKind.MUTANT, mutant.id, write, verify, options=replace(WITHOUT_PICTURES, only=only))
 
 
-def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
+def _variant_cases(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
     """Yield correct answers in other styles: the reference with some files replaced."""
     folder = suites.hidden(assignment).folder / "variants"
     for variant in sorted(path for path in folder.glob("*") if path.is_dir()):
@@ -102,7 +102,7 @@ def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
 
 
 def rewritten_cases(assignment: str) -> list[Case]:
-    """Return one answer for each rewrite of the reference by `equivalent_rewrites`."""
+    """Return a case for each rewrite of the reference by `equivalent_rewrites`."""
     sources = suites.hidden(assignment).sources
 
     def write(target: Path, rewrite: Callable[[str], str]) -> None:
@@ -118,7 +118,7 @@ def rewritten_cases(assignment: str) -> list[Case]:
     ]
 
 
-def _attack(assignment: str, attack: Attack) -> Case:
+def _attack_case(assignment: str, attack: Attack) -> Case:
     return Case(assignment, CaseKind.ATTACK, attack.id.replace(" ", "-"), attack.write, attack.verify)
 
 

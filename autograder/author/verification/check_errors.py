@@ -1,23 +1,23 @@
-"""Finds in the log of a grading where a course's checks raised errors of their own."""
+"""Finds the errors that a course's own checks raised, in the log of a grading."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
 
-from autograder.author.course.suite_rules import shown
+from autograder.author.course.findings import display_path
 
 TRACEBACK = "Traceback (most recent call last):\n"
 _FRAME = re.compile(r'^  File "(.+)", line (\d+), in ', re.MULTILINE)
 
 
 def errors_in_checks(log: str, folder: Path) -> list[str]:
-    """Return each error in a log once, as FILE:LINE: ERROR, with the last line in `folder` that took part."""
+    """Return each error in a log once, as FILE:LINE: ERROR, with the innermost line of its traceback in `folder`."""
     errors: dict[str, None] = {}
     for traceback in log.split(TRACEBACK)[1:]:
         own = [(Path(file), line) for file, line in _FRAME.findall(traceback) if Path(file).is_relative_to(folder)]
         error = next((line for line in traceback.splitlines() if line and not line.startswith(" ")), "")
         if own and error:
             file, line = own[-1]
-            errors.setdefault(f"{shown(file)}:{line}: {error}")
+            errors.setdefault(f"{display_path(file)}:{line}: {error}")
     return list(errors)

@@ -16,35 +16,38 @@ the mutants that fail it directly. A mutant is a version of the reference with o
 `mutants.yaml` beside the suite. `autograder verify` grades all of them. `autograder course tables` writes this page.
 
 The requirements of a chapter are quoted from the notebook. Each is listed with the hidden checks that cover it and the
-mutants that break it. A requirement without a check has a reason.
+mutants that break it. If no check covers a requirement, the page gives the reason.
 """
-COLUMNS = ("check", "points", "the student reads", "fails in a version that")
-CONTRACT = ("the notebook says", "covered by", "broken by")
+CHECK_HEADINGS = ("check", "points", "the student reads", "fails in a version that")
+REQUIREMENT_HEADINGS = ("the notebook says", "covered by", "broken by")
 
 
 def checks_page() -> str:
-    """Return the page as Markdown."""
+    """Return the page in Markdown."""
     return HEAD + "".join("\n".join(["", f"## {name}", "", *_chapter(name)]) for name in suites.graded_assignments())
 
 
 def _chapter(name: str) -> list[str]:
-    checks, flawed = suites.hidden(name).checks, mutants(name)
-    requirements = [_requirement(each, checks, flawed) for each in contract(name).values()]
-    return [*table(COLUMNS, _rows(checks, flawed)), f"### The requirements of {name}\n", *table(CONTRACT, requirements)]
+    checks, named_mutants = suites.hidden(name).checks, mutants(name)
+    check_rows = _check_rows(checks, named_mutants)
+    requirement_rows = [_requirement_row(each, checks, named_mutants) for each in contract(name).values()]
+    heading = f"### The requirements of {name}\n"
+    return [*table(CHECK_HEADINGS, check_rows), heading, *table(REQUIREMENT_HEADINGS, requirement_rows)]
 
 
-def _requirement(requirement: Requirement, checks: Sequence[Check], flawed: Sequence[Mutant]) -> tuple[str, ...]:
-    """Return the row of a requirement."""
+def _requirement_row(
+    requirement: Requirement, checks: Sequence[Check], named_mutants: Sequence[Mutant]
+) -> tuple[str, ...]:
     if requirement.unchecked:
         return requirement.text, f"no check: {requirement.unchecked}", ""
     covering = [check for check in checks if requirement.id in check.covers]
-    broken_by = dict.fromkeys(m.id for check in covering for m in flawed if _fails(m, check))
+    broken_by = dict.fromkeys(m.id for check in covering for m in named_mutants if _fails(m, check))
     return requirement.text, ", ".join(f"`{check.id}`" for check in covering), ", ".join(broken_by)
 
 
-def _rows(checks: Sequence[Check], flawed: Sequence[Mutant]) -> Iterator[tuple[str, ...]]:
+def _check_rows(checks: Sequence[Check], named_mutants: Sequence[Mutant]) -> Iterator[tuple[str, ...]]:
     for check in checks:
-        errors = [m.title for m in flawed if _fails(m, check)]
+        errors = [m.title for m in named_mutants if _fails(m, check)]
         yield f"`{check.id}`", f"{check.points:g}", check.title, "; ".join(errors)
 
 

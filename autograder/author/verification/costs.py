@@ -20,7 +20,12 @@ from autograder.result.model import CheckResult, Result, Status
 from autograder.suite import Outcome
 
 MAX_RATIO = 2.0  # of the lost points to the points of its own check
-NOT_CHECKED, SAME, AFTER, ALIKE = "not checked", "of the same requirement", "after it", "for the same reason"
+NOT_CHECKED, SAME_REQUIREMENT, AFTER, SAME_MESSAGE = (
+    "not checked",
+    "of the same requirement",
+    "after it",
+    "for the same reason",
+)
 HEAD = """## The cost of each named mutant
 
 The points of its own check, the points that it loses, and the requirements whose checks failed.
@@ -81,8 +86,8 @@ def counts(costs: Sequence[Cost]) -> dict[str, object]:
 
 def report(costs: Sequence[Cost]) -> str:
     """Return a Markdown table of the mutants, their points and the requirements that they break."""
-    head = ("chapter", "mutant", "its check", "points", "lost", "requirements broken", "reason")
-    lines = table(head, (tuple(_cells(cost)) for cost in costs))
+    headings = ("chapter", "mutant", "its check", "points", "lost", "requirements broken", "reason")
+    lines = table(headings, (tuple(_cells(cost)) for cost in costs))
     return "\n".join([HEAD, *lines]) if costs else ""
 
 
@@ -95,7 +100,7 @@ def _cells(cost: Cost) -> Iterator[str]:
 def _cost(mutant: Mutant, result: Result) -> Cost:
     lost = [check for check in result.checks if check.outcome is not Outcome.PASSED]
     own = next(check for check in result.checks if check.id == mutant.check)
-    broken = {name: None for check in lost if check.outcome is Outcome.FAILED for name in check.holds}
+    broken = dict.fromkeys(name for check in lost if check.outcome is Outcome.FAILED for name in check.holds)
     cost = Cost(result.assignment, mutant.id, own.id, own.max_points, _points(lost), tuple(broken))
     return replace(cost, reason=_reason(mutant, result, own, lost)) if cost.is_expensive else cost
 
@@ -105,22 +110,22 @@ def _reason(mutant: Mutant, result: Result, own: CheckResult, lost: Sequence[Che
         return mutant.reason
     if result.diagnosis.kind is not Kind.OK:
         return str(result.diagnosis.kind.value).replace("_", " ")
-    kinds: dict[str, list[CheckResult]] = {}
+    by_explanation: dict[str, list[CheckResult]] = {}
     for check in lost:
-        kinds.setdefault(_kind(check, own, lost), []).append(check)
-    if _points(kinds.pop("", ())) > MAX_RATIO * own.max_points:
+        by_explanation.setdefault(_explanation(check, own, lost), []).append(check)
+    if _points(by_explanation.pop("", ())) > MAX_RATIO * own.max_points:
         return ""
-    return "; ".join(f"{_points(checks):g} {kind}" for kind, checks in kinds.items())
+    return "; ".join(f"{_points(checks):g} {explanation}" for explanation, checks in by_explanation.items())
 
 
-def _kind(check: CheckResult, own: CheckResult, lost: Sequence[CheckResult]) -> str:
-    """Return why a check failed together with the mutant's own check, or an empty text if nothing explains it."""
+def _explanation(check: CheckResult, own: CheckResult, lost: Sequence[CheckResult]) -> str:
+    """Return why a check failed together with the mutant's own check, or an empty string if nothing explains it."""
     if check.id == own.id:
         return ""
     if check.outcome is Outcome.NOT_CHECKED:
         return NOT_CHECKED
     if set(check.holds) & set(own.holds):
-        return SAME
+        return SAME_REQUIREMENT
     predecessors = {each.id: each.after for each in lost}
     reached, pending = set[str](), [check.id]
     while pending:
@@ -129,7 +134,7 @@ def _kind(check: CheckResult, own: CheckResult, lost: Sequence[CheckResult]) -> 
             pending += predecessors[name]
     if own.id in reached:
         return AFTER
-    return ALIKE if sum(each.message == check.message for each in lost) > 1 else ""
+    return SAME_MESSAGE if sum(each.message == check.message for each in lost) > 1 else ""
 
 
 def _points(checks: Iterable[CheckResult]) -> float:

@@ -1,4 +1,4 @@
-"""Rewrites correct answers in other styles without changing their behaviour. They must keep every point.
+"""Rewrites correct answers in other styles without changing their behaviour. Rewritten answers must keep all points.
 
 Like the mutation operators, a rewrite changes the text at the positions that `ast` reports.
 """
@@ -28,7 +28,7 @@ from autograder.author.verification.python_operators import (
 
 MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
 # Operands that bind tighter than a comparison.
-TIGHT = (ast.Attribute, ast.BinOp, ast.Call, ast.Constant, ast.Name, ast.Subscript, ast.UnaryOp)
+TIGHT_OPERANDS = (ast.Attribute, ast.BinOp, ast.Call, ast.Constant, ast.Name, ast.Subscript, ast.UnaryOp)
 LONGEST_LINE = 99  # columns, the limit of the ROS linters
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
@@ -59,25 +59,25 @@ def rewrites() -> Mapping[str, Callable[[str], str]]:
     return {"rewritten": rewritten, "formatted": formatted} if find_spec("ruff") else {"rewritten": rewritten}
 
 
-def _where_it_fits(
+def _only_fitting(
     rewriting: Callable[[Source, list[NodeInContext]], Iterator[Replacement]],
 ) -> Callable[[Source, list[NodeInContext]], Iterator[Replacement]]:
     """Keep only replacements that do not overlap, stay within one line, and do not make it too long."""
 
     @functools.wraps(rewriting)
     def fitting(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
-        reached = -1
+        last_end = -1
         for start, end, new in sorted(rewriting(source, nodes), key=lambda one: (one[0], -one[1])):
             first, last = source.data.rfind(b"\n", 0, start) + 1, source.data.find(b"\n", end)
             columns = (start - first) + len(new) + (last - end)
-            if start > reached and b"\n" not in source.data[start:end] and columns <= LONGEST_LINE:
+            if start > last_end and b"\n" not in source.data[start:end] and columns <= LONGEST_LINE:
                 yield start, end, new
-                reached = end
+                last_end = end
 
     return fitting
 
 
-@_where_it_fits
+@_only_fitting
 def mirrored_comparisons(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield `b > a` for `a < b`, unless both sides contain calls, whose order may matter."""
     for context in nodes:
@@ -90,8 +90,8 @@ def mirrored_comparisons(source: Source, nodes: list[NodeInContext]) -> Iterator
                 yield (*source.span(node), f"{right} {symbol} {left}")
 
 
-@_where_it_fits
-def turned_conditions(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
+@_only_fitting
+def inverted_conditions(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield `b if not c else a` for `a if c else b`."""
     for context in nodes:
         node = context.node
@@ -100,8 +100,8 @@ def turned_conditions(source: Source, nodes: list[NodeInContext]) -> Iterator[Re
             yield (*source.span(node), f"{other} if not {test} else {body}")
 
 
-@_where_it_fits
-def written_out_sums(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
+@_only_fitting
+def expanded_increments(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield `x = x + 1` for `x += 1`, for numbers only: with a list, it would create a new list."""
     for context in nodes:
         node = context.node
@@ -137,17 +137,16 @@ def reordered_methods(source: Source, nodes: list[NodeInContext]) -> Iterator[Re
                 yield start, end, source.data[first:last].decode()
 
 
-@_where_it_fits
+@_only_fitting
 def return_types(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield `-> None` for each function that returns nothing."""
     for node in (context.node for context in nodes if isinstance(context.node, FUNCTIONS)):
-        inside = list(ast.walk(node))
-        gives = any(isinstance(each, ast.Return) and each.value for each in inside)
-        if (
-            node.returns is None
-            and not gives
-            and not any(isinstance(each, ast.Yield | ast.YieldFrom) for each in inside)
-        ):
+        results = [
+            each
+            for each in ast.walk(node)
+            if isinstance(each, ast.Yield | ast.YieldFrom) or (isinstance(each, ast.Return) and each.value)
+        ]
+        if node.returns is None and not results:
             colon = _end_of_header(source, node)
             yield colon, colon, " -> None"
 
@@ -165,13 +164,13 @@ def _calls(node: ast.AST) -> bool:
 
 
 def _operand(source: Source, node: ast.expr) -> str:
-    return source.text(node) if isinstance(node, TIGHT) else f"({source.text(node)})"
+    return source.text(node) if isinstance(node, TIGHT_OPERANDS) else f"({source.text(node)})"
 
 
 def _variables(function: Function) -> set[str]:
     """Return the names that a function uses only as variables, and not inside an f-string.
 
-    Before Python 3.12, positions inside f-strings are not relative to the file.
+    Before Python 3.12, `ast` reports wrong positions inside f-strings.
     """
     inside = list(ast.walk(function))
     stored = {node.id for node in inside if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
@@ -203,8 +202,8 @@ def _end_of_header(source: Source, function: Function) -> int:
 
 REWRITINGS = (
     mirrored_comparisons,
-    turned_conditions,
-    written_out_sums,
+    inverted_conditions,
+    expanded_increments,
     renamed_variables,
     return_types,
     postponed_annotations,

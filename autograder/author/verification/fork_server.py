@@ -4,11 +4,11 @@
 
 Starting a worker takes about one core-second, as long as the checks of many submissions. The verification grades
 thousands of submissions that the course itself contains, so one worker in one worker sandbox grades many of them in
-sequence. A student's submission always gets a new worker in a new sandbox (`own_sandbox.in_own_sandbox`), and so
-does an attack. The inner sandboxes around students' code are the same in both cases.
+sequence. A student's submission always gets a new worker in a new sandbox (`own_sandbox.in_own_sandbox`), and so does
+an attack. The inner sandboxes around students' code are the same in both cases.
 
 The server receives jobs. For each job, a child sends the files that it produced, and then the server sends the child's
-exit status and output. Nothing is unpickled.
+exit status and output. Neither side unpickles anything.
 """
 
 from __future__ import annotations
@@ -30,26 +30,28 @@ from autograder.run.sandbox.bubblewrap import OUT
 from autograder.run.sandbox.launcher import warm_up
 from autograder.run.sandbox.messages import send_message
 
-OUTPUT = 1024 * 1024  # bytes: the end of a child's output that goes into the reply
+MAX_OUTPUT = 1024 * 1024  # bytes of a child's output in the reply, from its end
 
 
 def serve(scratch: Path, client: Connection) -> None:
-    """Run jobs until the client closes the connection, each in a separate child. Remove the files that it leaves."""
+    """Run jobs until the client closes the connection, each in a new child, and remove the files that it leaves."""
     log_file = scratch / "output.log"
     while True:
         job = Job.from_json(client.recv_bytes().decode())
-        assert job.suite.version + job.suite.files_digest  # cached here for all children
+        assert (
+            job.suite.version + job.suite.files_digest
+        )  # computed here, so that the children inherit the cached values
         child = os.fork()
         if child == 0:
             line.take(client)
             _work(job, log_file)
         _, status = os.waitpid(child, 0)
         _reap_orphans()
-        output = log_file.read_bytes()[-OUTPUT:].decode("utf-8", errors="replace") if log_file.is_file() else ""
+        output = log_file.read_bytes()[-MAX_OUTPUT:].decode("utf-8", errors="replace") if log_file.is_file() else ""
         reply = {"do": "done", "status": os.waitstatus_to_exitcode(status), "output": output}
-        for left in (*scratch.iterdir(), *(scratch / OUT).glob("*")):
-            if not left.is_mount():
-                subprocess.run(["rm", "-rf", "--", left], check=True)
+        for path in (*scratch.iterdir(), *(scratch / OUT).glob("*")):
+            if not path.is_mount():
+                subprocess.run(["rm", "-rf", "--", path], check=True)
         send_message(client, reply)
 
 
@@ -82,7 +84,7 @@ def main() -> None:
     worker.prepare()
     for profile in PROFILES:  # a server started by a child would end with that child
         warm_up(profile)
-    PROFILES["tests"].load()  # a worker needs most of these modules, too
+    PROFILES["tests"].load()  # a worker also needs most of these modules
     gc.collect()
     gc.freeze()  # keeps the children's garbage collectors away from shared memory pages
     with Connection(int(sys.argv[2])) as client, suppress(EOFError):

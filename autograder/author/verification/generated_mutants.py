@@ -1,4 +1,4 @@
-"""Generates the mutants of a chapter: every operator at every place in the files that students write."""
+"""Generates the mutants of a chapter: applies each operator wherever it matches in the files that students write."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from autograder.author.verification.python_operators import (
     Mutation,
     Replacement,
     Source,
-    classic,
-    left_out,
+    classic_mutations,
     nodes_in_context,
+    removal_mutations,
     replaced,
 )
 from autograder.author.verification.ros_operators import is_queue_length, multi_node_mutations, ros_mutations, wall_time
 from autograder.author.verification.text_operators import text_mutations
 from autograder.suite import suites
 
-PAIRS = 20  # mutants of second order in a chapter
+PAIRS = 20  # second-order mutants in a chapter
 
 
 @dataclass(frozen=True)
@@ -76,13 +76,13 @@ class GeneratedMutants:
     """A chapter's mutants, with second-order ones last, and how many were omitted as equivalent or duplicate."""
 
     mutants: tuple[GeneratedMutant, ...]
-    left_out: int
+    omitted: int
 
 
 def generated_mutants(assignment: str) -> GeneratedMutants:
     """Return the mutants of a chapter. They depend only on its reference."""
     mutants: dict[str, GeneratedMutant] = {}
-    left_out = 0
+    omitted = 0
     for file, functions, given in written_by_students(assignment):
         text = (course_paths.SOLUTIONS / file).read_text(encoding="utf-8")
         seen = {_meaning(file, text)}
@@ -91,13 +91,13 @@ def generated_mutants(assignment: str) -> GeneratedMutants:
                 continue
             meaning = _meaning(file, replaced(text.encode(), changes).decode())
             if meaning in seen:
-                left_out += 1
+                omitted += 1
                 continue
             seen.add(meaning)
             mutant = _named(file, function, operator, changes, text)
             assert mutant.id not in mutants, f"two mutants are called {mutant.id}"
             mutants[mutant.id] = mutant
-    return GeneratedMutants((*mutants.values(), *_pairs(list(mutants.values()))), left_out)
+    return GeneratedMutants((*mutants.values(), *_pairs(list(mutants.values()))), omitted)
 
 
 def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None, frozenset[bytes]]]:
@@ -106,17 +106,13 @@ def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] |
     copies = [(cell, copied) for cell in chapter.read().cells if (copied := copied_file(cell))]
     for cell, copied in copies:
         if is_solution(cell) and copied.source.parts[0] in packages:
-            yield (
-                str(copied.source),
-                frozenset(copied.hidden_functions) if copied.hidden_functions else None,
-                frozenset(),
-            )
+            yield str(copied.source), frozenset(copied.hidden_functions) or None, frozenset()
     given = chapter.folder / "ws" / "src"
     written = {copied.source.parts[0] for _, copied in copies}
     for package in set(packages) - written:  # students get a faulty version and correct it
         for path in sorted((given / package).rglob("*")):
-            right = course_paths.SOLUTIONS / path.relative_to(given)
-            if right.is_file() and path.is_file() and right.read_bytes() != path.read_bytes():
+            correct = course_paths.SOLUTIONS / path.relative_to(given)
+            if correct.is_file() and path.is_file() and correct.read_bytes() != path.read_bytes():
                 yield str(path.relative_to(given)), None, frozenset(path.read_bytes().splitlines())
 
 
@@ -130,10 +126,10 @@ def mutations(file: str, text: str, functions: frozenset[str] | None) -> Iterato
     for function, context in nodes_in_context(source, functions):
         nodes.append(context.node)
         simple = itertools.chain(
-            () if is_queue_length(context) else classic(source, context), ros_mutations(source, context)
+            () if is_queue_length(context) else classic_mutations(source, context.node), ros_mutations(source, context)
         )
         yield from ((function, (name, ((*source.span(node), new),))) for name, node, new in simple)
-        wider = itertools.chain(left_out(source, context.node), multi_node_mutations(source, context))
+        wider = itertools.chain(removal_mutations(source, context.node), multi_node_mutations(source, context))
         yield from ((function, mutation) for mutation in wider)
     yield from (("", mutation) for mutation in wall_time(source, nodes))
 
@@ -147,22 +143,22 @@ def _named(file: str, function: str, operator: str, changes: tuple[Replacement, 
         before, old = data[begin:start], data[start:end]
         name_digest.update(b"\0".join((before, old, new.encode(), data[end:stop])))
         name_digest.update(data[:begin].count(data[begin:stop]).to_bytes(2, "big"))  # the same lines may occur twice
-    where = ".".join(filter(None, (file.rpartition("/")[2], function)))
-    return GeneratedMutant(f"{where} {operator} {name_digest.hexdigest()[:6]}", operator, function, ((file, changes),))
+    target = ".".join(filter(None, (file.rpartition("/")[2], function)))
+    return GeneratedMutant(f"{target} {operator} {name_digest.hexdigest()[:6]}", operator, function, ((file, changes),))
 
 
 def _pairs(mutants: list[GeneratedMutant]) -> Iterator[GeneratedMutant]:
     """Yield second-order mutants: pseudo-random pairs of mutants that do not overlap."""
     ranked = sorted(mutants, key=lambda mutant: hashlib.sha256(mutant.id.encode()).digest())
-    for one, other in itertools.islice(zip(ranked[::2], ranked[1::2], strict=False), PAIRS):
-        changes = dict(one.changes)
-        for file, more in other.changes:
-            both = sorted((*changes.get(file, ()), *more))
-            if any(first[1] > second[0] for first, second in itertools.pairwise(both)):
+    for first, second in itertools.islice(zip(ranked[::2], ranked[1::2], strict=False), PAIRS):
+        changes = dict(first.changes)
+        for file, replacements in second.changes:
+            combined = sorted((*changes.get(file, ()), *replacements))
+            if any(before[1] > after[0] for before, after in itertools.pairwise(combined)):
                 break
-            changes[file] = tuple(both)
+            changes[file] = tuple(combined)
         else:
-            yield GeneratedMutant(f"{one.id} + {other.id}", "pair", one.function, tuple(changes.items()))
+            yield GeneratedMutant(f"{first.id} + {second.id}", "pair", first.function, tuple(changes.items()))
 
 
 def _lines(data: bytes, changes: tuple[Replacement, ...]) -> Iterator[bytes]:
@@ -183,5 +179,5 @@ def _code(code: CodeType) -> tuple[object, ...]:
     constants = tuple(
         _code(each) if isinstance(each, CodeType) else (type(each), repr(each)) for each in code.co_consts
     )
-    caught = getattr(code, "co_exceptiontable", b"")  # since Python 3.11
-    return code.co_code, constants, code.co_names, code.co_varnames, caught
+    exception_table = getattr(code, "co_exceptiontable", b"")  # since Python 3.11
+    return code.co_code, constants, code.co_names, code.co_varnames, exception_table

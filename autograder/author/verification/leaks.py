@@ -9,7 +9,7 @@ from __future__ import annotations
 import base64
 import codecs
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -17,7 +17,7 @@ from PIL import Image
 
 from autograder.probes.leak_markers import markers_in
 
-STOLEN = "STOLEN /"  # an attack's payload prints this before a path that it could read or write
+STOLEN = "STOLEN /"  # an attack's payload prints this before each path that it could read or write
 TEXTS = (".json", ".html", ".ipynb", ".svg", ".csv", ".txt")
 PICTURES = (".png",)
 _HEX = re.compile(r"(?:[0-9a-fA-F]{2}[ :,-]?){20,}")
@@ -33,10 +33,10 @@ def hidden_text_in(text: str, lines: Iterable[str] = ()) -> list[str]:
         text: text that a student gets.
         lines: lines that occur only in hidden files.
     """
-    readings = list(_readings(text))
-    words = {word for reading in readings for word in markers_in(reading.lower())}
-    squeezed = {line: _squeezed(line) for line in lines}
-    words |= {line for line, short in squeezed.items() if any(line in read or short in read for read in readings)}
+    decodings = list(_decodings(text))
+    words = {word for decoding in decodings for word in markers_in(decoding.lower())}
+    letters = {line: _letters(line) for line in lines}
+    words |= {line for line, short in letters.items() if any(line in each or short in each for each in decodings)}
     return sorted(words)
 
 
@@ -51,13 +51,13 @@ def texts_of(folder: Path) -> Iterator[str]:
                 yield from (f"{name} {value}" for name, value in picture.info.items())
 
 
-def _readings(text: str) -> Iterator[str]:
+def _decodings(text: str) -> Iterator[str]:
     """Yield every decoding of a text."""
     for plain in (text, text[::-1]):
         yield plain
-        yield _squeezed(plain)
+        yield _letters(plain)
         yield codecs.encode(plain, "rot13")
-        yield _squeezed(codecs.encode(plain, "rot13"))
+        yield _letters(codecs.encode(plain, "rot13"))
     yield unquote(text)
     yield text.encode("latin-1", "backslashreplace").decode("unicode_escape", "replace")
     yield "".join(_ID.findall(text))
@@ -68,45 +68,23 @@ def _readings(text: str) -> Iterator[str]:
             yield part[::-1]
 
 
-def _squeezed(text: str) -> str:
-    """Return only the letters, in lower case, so that separators cannot hide a word."""
+def _letters(text: str) -> str:
+    """Return only the letters, in lower case, because separators may hide a word."""
     return "".join(char for char in text.lower() if char.isalpha())
 
 
 def _from_hex(text: str) -> Iterator[str]:
     for match in _HEX.finditer(text):
         digits = re.sub(r"[^0-9a-fA-F]", "", match[0])
-        yield from (bytes.fromhex(_even(digits[start:])).decode("latin-1") for start in (0, 1))
+        for start in (0, 1):
+            end = start + (len(digits) - start) // 2 * 2
+            yield bytes.fromhex(digits[start:end]).decode("latin-1")
 
 
 def _from_base64(text: str) -> Iterator[str]:
     for match in _BASE64.finditer(text):
-        run = match[0].replace("-", "+").replace("_", "/")
+        digits = match[0].replace("-", "+").replace("_", "/")
         for start in range(4):
-            part = run[start:]
+            part = digits[start:]
             part = part[:-1] if len(part) % 4 == 1 else part  # a single character does not encode a byte
             yield base64.b64decode(part + "=" * (-len(part) % 4)).decode("latin-1")
-
-
-def _even(digits: str) -> str:
-    return digits[: len(digits) // 2 * 2]
-
-
-ENCODINGS: dict[str, Callable[[str], str]] = {  # that `hidden_text_in` decodes; used by its tests and by attacks
-    "plain": str,
-    "reversed": lambda text: text[::-1],
-    "upper case": str.upper,
-    "rot13": lambda text: codecs.encode(text, "rot13"),
-    "hex": lambda text: text.encode().hex(),
-    "hex with an odd beginning": lambda text: "a" + text.encode().hex(" "),
-    "base64": lambda text: base64.b64encode(text.encode()).decode(),
-    "base64, one on": lambda text: base64.b64encode(b"x" + text.encode()).decode(),
-    "base64, two on": lambda text: base64.urlsafe_b64encode(b"xy" + text.encode()).decode(),
-    "base64 in a word": lambda text: "abc" + base64.b64encode(text.encode()).decode(),
-    "per cent": lambda text: "".join(f"%{ord(char):02x}" for char in text),
-    "escapes": lambda text: "".join(f"\\x{ord(char):02x}" for char in text),
-    "dots between": lambda text: ".".join(text),
-    "lines between": lambda text: "\n".join(text),
-    "one test each": lambda text: " ".join(f"test_a[{char}]" for char in text),
-    "numbers": lambda text: " ".join(str(ord(char)) for char in text),
-}

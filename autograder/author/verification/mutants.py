@@ -1,7 +1,7 @@
-"""Mutants: copies of the reference solution with one realistic student error each.
+"""Named mutants: copies of the reference solution with one realistic student error each.
 
-A suite's `mutants.yaml` defines the edits of each mutant and the check that should catch it. A snapshot beside that
-file records all checks that the mutant fails, and its diagnosis (`autograder.author.verification.snapshot`).
+A suite's `mutants.yaml` defines the edits of each mutant and the check that should fail. A snapshot beside that file
+records all checks that the mutant fails, and its diagnosis (`autograder.author.verification.snapshot`).
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from autograder import course_paths
-from autograder.author.course.mutant_rules import read_or_raise
+from autograder.author.course.yaml_files import load_yaml
 from autograder.author.verification import snapshot
 from autograder.author.verification.snapshot import Record
 from autograder.diagnosis import Kind
@@ -71,9 +71,9 @@ def mutants(assignment: str) -> tuple[Mutant, ...]:
         GraderError: it names a check that the suite does not have.
     """
     suite = suites.hidden(assignment)
-    known, recorded = frozenset(check.id for check in suite.checks), snapshot.recorded(assignment)
-    data = read_or_raise(suite.folder / "mutants.yaml")
-    return tuple(_mutant(entry, data.get("file", ""), known, recorded) for entry in data["mutants"])
+    check_ids, records = frozenset(check.id for check in suite.checks), snapshot.recorded(assignment)
+    data = load_yaml(suite.folder / "mutants.yaml")
+    return tuple(_mutant(entry, data.get("file", ""), check_ids, records) for entry in data["mutants"])
 
 
 def write_reference(sources: tuple[str, ...], folder: Path) -> None:
@@ -108,8 +108,8 @@ def _apply(mutant: Mutant, edit: Edit, path: Path) -> None:
         return
     text = path.read_text()
     if text.count(edit.find) != 1:
-        occurs = f"{edit.find!r} occurs {text.count(edit.find)} times in {edit.file}"
-        raise GraderError(f"mutant {mutant.id}: {occurs}: correct the edit in mutants.yaml")
+        problem = f"{edit.find!r} occurs {text.count(edit.find)} times in {edit.file}"
+        raise GraderError(f"mutant {mutant.id}: {problem}: correct the edit in mutants.yaml")
     path.write_text(text.replace(edit.find, edit.replace))
 
 
@@ -121,13 +121,13 @@ def _edit(entry: dict[str, Any], file: str) -> Edit:
     return Edit(file, None, entry["write"]) if "write" in entry else Edit(file, entry["find"], entry["replace"])
 
 
-def _mutant(entry: dict[str, Any], file: str, known: frozenset[str], recorded: Mapping[str, Record]) -> Mutant:
+def _mutant(entry: dict[str, Any], file: str, check_ids: frozenset[str], records: Mapping[str, Record]) -> Mutant:
     check = entry.get("check")
-    if check not in known:
+    if check not in check_ids:
         raise GraderError(
             f"mutant {entry['id']}: the suite has no check {check}: correct `check` of this mutant in mutants.yaml"
         )
-    record = recorded.get(entry["id"], Record())
+    record = records.get(entry["id"], Record())
     return Mutant(
         id=entry["id"],
         title=entry["title"],

@@ -1,6 +1,6 @@
 """Grades the generated mutants of a chapter, each until a check fails, and stores the results.
 
-Three shortcuts reduce the time for a mutant to a second. If colcon would only copy the changed file, the built
+Three shortcuts reduce the time for a mutant to about a second. If colcon would only copy the changed file, the built
 reference is patched. Checks that only read the sources run before anything is built. Checks that killed earlier mutants
 of the same function run first. Before any mutant, the reference is graded with each shortcut. A shortcut is used only
 for checks that the reference passes with it.
@@ -34,7 +34,7 @@ from autograder.suite.fingerprint import digest
 
 COPIED = (".py", ".yaml")  # suffixes of files that colcon only copies
 NOT_COPIED = ("setup.py",)
-FIRST = 3  # checks that run before all others
+MAX_LIKELY = 3  # checks that run before all others
 FAILED = "not graded"
 
 
@@ -81,12 +81,12 @@ class MutationRun:
 
     def run_mutant(self, mutant: GeneratedMutant, version: str = "") -> MutantResult:
         """Grade a mutant until a check fails."""
-        began = time.monotonic()
+        started = time.monotonic()
         killer = next(filter(None, self._stages(mutant)), "")
         if killer:
             for location in {(mutant.file, mutant.function), (mutant.file, "")}:
                 self._killers[location][killer] += 1
-        return MutantResult(mutant.id, killer, round(time.monotonic() - began, 2), version)
+        return MutantResult(mutant.id, killer, round(time.monotonic() - started, 2), version)
 
     def _stages(self, mutant: GeneratedMutant) -> Iterator[str]:
         """Yield the killer of each stage, or "". Fast checks and likely killers come first."""
@@ -108,7 +108,7 @@ class MutationRun:
 
     def _likely(self, mutant: GeneratedMutant) -> frozenset[str]:
         killers = self._killers[mutant.file, mutant.function] or self._killers[mutant.file, ""]
-        return frozenset(name for name, _ in killers.most_common(FIRST))
+        return frozenset(name for name, _ in killers.most_common(MAX_LIKELY))
 
     def _killer(self, texts: dict[str, str], only: tuple[str, ...], built: str) -> str:
         result = self._grade(texts, Options(only=only, first_loss=True, pictures=False, built=built))
@@ -135,25 +135,25 @@ def run_mutants(
     *,
     seed: int,
     cache: Path,
-    on_result: Callable[[MutantResult], None] = lambda result: None,
+    on_result: Callable[[MutantResult], None],
 ) -> tuple[MutantResult, ...]:
     """Grade mutants of a chapter, and return their results.
 
     `cache` is a file of results. A stored result is reused if suite and reference are unchanged, so that an interrupted
-    run can continue. Each new result is appended to the file.
+    run can continue. Each new result is appended to the file and passed to `on_result`.
     """
     version, chosen = _version(assignment), list(mutants)
     lines = cache.read_text(encoding="utf-8").splitlines() if cache.is_file() else []
-    known = {
+    stored = {
         result.id: result
         for result in (MutantResult(**json.loads(line)) for line in lines)
         if result.version == version
     }
-    missing = [mutant for mutant in chosen if mutant.id not in known]
+    missing = [mutant for mutant in chosen if mutant.id not in stored]
     cache.parent.mkdir(parents=True, exist_ok=True)
     with cache.open("a", encoding="utf-8") as file:
 
-        def keep(result: MutantResult) -> None:
+        def append(result: MutantResult) -> None:
             if result.killer != FAILED:
                 file.write(json.dumps(asdict(result)) + "\n")
                 file.flush()
@@ -162,11 +162,10 @@ def run_mutants(
         new: tuple[MutantResult, ...] = ()
         if missing:
             with prepared_run(assignment, workers, seed) as run:
-                new = map_parallel(
-                    lambda mutant: run.run_mutant(mutant, version), missing, jobs=workers.count, on_done=keep
-                )
-    known |= {result.id: result for result in new}
-    return tuple(known[mutant.id] for mutant in chosen)
+                grade = lambda mutant: run.run_mutant(mutant, version)  # noqa: E731
+                new = map_parallel(grade, missing, jobs=workers.count, on_done=append)
+    by_id = stored | {result.id: result for result in new}
+    return tuple(by_id[mutant.id] for mutant in chosen)
 
 
 @contextmanager

@@ -1,8 +1,8 @@
-"""Mutation operators for Python. Each changes one place, or makes the same change in several places.
+"""Mutation operators for Python.
 
-They change the text at the positions that `ast` reports, so that the rest of the text is preserved. cosmic-ray and
-mutmut only have the classic operators, and depend on a parser and a dozen other packages. The ROS operators in
-`ros_operators.py` need the positions from `ast` in any case.
+They change the text at the positions that `ast` reports, and preserve the rest of it. cosmic-ray and mutmut have only
+the classic operators, and depend on a parser and a dozen other packages. The ROS operators in `ros_operators.py` need
+the positions from `ast` in any case.
 """
 
 from __future__ import annotations
@@ -19,7 +19,14 @@ BOUNDARY = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 ARITHMETIC = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
 ARITHMETIC |= {ast.FloorDiv: ("//", "/"), ast.Mod: ("%", "//")}
 LEVELS = {"debug": "info", "info": "debug", "warning": "info", "error": "warning", "fatal": "error"}
-FOR_PEOPLE = {"description", "additional_constraints", "reason", "msg", "maintainer", "maintainer_email"}
+TEXT_ARGUMENTS = {
+    "description",
+    "additional_constraints",
+    "reason",
+    "msg",
+    "maintainer",
+    "maintainer_email",
+}  # for people
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 Replacement = tuple[int, int, str]  # start and end of the replaced part in UTF-8 bytes, and the new text
@@ -85,7 +92,7 @@ def nodes_in_context(source: Source, functions: frozenset[str] | None) -> Iterat
             inner = NodeInContext(node, inner.ancestors, function or context.function)
             if function and functions is not None and not any(f"{name}.".startswith(f"{own}.") for own in functions):
                 return
-        elif _is_silent(node, context):
+        elif _is_not_mutated(node, context):
             return
         yield name, inner
         for field, value in ast.iter_fields(node):
@@ -98,7 +105,7 @@ def nodes_in_context(source: Source, functions: frozenset[str] | None) -> Iterat
         yield from walk(statement, "", NodeInContext(source.tree, (), None))
 
 
-def _is_silent(node: ast.AST, context: NodeInContext) -> bool:
+def _is_not_mutated(node: ast.AST, context: NodeInContext) -> bool:
     """Return whether a node does not affect execution, or only contains text for people."""
     if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
         return True  # a docstring
@@ -106,7 +113,7 @@ def _is_silent(node: ast.AST, context: NodeInContext) -> bool:
         return True
     if isinstance(node, ast.If) and "__name__" in ast.dump(node.test):
         return True
-    if isinstance(node, ast.keyword) and node.arg in FOR_PEOPLE:
+    if isinstance(node, ast.keyword) and node.arg in TEXT_ARGUMENTS:
         return True
     outer = context.node
     if isinstance(outer, ast.Call) and isinstance(outer.func, ast.Attribute) and outer.func.attr in LEVELS:
@@ -114,10 +121,10 @@ def _is_silent(node: ast.AST, context: NodeInContext) -> bool:
     return isinstance(node, ast.Constant | ast.Call) and isinstance(outer, ast.Raise | ast.Assert)
 
 
-def classic(source: Source, context: NodeInContext) -> Iterator[NodeMutation]:
-    """Yield the classic mutations of a node."""
+def classic_mutations(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
+    """Yield the mutations of a node that do not depend on its context or on ROS."""
     for operator in _OPERATORS:
-        yield from operator(source, context.node)
+        yield from operator(source, node)
 
 
 def _operators(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
@@ -138,8 +145,8 @@ def _operators(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     elif isinstance(node, ast.BoolOp):
         word = " or " if isinstance(node.op, ast.And) else " and "
         yield "boolean", node, f"({word.join(f'({source.text(value)})' for value in node.values)})"
-        for left_out in range(len(node.values)):
-            operands = [f"({source.text(value)})" for number, value in enumerate(node.values) if number != left_out]
+        for removed in range(len(node.values)):
+            operands = [f"({source.text(value)})" for index, value in enumerate(node.values) if index != removed]
             word = " and " if isinstance(node.op, ast.And) else " or "
             yield "boolean", node, f"({word.join(operands)})"
 
@@ -173,11 +180,11 @@ def _constants(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
 
 def numbers(value: float) -> Iterator[tuple[str, str]]:
     """Yield (operator, new text) for a number: one more, one less, 10 % more, 25 % less, and the opposite sign."""
-    whole = isinstance(value, int)
+    is_integer = isinstance(value, int)
     new_texts = {repr(value): ""}
-    steps = [("off by one", value + 1), ("off by one", value - 1)] if whole or value == 0 else []
-    for name, new in (*steps, ("10 %", value * 1.1), ("25 %", value * 0.75), ("sign", -value)):
-        text = repr(round(new) if whole else float(f"{new:.6g}"))
+    neighbours = [("off by one", value + 1), ("off by one", value - 1)] if is_integer or value == 0 else []
+    for name, new in (*neighbours, ("10 %", value * 1.1), ("25 %", value * 0.75), ("sign", -value)):
+        text = repr(round(new) if is_integer else float(f"{new:.6g}"))
         if text not in new_texts and text != "-0.0":
             new_texts[text] = name
             yield name, f"({text})" if text.startswith("-") else text
@@ -209,29 +216,29 @@ def _arguments(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     if not isinstance(node, ast.Call):
         return
     positional = [source.text(argument) for argument in node.args]
-    named = [
+    keywords = [
         f"{each.arg}={source.text(each.value)}" if each.arg else f"**{source.text(each.value)}"
         for each in node.keywords
     ]
     function = source.text(node.func)
     if isinstance(node.func, ast.Attribute) and node.func.attr in LEVELS:
         level = f"{source.text(node.func.value)}.{LEVELS[node.func.attr]}"
-        yield "log level", node, f"{level}({', '.join(positional + named)})"
+        yield "log level", node, f"{level}({', '.join(positional + keywords)})"
     elif not any(isinstance(argument, ast.Starred) for argument in node.args):
-        for at in range(len(positional) - 1):
-            swapped = [*positional[:at], positional[at + 1], positional[at], *positional[at + 2 :]]
-            yield "arguments", node, f"{function}({', '.join(swapped + named)})"
+        for index in range(len(positional) - 1):
+            swapped = [*positional[:index], positional[index + 1], positional[index], *positional[index + 2 :]]
+            yield "arguments", node, f"{function}({', '.join(swapped + keywords)})"
 
 
 def _elements(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     if isinstance(node, ast.Tuple) and isinstance(node.ctx, ast.Load):
         elements = [source.text(element) for element in node.elts]
-        for at in range(len(elements)):
-            rest = "".join(f"{element}, " for element in elements[:at] + elements[at + 1 :])
+        for index in range(len(elements)):
+            rest = "".join(f"{element}, " for element in elements[:index] + elements[index + 1 :])
             yield "element", node, f"({rest})"
 
 
-def left_out(source: Source, node: ast.AST) -> Iterator[Mutation]:
+def removal_mutations(source: Source, node: ast.AST) -> Iterator[Mutation]:
     """Yield mutations that remove a keyword argument, or an element of a list or dictionary."""
     parts: list[tuple[ast.AST, ast.AST]] = []
     if isinstance(node, ast.Call):
@@ -242,13 +249,13 @@ def left_out(source: Source, node: ast.AST) -> Iterator[Mutation]:
     elif isinstance(node, ast.Dict) and None not in node.keys:
         parts = [(key, value) for key, value in zip(node.keys, node.values, strict=True) if key is not None]
     spans = [source.span(*part) for part in parts]
-    for at, ((part, _), (start, end)) in enumerate(zip(parts, spans, strict=True)):
-        if isinstance(node, ast.Call) and (not isinstance(part, ast.keyword) or part.arg in FOR_PEOPLE):
+    for index, ((part, _), (start, end)) in enumerate(zip(parts, spans, strict=True)):
+        if isinstance(node, ast.Call) and (not isinstance(part, ast.keyword) or part.arg in TEXT_ARGUMENTS):
             continue
-        if at + 1 < len(parts):
-            end = spans[at + 1][0]
-        elif at:
-            start = spans[at - 1][1]
+        if index + 1 < len(parts):
+            end = spans[index + 1][0]
+        elif index:
+            start = spans[index - 1][1]
         else:
             end = source.span(node)[1] - 1  # includes a trailing comma
         yield "keyword" if isinstance(node, ast.Call) else "element", ((start, end, ""),)

@@ -26,8 +26,8 @@ def record_failures(assignment: str, verdicts: Iterable[Verdict]) -> str:
     }
     useless = sorted(name for name, record in observed.items() if written_for[name] not in record.fails)
     before = snapshot.recorded(assignment)
-    after = before | {name: record for name, record in observed.items() if name not in useless}
-    after = {name: after[name] for name in written_for if name in after}
+    updated = before | {name: record for name, record in observed.items() if name not in useless}
+    after = {name: updated[name] for name in written_for if name in updated}
     snapshot.write(assignment, after)
     changed = sum(before.get(name) != after.get(name) for name in before | after)
     text = f"{assignment}: {len(observed)} mutants graded, {changed} records changed"

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 
 from autograder.author.verification.python_operators import Mutation, NodeInContext, NodeMutation, Source
 
-QOS_AT = {"create_publisher": 2, "create_subscription": 3}
+QOS_POSITION = {"create_publisher": 2, "create_subscription": 3}
 QOS = "__import__('rclpy.qos').qos."
 SENSOR_DATA = "qos_profile_sensor_data"
 LATCHED = f"{QOS}QoSProfile(depth=10, durability={QOS}DurabilityPolicy.TRANSIENT_LOCAL)"
-WALL_CLOCK = "__import__('rclpy.clock').clock.Clock()"  # of system time
+SYSTEM_CLOCK = "__import__('rclpy.clock').clock.Clock()"
 STEADY_CLOCK = "__import__('rclpy.clock').clock.Clock(clock_type=__import__('rclpy.clock').clock.ClockType.STEADY_TIME)"
 NOW = "self.get_clock().now().to_msg()"
 ZERO = "__import__('builtin_interfaces.msg').msg.Time()"
@@ -59,8 +59,8 @@ def _calls(source: Source, node: ast.Call, context: NodeInContext) -> Iterator[N
     name, text = getattr(node.func, "attr", getattr(node.func, "id", "")), source.text(node)
     if name in ("radians", "degrees") and len(node.args) == 1:
         yield "units", node, f"({source.text(node.args[0])})"
-    if name in QOS_AT and len(node.args) > QOS_AT[name]:
-        qos = node.args[QOS_AT[name]]
+    if name in QOS_POSITION and len(node.args) > QOS_POSITION[name]:
+        qos = node.args[QOS_POSITION[name]]
         new = ["10"] if source.text(qos) == SENSOR_DATA else []
         if isinstance(qos, ast.Constant):
             new = ["1", f"{QOS}{SENSOR_DATA}", LATCHED]
@@ -76,7 +76,7 @@ def is_queue_length(context: NodeInContext) -> bool:
     outer = context.ancestors[0]
     if isinstance(outer, ast.keyword):
         return outer.arg == "depth"
-    at = QOS_AT.get(getattr(getattr(outer, "func", None), "attr", ""), -1)
+    at = QOS_POSITION.get(getattr(getattr(outer, "func", None), "attr", ""), -1)
     return isinstance(outer, ast.Call) and len(outer.args) > at >= 0 and outer.args[at] is context.node
 
 
@@ -95,8 +95,8 @@ def multi_node_mutations(source: Source, context: NodeInContext) -> Iterator[Mut
         yield "no decorator", ((source.data.rindex(b"@", 0, start), end, ""),)
 
 
-def wall_time(source: Source, within: list[ast.AST]) -> Iterator[Mutation]:
-    """Yield a mutation that replaces every use of the ROS clock in a module by the machine's clock."""
-    clocks = [node for node in within if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "get_clock"]
+def wall_time(source: Source, nodes: list[ast.AST]) -> Iterator[Mutation]:
+    """Yield a mutation that replaces the ROS clock by the machine's clock in all of these nodes of a module."""
+    clocks = [node for node in nodes if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "get_clock"]
     if clocks:
-        yield "wall time", tuple((*source.span(node), WALL_CLOCK) for node in clocks)
+        yield "wall time", tuple((*source.span(node), SYSTEM_CLOCK) for node in clocks)

@@ -1,8 +1,7 @@
 """Snapshots of the named mutants: the checks that each one fails, and its diagnosis.
 
-`mutants.yaml` names the check for which a mutant was written. The other checks that it fails and its diagnosis follow
-from the suite. `autograder verify --record` writes them, so that they need no maintenance and a reviewer sees every
-change in the diff.
+`mutants.yaml` names the check for which a mutant was written. `autograder verify --record` writes all checks that it
+fails, and its diagnosis. So these lists need no maintenance by hand, and reviewers see every change in the diff.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from typing import Any
 
 import yaml
 
-from autograder.author.course.mutant_rules import read_or_raise
+from autograder.author.course.yaml_files import load_yaml
 from autograder.diagnosis import Kind
 from autograder.result.model import write_atomically
 from autograder.suite import suites
@@ -51,9 +50,9 @@ def recorded(assignment: str) -> dict[str, Record]:
     Checks that the suite no longer has are omitted. Raises CourseError if the file is not YAML, or breaks its schema.
     """
     path = snapshot_file(assignment)
-    known = frozenset(check.id for check in suites.hidden(assignment).checks)
-    rows = (read_or_raise(path) if path.is_file() else None) or {}
-    return {name: _read(row, known) for name, row in rows.items()}
+    check_ids = frozenset(check.id for check in suites.hidden(assignment).checks)
+    rows = (load_yaml(path) if path.is_file() else None) or {}
+    return {name: _read(row, check_ids) for name, row in rows.items()}
 
 
 def write(assignment: str, records: Mapping[str, Record]) -> None:
@@ -64,10 +63,10 @@ def write(assignment: str, records: Mapping[str, Record]) -> None:
     write_atomically(snapshot_file(assignment), (HEAD.format(assignment=assignment) + text).encode())
 
 
-def _read(row: Any, known: frozenset[str]) -> Record:
+def _read(row: Any, check_ids: frozenset[str]) -> Record:
     """Parse a record: `all`, a list of checks, or a mapping of `fails` (one of these two) and `diagnosis`."""
     fails, diagnosis = (row["fails"], row["diagnosis"]) if isinstance(row, dict) else (row, Kind.OK)
-    return Record(known if fails == ALL else known & frozenset(fails), Kind(diagnosis))
+    return Record(check_ids if fails == ALL else check_ids & frozenset(fails), Kind(diagnosis))
 
 
 def _row(record: Record, order: list[str]) -> object:

@@ -1,6 +1,6 @@
-"""Counts and reports the results of generated mutants. A mutant that no check kills needs a reason in `survivors.yaml`.
+"""Counts and reports the results of generated mutants. Survivors, which no check kills, need a reason.
 
-The report lists these mutants with their reasons and marks missing reasons. There are two kinds of reasons:
+`survivors.yaml` contains the reasons, of two kinds. The report lists all survivors, with or without a reason.
 
     - equivalent: why no input can reveal a difference from the reference
       mutants: [the ids]
@@ -16,7 +16,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from autograder.author.course.markdown_table import table
-from autograder.author.course.mutant_rules import read_or_raise
+from autograder.author.course.yaml_files import load_yaml
 from autograder.author.verification.generated_mutants import GeneratedMutants
 from autograder.author.verification.mutation_run import FAILED, MutantResult
 from autograder.exceptions import GraderError
@@ -26,9 +26,9 @@ KINDS = ("equivalent", "outside")
 MIN_KILLED, MIN_KILLED_OF_ALL = 0.95, 0.97  # mutation scores of a chapter, and of all chapters
 HEAD = """# Generated mutants
 
-Every operator is applied at every place in the files that students write. Each mutant is graded until a check fails.
-A cell shows `killed/all`. The score is killed / (all - equivalent). Mutants that the requirements do not cover count as
-not killed. Number of mutants that were omitted as equivalent or duplicate before grading: """
+Each operator is applied wherever it matches in the files that students write, and each mutant is graded until a check
+fails. A cell shows `killed/all`. The score is killed / (all - equivalent). Mutants that the requirements do not cover
+count as not killed. Mutants omitted before grading, because they are equivalent or duplicate: """
 
 
 @dataclass(frozen=True)
@@ -74,19 +74,19 @@ def reasons(assignment: str, generated: GeneratedMutants) -> dict[str, str]:
         GraderError: a mutant does not exist, or has two reasons.
     """
     path = suites.hidden(assignment).folder / "survivors.yaml"
-    entries = (read_or_raise(path) if path.is_file() else None) or []
+    entries = (load_yaml(path) if path.is_file() else None) or []
     by_mutant: dict[str, str] = {}
     for entry in entries:
         kinds = [kind for kind in KINDS if entry.get(kind)]
-        if twice := by_mutant.keys() & entry["mutants"]:
-            raise GraderError(f"{path}: there are two reasons for {', '.join(sorted(twice))}: keep one")
+        if duplicates := by_mutant.keys() & entry["mutants"]:
+            raise GraderError(f"{path}: there are two reasons for {', '.join(sorted(duplicates))}: keep one")
         by_mutant |= dict.fromkeys(entry["mutants"], f"{kinds[0]}: {entry[kinds[0]]}")
     for pair in (mutant.id for mutant in generated.mutants if mutant.operator == "pair"):
-        halves = [by_mutant[name] for name in pair.split(" + ") if name in by_mutant]
-        if len(halves) == 2:  # the pair may survive, too; outside outweighs equivalent
-            by_mutant.setdefault(pair, max(halves, key=lambda reason: reason.startswith("outside")))
-    if gone := by_mutant.keys() - {mutant.id for mutant in generated.mutants}:
-        raise GraderError(f"{path}: these mutants no longer exist: {', '.join(sorted(gone))}")
+        pair_reasons = [by_mutant[name] for name in pair.split(" + ") if name in by_mutant]
+        if len(pair_reasons) == 2:  # then the pair may also survive; "outside" outweighs "equivalent"
+            by_mutant.setdefault(pair, max(pair_reasons, key=lambda reason: reason.startswith("outside")))
+    if outdated := by_mutant.keys() - {mutant.id for mutant in generated.mutants}:
+        raise GraderError(f"{path}: these mutants no longer exist: {', '.join(sorted(outdated))}")
     return by_mutant
 
 
@@ -120,18 +120,18 @@ def mutant_counts(chapters: Iterable[ChapterMutationResult]) -> dict[str, dict[s
     counts: dict[str, dict[str, list[int]]] = {}
     for each in chapters:
         operators = {mutant.id: mutant.operator for mutant in each.generated.mutants}
-        rows = counts[each.assignment] = defaultdict(lambda: [0, 0])
+        by_operator = counts[each.assignment] = defaultdict(lambda: [0, 0])
         for result in each.results:
-            for row in (rows[operators[result.id]], rows["all"]):
-                row[0] += result.killed
-                row[1] += 1
+            for count in (by_operator[operators[result.id]], by_operator["all"]):
+                count[0] += result.killed
+                count[1] += 1
     return counts
 
 
 def report(chapters: Sequence[ChapterMutationResult]) -> str:
     """Return a Markdown table of chapters and operators, followed by all survivors with their diffs."""
-    left_out = sum(each.generated.left_out for each in chapters)
-    return "\n".join([f"{HEAD}{left_out}.\n", *_table(chapters), *_survivors(chapters)])
+    omitted = sum(each.generated.omitted for each in chapters)
+    return "\n".join([f"{HEAD}{omitted}.\n", *_table(chapters), *_survivors(chapters)])
 
 
 def _table(chapters: Sequence[ChapterMutationResult]) -> Iterator[str]:
@@ -140,8 +140,8 @@ def _table(chapters: Sequence[ChapterMutationResult]) -> Iterator[str]:
     rows = []
     for operator in operators:
         cells = [chapter.get(operator, [0, 0]) for chapter in counts.values()]
-        both = [[sum(cell[i] for cell in cells) for i in (0, 1)], *cells]
-        rows.append((operator, *(f"{killed}/{every}" if every else "" for killed, every in both)))
+        cells.insert(0, [sum(cell[i] for cell in cells) for i in (0, 1)])
+        rows.append((operator, *(f"{killed}/{total}" if total else "" for killed, total in cells)))
     scores = [(each.killed, each.killable) for each in chapters]
     scores.insert(0, (sum(killed for killed, _ in scores), sum(killable for _, killable in scores)))
     rows.append(("without equivalent ones", *(f"{killed}/{killable}" for killed, killable in scores)))

@@ -22,25 +22,25 @@ DEFINITION = re.compile(r"(?P<type>[a-z_0-9A-Z/]+)(?P<bound>\[[^]]*\]|<=\d+)?(?P
 NAME_VALUE = re.compile(r">(?P<value>[^<>\n]+)</|=(?P<attribute>\"[^\"\n]*)\"")
 TAG = re.compile(r"<(?P<tag>\w+)>(?P<text>[^<>\n]+)</(?P=tag)>")
 WORD = re.compile(r"[\w./${}-]+")
-NO_WORDS = ("<description>", "<maintainer", "<?xml")  # for people, or for tools that students do not run
+SKIPPED_TAGS = ("<description>", "<maintainer", "<?xml")  # for people, or for tools that students do not run
 
 
 def text_mutations(file: str, text: str) -> Iterator[Mutation]:
     """Yield the mutations of a text, depending on its file type. Offsets are in bytes."""
-    at = 0
-    before: tuple[int, str] | None = None
+    offset = 0
+    previous: tuple[int, str] | None = None  # the offset and text of the previous line
     for line in text.splitlines(keepends=True):
         code = line if file.endswith((".xml", ".cfg")) else line.split("#")[0].rstrip() + "\n"
-        if code.strip() and not line.startswith(NO_WORDS, len(line) - len(line.lstrip())):
-            yield "no line", ((at, at + len(line.encode()), ""),)
+        if code.strip() and not line.startswith(SKIPPED_TAGS, len(line) - len(line.lstrip())):
+            yield "no line", ((offset, offset + len(line.encode()), ""),)
             for name, start, end, new in _in_line(file, code):
-                begin = at + len(code[:start].encode())
+                begin = offset + len(code[:start].encode())
                 yield name, ((begin, begin + len(code[start:end].encode()), new),)
-            if before and file.endswith((".msg", ".srv", ".action")):
-                both = line + before[1]
-                yield "line order", ((before[0], at + len(line.encode()), both),)
-            before = at, line
-        at += len(line.encode())
+            if previous and file.endswith((".msg", ".srv", ".action")):
+                swapped = line + previous[1]
+                yield "line order", ((previous[0], offset + len(line.encode()), swapped),)
+            previous = offset, line
+        offset += len(line.encode())
 
 
 def _in_line(file: str, line: str) -> Iterator[tuple[str, int, int, str]]:
@@ -81,10 +81,10 @@ def _in_definition(line: str) -> Iterator[tuple[str, int, int, str]]:
     yield from _numbers(line[match.end("name") :], match.end("name"))
 
 
-def _numbers(text: str, at: int) -> Iterator[tuple[str, int, int, str]]:
+def _numbers(text: str, offset: int) -> Iterator[tuple[str, int, int, str]]:
     for match in NUMBER.finditer(text):
         value = float(match[0]) if "." in match[0] else int(match[0])
         negative = text[: match.start()].rstrip().endswith("-")
         for name, new in numbers(value):
             if not (negative and new.startswith("(")):
-                yield name, at + match.start(), at + match.end(), new.strip("()")
+                yield name, offset + match.start(), offset + match.end(), new.strip("()")

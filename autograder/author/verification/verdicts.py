@@ -20,7 +20,7 @@ from autograder.result.model import Result
 from autograder.suite import Outcome, suites
 
 RECORD = "`autograder verify --record`"
-# Diagnoses of a release that students cannot begin with. A suite may let them begin with packages that do not build.
+# Diagnoses of a broken release. A suite may let students begin with packages that do not build.
 BROKEN = {
     *(Kind.UNSAFE_ARCHIVE, Kind.UNREADABLE, Kind.UNCLEAR, Kind.NOTHING_SUBMITTED, Kind.NOTEBOOK_FAILED),
     Kind.RESERVED_NAME,
@@ -43,7 +43,7 @@ class Verdict:
     """The result of a test case, and a description of how it differs from the expected result.
 
     `mismatch` is empty if the result is the expected one. `only` names the checks that were run; empty means every
-    check. The points of a part of the checks are not marks.
+    check. If only some checks were run, the points are not a mark.
     """
 
     assignment: str
@@ -87,19 +87,20 @@ def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozens
             was run, because any of them may have caused it.
     """
     failed, recorded, run = failed_checks(result), mutant.fails, only or {check.id for check in result.checks}
-    wrong = []
+    differences = []
     if mutant.check in run - failed:
-        wrong.append(f"passes {mutant.check}, for which it was written")
+        differences.append(f"passes {mutant.check}, for which it was written")
     if not recorded:
-        wrong.append(f"has no recorded failures: {RECORD} writes them")
+        differences.append(f"has no recorded failures: {RECORD} writes them")
     else:
         failed, recorded = failed & run, recorded & run
         changes = [f"also fails {', '.join(sorted(failed - recorded))}"] if failed - recorded else []
         changes += [f"passes {', '.join(sorted(recorded - failed))}"] if recorded - failed else []
-        wrong += [f"{'; '.join(changes)} (if this is correct, {RECORD} updates the snapshot)"] if changes else []
+        if changes:
+            differences.append(f"{'; '.join(changes)} (if this is correct, {RECORD} updates the snapshot)")
     if not only and result.diagnosis.kind is not mutant.diagnosis:
-        wrong.append(f"is diagnosed {result.diagnosis.kind.value} instead of {mutant.diagnosis.value}")
-    return "; ".join(wrong)
+        differences.append(f"is diagnosed {result.diagnosis.kind.value} instead of {mutant.diagnosis.value}")
+    return "; ".join(differences)
 
 
 def failed_checks(result: Result) -> frozenset[str]:
@@ -111,9 +112,9 @@ def failed_checks(result: Result) -> frozenset[str]:
 class Attack:
     """A malicious submission: a description of the attacks that it combines, and a function that writes it to a folder.
 
-    `fails` names the checks that it must fail, with or without the payload. If `exactly` is set, the payload does not
-    interfere with anything, and it must fail no other checks. The result must have one of the diagnoses; none means
-    any. If every check was run, the first sentence that a student reads must contain the text `says`.
+    `fails` names the checks that it must fail, with or without the payload. If `exactly` is set, the payload must not
+    make any other check fail. The result must have one of the diagnoses; none means any. If every check was run, the
+    first sentence that a student reads must contain the text `says`.
     """
 
     id: str
@@ -134,17 +135,17 @@ class Attack:
         suite = suites.hidden(result.assignment)
         run = only or frozenset(check.id for check in suite.checks)
         failed, expected = failed_checks(result) & run, self.fails & run
-        wrong = [f"gains {', '.join(sorted(expected - failed))}"] if expected - failed else []
+        problems = [f"gains {', '.join(sorted(expected - failed))}"] if expected - failed else []
         if self.exactly and failed != expected:
-            wrong.append(f"disturbs {', '.join(sorted(failed - expected))}")
+            problems.append(f"disturbs {', '.join(sorted(failed - expected))}")
         if result.max_score != suite.max_score:
-            wrong.append(f"changes the maximum to {result.max_score:g}")
+            problems.append(f"changes the maximum to {result.max_score:g}")
         if self.diagnosis and result.diagnosis.kind not in self.diagnosis:
-            wrong.append(f"is diagnosed {result.diagnosis.kind.value}")
+            problems.append(f"is diagnosed {result.diagnosis.kind.value}")
         if not only and self.says not in (first := first_sentence(result)):
-            wrong.append(f"is told: {first}")
-        wrong += [f"shows {line}" for line in leaked_lines(result)[:1]]
-        return "; ".join(wrong)
+            problems.append(f"is told: {first}")
+        problems += [f"shows {line}" for line in leaked_lines(result)[:1]]
+        return "; ".join(problems)
 
 
 def first_sentence(result: Result) -> str:
@@ -161,7 +162,7 @@ def leaked_lines(result: Result) -> list[str]:
 
 
 def _texts(value: object) -> Iterator[str]:
-    """Yield every text in JSON."""
+    """Yield every string in JSON data."""
     if isinstance(value, str):
         yield value
     for part in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():

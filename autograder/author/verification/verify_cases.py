@@ -23,7 +23,7 @@ from autograder.report import feedback
 from autograder.result.model import Result, Status
 
 SUBMISSION = "submission"
-PART = "part"  # folder for the result of a partial suite
+PARTIAL = "part"  # folder for the result of a partial suite
 
 
 def verify_cases(
@@ -52,10 +52,10 @@ def verify_cases(
         with tempfile.TemporaryDirectory(prefix="verification-") as name:
             path, folder = _write(case, Path(name) / case.name), out / case.assignment / case.name
             is_whole_suite = not case.options.only
-            folder = folder if is_whole_suite else folder / PART
+            folder = folder if is_whole_suite else folder / PARTIAL
             job = Job(path, case.assignment, case.name, seed, folder, workers.isolation, case.options)
             result = stored(job) if is_whole_suite else None
-            if result is None or result.files_digest != job.suite.files_digest:  # only these very files are verified
+            if result is None or result.files_digest != job.suite.files_digest:  # the grader has changed
                 result = grade_submission(job, in_own_sandbox if case.kind is CaseKind.ATTACK else workers)
         mismatch = case.verify(result) if result.status is Status.GRADED else result.diagnosis.sentence
         if case.kind is CaseKind.ATTACK:
@@ -64,8 +64,8 @@ def verify_cases(
         if result.unjudged or result.status is Status.NOT_GRADED:
             text = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
             errors = errors_in_checks(text, course_paths.CHECKS)
-            if named := "; ".join(errors) or ", ".join(result.unjudged):
-                mismatch = f"checks raised errors: {named}; {log} has the details"
+            if failures := "; ".join(errors) or ", ".join(result.unjudged):
+                mismatch = f"checks raised errors: {failures}; {log} has the details"
         return Verdict(case.assignment, case.kind, case.name, result, mismatch, case.options.only)
 
     verdicts = map_parallel(grade, _interleaved(cases), jobs=workers.count, on_done=on_verdict)
@@ -82,7 +82,7 @@ def _leak(result: Result, folder: Path) -> str:
 
 
 def _interleaved(cases: Sequence[Case]) -> list[Case]:
-    """Return the cases with the assignments interleaved, so that waiting ones leave the CPU to others."""
+    """Return the cases with the assignments interleaved, because some assignments mostly wait and others compute."""
     totals, counts = Counter(case.assignment for case in cases), Counter[str]()
     positions = []
     for case in cases:

@@ -26,14 +26,14 @@ from autograder.run.sandbox.process import ExitReason
 from autograder.run.sandbox.spec import View
 from autograder.run.sandbox.worker_sandbox import WorkerReport, copy_submission, in_worker_sandbox
 
-_TICK = 5.0  # s to wait for the exit of a server that no longer replies
+_EXIT_TIMEOUT = 5.0  # s to wait for the exit of a server that no longer replies
 
 
 class WorkerPool:
     """Grades submissions with a fixed number of workers. Each worker grades many submissions in one sandbox.
 
     A pool is a context manager and has the call signature of `own_sandbox.in_own_sandbox`. Use it only for submissions
-    of the course itself; see `fork_server`.
+    that the course itself contains; see `fork_server`.
 
     Args:
         isolation: the isolation level of each worker sandbox.
@@ -55,7 +55,7 @@ class WorkerPool:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for worker in [self._idle.get() for number in range(self.count)]:
+        for worker in [self._idle.get() for _ in range(self.count)]:
             if worker is not None:
                 worker.close()
         self._starter.shutdown()
@@ -87,13 +87,8 @@ class _Worker:
         self._shared.chmod(0o755)
 
         def command(scratch: Path) -> list[str]:
-            return [
-                sys.executable,
-                "-m",
-                "autograder.author.verification.fork_server",
-                str(scratch),
-                str(theirs.fileno()),
-            ]
+            module = "autograder.author.verification.fork_server"
+            return [sys.executable, "-m", module, str(scratch), str(theirs.fileno())]
 
         view = View(shown=(*{course_paths.ROOT, course_paths.course().root}, self._shared))
         with theirs:
@@ -101,7 +96,7 @@ class _Worker:
             self._process, self._scratch = self._stack.enter_context(sandbox)
 
     def grade(self, job: Job) -> WorkerReport:
-        """Send one job and wait for its result. Do not use the worker again unless the exit reason is `exited`."""
+        """Send one job and wait for its result. Close the worker unless the report's exit reason is `exited`."""
         deadline = time.monotonic() + job.seconds + GRACE
         scratch = self._scratch / "job"
         with TemporaryDirectory(dir=self._shared) as folder:
@@ -116,7 +111,7 @@ class _Worker:
                 files, reply = attend(self._server, self._isolation, is_over)
             except (MessageError, OSError):
                 files, reply = {}, {}
-        return WorkerReport(ExitReason.EXITED, reply["status"], reply["output"], files) if reply else self._dead()
+        return WorkerReport(ExitReason.EXITED, reply["status"], reply["output"], files) if reply else self._end()
 
     def _share(self, built: Path) -> Path:
         """Copy a built workspace to the shared folder, once for many jobs, and return the copy."""
@@ -125,8 +120,9 @@ class _Worker:
             shutil.copytree(built, copy, symlinks=True)
         return copy
 
-    def _dead(self) -> WorkerReport:
-        self._process.wait(_TICK)
+    def _end(self) -> WorkerReport:
+        """End a server that did not reply, and return a report with the reason."""
+        self._process.wait(_EXIT_TIMEOUT)
         self._process.kill()
         exit_reason = self._process.exit_reason or ExitReason.WALL_TIME
         exit_reason = ExitReason.KILLED if exit_reason is ExitReason.EXITED else exit_reason

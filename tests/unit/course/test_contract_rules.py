@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import pytest
 from nbformat import NotebookNode
 
-from autograder.author.course.contract_rules import broken_contract
+from autograder.author.course.contract_rules import broken_cells, broken_coverage
+from autograder.author.course.findings import Finding
 from autograder.author.course.sync import chapters
 from autograder.suite import Check, Visibility, suites
 from autograder.suite.contract import contract, requirements
@@ -35,8 +37,12 @@ def check(id: str, *covers: str) -> Check:
     return Check(id, f"{id}.", 1.0, "graph", Visibility.HIDDEN, (), None, (), covers)
 
 
+def broken(name: str, book: NotebookNode, checks: Sequence[Check]) -> list[Finding]:
+    return [*broken_cells(name, book), *broken_coverage(name, book, checks, {})]
+
+
 def messages(book: NotebookNode, *checks: Check) -> list[str]:
-    return [finding.message for finding in broken_contract("small.ipynb", book, checks)]
+    return [finding.message for finding in broken("small.ipynb", book, checks)]
 
 
 def test_a_table_row_is_quoted_with_its_heading_and_a_bullet_without_its_dash() -> None:
@@ -111,8 +117,7 @@ def test_the_contract_of_each_chapter_has_no_findings(chapter: Any) -> None:
     name = chapter.assignment
     hidden = suites.hidden(name).checks if name in suites.graded_assignments() else ()
     assert [
-        str(f)
-        for f in broken_contract(chapter.notebook_path.name, chapter.read(), (*suites.visible(name).checks, *hidden))
+        str(f) for f in broken(chapter.notebook_path.name, chapter.read(), (*suites.visible(name).checks, *hidden))
     ] == []
 
 

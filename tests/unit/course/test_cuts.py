@@ -85,11 +85,11 @@ def test_a_cell_is_cut_by_its_metadata_and_its_release_contains_no_answer(
 @pytest.mark.parametrize(
     ("course", "message"),
     [
-        ({"cut": "a"}, "`cut` must be a list, not a text"),
-        ({"cut": [["a"]]}, r"`cut\[0\]` needs 2 entries, and has 1"),
-        ({"cut": [["a", 1]]}, r"`cut\[0\]\[1\]` must be a text, not a number: put it in quotes"),
-        ({"parts": {"main": ["a"]}, "hide": ["main"]}, r"`parts.main` needs 2 entries, and has 1"),
-        ({"parts": {"main": ["a", "b"]}}, "`course` has `parts`, and no `hide`"),
+        ({"cut": "a"}, "`cut` must be a list, not a string"),
+        ({"cut": [["a"]]}, r"`cut\[0\]` needs 2 entries, but has 1"),
+        ({"cut": [["a", 1]]}, r"`cut\[0\]\[1\]` must be a string, not a number: put it in quotes"),
+        ({"parts": {"main": ["a"]}, "hide": ["main"]}, r"`parts.main` needs 2 entries, but has 1"),
+        ({"parts": {"main": ["a", "b"]}}, "`course` has `parts`, but no `hide`"),
         ({"cut": [["a", "b"]], "hide": ["main"]}, "a cell hides functions by `hide` or lines by `cut`, not both"),
     ],
 )

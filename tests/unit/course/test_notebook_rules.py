@@ -74,12 +74,12 @@ def old_format() -> NotebookNode:
     [
         (executed(), "cell 'run': has outputs"),
         (executed(), "cell 'run': has an execution count"),
-        (old_schema(), "cell 'g': its nbgrader metadata must say schema_version 3"),
+        (old_schema(), "cell 'g': its nbgrader metadata must have schema_version 3"),
         (other_kernel(), "kernelspec must be python3"),
         (old_format(), "is nbformat 4.4; the course uses 4.5"),
         (notebook(prose("text", "t")), "has no title"),
-        (notebook(prose("## Part", "p")), "cell 'p': the first heading of a notebook is its title"),
-        (notebook(prose("# T", "t"), prose("# U", "u")), "cell 'u': a notebook has one title"),
+        (notebook(prose("## Part", "p")), "cell 'p': the first heading of a notebook must be its title"),
+        (notebook(prose("# T", "t"), prose("# U", "u")), "cell 'u': a notebook must have only one title"),
         (notebook(prose("# T\n### U", "t")), "a heading of level 3 follows one of level 1"),
         (notebook(prose("# T\n![](robot.png)", "t")), "the image robot.png has no alternative text"),
         (
@@ -88,11 +88,11 @@ def old_format() -> NotebookNode:
         ),
         (
             notebook(prose("# T", "t"), code("", "g", nbgrader=grade("g", 1))),
-            "cell 'g': a grade cell is locked and names its group",
+            "cell 'g': a grade cell must be locked and name its group",
         ),
         (
             notebook(prose("# T", "t"), code("", "g", nbgrader=grade("g", 1), course={"group": 3})),
-            "cell 'g': the metadata are invalid: `group` must be a text, not a number",
+            "cell 'g': the metadata are invalid: `group` must be a string, not a number",
         ),
         (
             notebook(prose("# T", "t"), code("# BEGIN SOLUTION", "s")),
@@ -100,7 +100,7 @@ def old_format() -> NotebookNode:
         ),
         (
             notebook(*(code("", i, nbgrader=grade("same", 1)) for i in "ab")),
-            "its nbgrader metadata is not valid: Duplicate grade id: same",
+            "its nbgrader metadata are invalid: Duplicate grade id: same",
         ),
         (half_a_cell(), "is not valid nbformat"),
         (

@@ -36,7 +36,7 @@ def test_more():
 # of its message. A file without a text to replace is created.
 SLIPS = [
     (MUTANTS, "    check: nearest\n\n  - id: first", "\n  - id: first", "5", "`mutants[0]` (farthest) has no `check`"),
-    (MUTANTS, "find: min(filter, ", "", "7", "`mutants[0].edits[0]` (farthest) has `replace`, and no `find`"),
+    (MUTANTS, "find: min(filter, ", "", "7", "`mutants[0].edits[0]` (farthest) has `replace`, but no `find`"),
     (
         MUTANTS,
         "find: min(filter",
@@ -74,31 +74,31 @@ SLIPS = [
         '("readings",)',
         '("readings")',
         "4",
-        "`MODULES` is a text, and not a tuple: write MODULES = ('readings',)",
+        "`MODULES` is a string, not a tuple: write MODULES = ('readings',)",
     ),
-    (SUITE, '("readings",)', '("reading",)', "4", "`MODULES` names 'reading', and there is no reading.py beside it"),
+    (SUITE, '("readings",)', '("reading",)', "4", "`MODULES` names 'reading', but there is no reading.py beside it"),
     (
         SUITE,
         "MODULES",
         "BUILD_MAY = True\nMODULES",
         "4",
-        "`BUILD_MAY` is nothing that a suite says: did you mean `BUILD_",
+        "`BUILD_MAY` is not a setting of a suite: did you mean `BUILD_",
     ),
-    (SUITE, '("mapping",)', '("maping",)', "3", "names 'maping', and the reference has no folder solutions/maping"),
-    (f"{CHECKS}/hidden/more.py", None, EXTRA_MODULE, "9", "no check of this file counts: `MODULES` in hidden/__init__"),
+    (SUITE, '("mapping",)', '("maping",)', "3", "names 'maping', but the reference has no folder solutions/maping"),
+    (f"{CHECKS}/hidden/more.py", None, EXTRA_MODULE, "9", "the checks in this file do not count: `MODULES` in hid"),
     (
         READINGS,
         'after=("nearest",)',
         'after=("nearest")',
         "23",
-        "`after` of the check `counts` is a text, and not a tuple",
+        "`after` of the check `counts` is a string, not a tuple",
     ),
     (
         READINGS,
         'after=("nearest",)',
         'after=("near",)',
         "23",
-        "the check `counts` names `near` in `after`, and no check",
+        "the check `counts` names `near` in `after`, but no check",
     ),
     (
         READINGS,
@@ -107,7 +107,13 @@ SLIPS = [
         "38",
         "the hidden check 'silent' covers 'silence', which no cell names",
     ),
-    (READINGS, "silent(robot:", "silent(robt:", "38", "`test_silent` asks for a fixture `robt`: did you mean `robot`?"),
+    (
+        READINGS,
+        "silent(robot:",
+        "silent(robt:",
+        "38",
+        "`test_silent` uses the unknown fixture `robt`: did you mean `robot`?",
+    ),
     (READINGS, "check(points=1", "check(point=1", "36", "`point` is not an argument of @check: did you mean `points`?"),
     (
         READINGS,
@@ -123,7 +129,7 @@ SLIPS = [
         "Of each scan",
         "Of a scan",
         "1",
-        "is not the list of the hidden checks: run",
+        "is out of date: run `autograder course tables`",
     ),
     ("course.yaml", "title:", "titel:", "3", "the file has an unknown key `titel`: did you mean `title`?"),
     ("syllabus.yaml", "objectives:", "objectives:\n  drive: Drive", "3", "no hidden check covers 'drive': Drive"),
@@ -132,7 +138,7 @@ SLIPS = [
         "<name>mapping",
         "<name>maping",
         "4",
-        "names the package 'maping', and its folder",
+        "names the package 'maping', but its folder",
     ),
     (
         NOTEBOOK,
@@ -244,5 +250,5 @@ def test_sync_reports_what_is_wrong_with_a_suite_that_cannot_be_imported(course:
     finally:
         undo()
     assert completed.returncode == 1
-    assert completed.stderr.startswith(f"autograder: {SUITE}:4: `MODULES` is a text, and not a tuple")
+    assert completed.stderr.startswith(f"autograder: {SUITE}:4: `MODULES` is a string, not a tuple")
     assert "Traceback" not in completed.stderr

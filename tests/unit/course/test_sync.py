@@ -90,8 +90,8 @@ def test_a_given_file_is_copied_and_compared(tmp_path: Path, solutions: Path) ->
         ({"source": "../secret"}, "the metadata are invalid: `source`: must be a relative path"),
         ({"source": "pkg/../../secret"}, "`source`: must be a relative path that stays inside its folder"),
         ({"target": "/etc/passwd"}, "`target`: must be a relative path that stays inside its folder"),
-        ({"target": None}, "the metadata are invalid: `target` must be a text, not empty"),
-        ({"hide": "main"}, "the metadata are invalid: `hide` must be a list, not a text"),
+        ({"target": None}, "the metadata are invalid: `target` must be a string, not empty"),
+        ({"hide": "main"}, "the metadata are invalid: `hide` must be a list, not a string"),
         ({"hied": ["main"]}, "the metadata are invalid: `course` has an unknown key `hied`: did you mean `hide`?"),
         ({"hide": ["mian"]}, "pkg/node.py: function 'mian' occurs 0 times"),
     ],
@@ -117,7 +117,7 @@ def test_given_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
 def test_course_metadata_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
     small_chapter = chapter(tmp_path, notebook(code("", "odd", course="pkg/node.py")))
     (finding,) = find_outdated(small_chapter)
-    assert "the metadata are invalid: `course` must be a mapping, not a text" in finding.message
+    assert "the metadata are invalid: `course` must be a mapping, not a string" in finding.message
 
 
 def test_a_folder_without_its_notebook_is_named(tmp_path: Path) -> None:

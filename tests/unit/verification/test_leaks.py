@@ -2,20 +2,41 @@
 
 from __future__ import annotations
 
+import base64
+import codecs
 import random
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from PIL import Image, PngImagePlugin
 
 from autograder import course_paths
-from autograder.author.verification.leaks import ENCODINGS, hidden_text_in, texts_of
+from autograder.author.verification.leaks import hidden_text_in, texts_of
 from autograder.author.verification.verdicts import hidden_lines
 from autograder.probes.leak_markers import draw_marker
 from autograder.suite import suites
 
 WORD = draw_marker(random.Random(1))
 LINE = "def test_the_robot_stops_before_the_wall(robot: Robot) -> None:"
+ENCODINGS: dict[str, Callable[[str], str]] = {
+    "plain": str,
+    "reversed": lambda text: text[::-1],
+    "upper case": str.upper,
+    "rot13": lambda text: codecs.encode(text, "rot13"),
+    "hex": lambda text: text.encode().hex(),
+    "hex with an odd beginning": lambda text: "a" + text.encode().hex(" "),
+    "base64": lambda text: base64.b64encode(text.encode()).decode(),
+    "base64, one on": lambda text: base64.b64encode(b"x" + text.encode()).decode(),
+    "base64, two on": lambda text: base64.urlsafe_b64encode(b"xy" + text.encode()).decode(),
+    "base64 in a word": lambda text: "abc" + base64.b64encode(text.encode()).decode(),
+    "per cent": lambda text: "".join(f"%{ord(char):02x}" for char in text),
+    "escapes": lambda text: "".join(f"\\x{ord(char):02x}" for char in text),
+    "dots between": lambda text: ".".join(text),
+    "lines between": lambda text: "\n".join(text),
+    "one test each": lambda text: " ".join(f"test_a[{char}]" for char in text),
+    "numbers": lambda text: " ".join(str(ord(char)) for char in text),
+}
 
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
