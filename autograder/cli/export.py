@@ -18,7 +18,7 @@ from autograder.cli.terminal import echo, on_line
 from autograder.cli.text_tables import table
 from autograder.exceptions import UsageError
 from autograder.lms.collect import unpacked
-from autograder.lms.feedback_archive import canvas_places, moodle_places, write_archive
+from autograder.lms.feedback_archive import canvas_paths, moodle_paths, write_archive
 from autograder.lms.lateness import Lateness
 from autograder.lms.manual import add_manual, manual_cells, read_manual
 from autograder.lms.marks import SYSTEMS, mark_table, one_assignment
@@ -167,20 +167,20 @@ def _feedback(stored: Sequence[Result], name: str, roster: Roster, download: Pat
     graded = [result for result in stored if result.status is not Status.NOT_GRADED]
     students = [result.student for result in graded]
     if _FEEDBACK[name] == "moodle":
-        places = moodle_places(roster, students)
+        paths = moodle_paths(roster, students)
     elif download is None:
         raise UsageError(f"--format {name} needs --download: the zip of the submissions, as Canvas made it")
     else:
         with unpacked(download) as folder:
-            places = canvas_places(folder, roster, one_assignment(stored), students)
+            paths = canvas_paths(folder, roster, one_assignment(stored), students)
     missed = [(r.student, r.status.words) for r in stored if r.status is Status.NOT_GRADED]
-    rows = [(student, "", places.names.get(student, "")) for student in students]
+    rows = [(student, "", paths.names.get(student, "")) for student in students]
 
     def write() -> Path:
-        write_archive(graded, places, out)
+        write_archive(graded, paths, out)
         return out
 
-    return Plan(rows, [*missed, *places.left_out], write)
+    return Plan(rows, [*missed, *paths.left_out], write)
 
 
 def _results(stored: Sequence[Result], name: str, lateness: Mapping[str, Lateness], out: Path) -> Plan:

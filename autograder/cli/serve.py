@@ -11,7 +11,7 @@ import click
 from autograder.cli.options import isolation_option, seed_option
 from autograder.cli.terminal import echo
 from autograder.exceptions import UsageError
-from autograder.lms.serve.grading import Way
+from autograder.lms.serve.grading import GradingOptions
 from autograder.lms.serve.settings import read_settings
 from autograder.run.sandbox import Isolation
 
@@ -48,4 +48,4 @@ def serve(settings: Path, data: Path, jobs: int, check: bool, seed: int, isolati
             raise
         raise UsageError("serve needs JupyterHub, which is not installed here: run `make hub-setup`") from None
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(message)s")
-    service.serve(hub, data, Way(jobs, seed, Isolation(isolation)), service.address(os.environ))
+    service.serve(hub, data, GradingOptions(jobs, seed, Isolation(isolation)), service.address(os.environ))

@@ -2,7 +2,7 @@
 
 The account is everything after the assignment's name: `hw-ada-bob` does not belong to bob. `gh classroom clone` puts
 the clones in a folder ASSIGNMENT-submissions. In any other folder, the assignment's name is the prefix that most clones
-share. If several are equally frequent, it is the one followed by the most accounts of the roster, at least two.
+share. If several are equally frequent, it is the one that the most accounts of the roster follow, at least two.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Sequence
 
-FOLDER = "-submissions"
+FOLDER_SUFFIX = "-submissions"
 MIN_ACCOUNTS = 2  # of the roster; a single match may be an unknown account that ends with a known one
 
 
@@ -32,8 +32,8 @@ def assignment_of(names: Sequence[str], folder: str, course_id: str, accounts: C
     count = Counter(prefix for name in names for prefix in prefixes(name))
     if not count:
         return None
-    folder_prefix = folder.casefold().removesuffix(FOLDER)
-    if folder.casefold().endswith(FOLDER) and count[folder_prefix]:
+    folder_prefix = folder.casefold().removesuffix(FOLDER_SUFFIX)
+    if folder.casefold().endswith(FOLDER_SUFFIX) and count[folder_prefix]:
         return folder_prefix
     candidates = [prefix for prefix in count if count[prefix] == max(count.values())]
     if len(candidates) == 1:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from autograder.exceptions import UsageError
 from autograder.grade.batch import submission_in
-from autograder.lms.clones import FOLDER, account_in, assignment_of, prefixes
+from autograder.lms.clones import FOLDER_SUFFIX, account_in, assignment_of, prefixes
 from autograder.lms.roster import Roster
 from autograder.lms.submission_names import METADATA, DownloadedItem, read_metadata, read_names, resubmitted
 from autograder.result.class_folder import why_not_a_folder
@@ -33,8 +33,8 @@ class CollectedSubmissions:
         older: names of submissions that were replaced by a newer one of the same student.
         unmatched: pairs (name, reason) of items that match no student or are not submissions.
         missing: students without a submission.
-        times: when each student's submission came, in ISO 8601, where the system says it.
-        late_by: the delays that Moodle's table names, in seconds.
+        times: the time of each student's submission in ISO 8601, if the system states it.
+        late_by: the delays in Moodle's table, in seconds.
     """
 
     submissions: Mapping[str, Path]
@@ -59,7 +59,7 @@ def unpacked(download: Path) -> Iterator[Path]:
         try:
             with zipfile.ZipFile(download) as archive:
                 outside = [name for name in archive.namelist() if name.startswith("/") or ".." in name.split("/")]
-                if outside:  # it would be extracted under another name, perhaps another student's
+                if outside:  # `extractall` would change the name, perhaps to another student's
                     raise ValueError(f"{outside[0]} points outside the archive")
                 archive.extractall(folder)
         except (OSError, zipfile.BadZipFile, NotImplementedError, RuntimeError, ValueError) as error:
@@ -123,14 +123,14 @@ def _items(folder: Path, roster: Roster, assignment: str) -> tuple[list[Download
         return read_metadata(folder)
     items = _with_accounts(read_names(folder), folder, roster, assignment)
     # A zip often contains a single top-level folder.
-    if len(items) == 1 and items[0].path.is_dir() and not _is_one(items[0], folder, roster):
+    if len(items) == 1 and items[0].path.is_dir() and not _is_submission(items[0], folder, roster):
         return _items(items[0].path, roster, assignment)
     return items, []
 
 
-def _is_one(item: DownloadedItem, folder: Path, roster: Roster) -> bool:
+def _is_submission(item: DownloadedItem, folder: Path, roster: Roster) -> bool:
     """Return whether the only item of a download is a submission, not a folder with all submissions."""
-    return bool(item.doubt) or roster.find(item.keys) is not None or folder.resolve().name.endswith(FOLDER)
+    return bool(item.doubt) or roster.find(item.keys) is not None or folder.resolve().name.endswith(FOLDER_SUFFIX)
 
 
 def _with_accounts(items: list[DownloadedItem], folder: Path, roster: Roster, assignment: str) -> list[DownloadedItem]:
@@ -151,7 +151,7 @@ def _with_account(item: DownloadedItem, prefix: str | None, accounts: Set[str]) 
         return item
     doubt = (
         f"unclear: {' or '.join(candidates)}, or another account with this ending; name the folder of the clones "
-        f"ASSIGNMENT{FOLDER}, as `gh classroom clone` does"
+        f"ASSIGNMENT{FOLDER_SUFFIX}, as `gh classroom clone` does"
     )
     return replace(item, doubt=doubt)
 
@@ -165,7 +165,7 @@ def _newest(items: Sequence[DownloadedItem]) -> list[DownloadedItem]:
 
 
 def _together(attempt: Sequence[DownloadedItem], assignment: str, scratch: Path) -> Path:
-    """Return the path of an attempt. A folder that contains only an archive or a notebook stands for that file."""
+    """Return the path of an attempt. A folder that contains only an archive or a notebook is replaced by that file."""
     if len(attempt) > 1:
         folder = Path(tempfile.mkdtemp(dir=scratch))
         for number, item in enumerate(attempt):

@@ -17,7 +17,7 @@ import re
 import tarfile
 import tempfile
 import zipfile
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,8 +32,8 @@ from autograder.report.export.formats import markdown
 from autograder.result.model import Result
 from autograder.submission.intake.names import is_notebook
 
-NOT_IN_A_NAME = re.compile(r'[_/\\:*?"<>|\x00-\x1f]+')
-MAX_NAME = 100  # characters of a student's name in a folder name
+FORBIDDEN = re.compile(r'[_/\\:*?"<>|\x00-\x1f]+')
+MAX_NAME = 100  # characters of a student's name
 TAR = {
     **{".tar": "w", ".tar.gz": "w:gz", ".tgz": "w:gz", ".tar.bz2": "w:bz2", ".tbz2": "w:bz2", ".tbz": "w:bz2"},
     **{".tar.xz": "w:xz", ".txz": "w:xz"},
@@ -41,14 +41,14 @@ TAR = {
 
 
 @dataclass(frozen=True)
-class Places:
+class FeedbackPaths:
     """The path of each student's feedback in the zip, and pairs (student, reason) of those without one."""
 
     names: Mapping[str, str]
     left_out: tuple[tuple[str, str], ...]
 
 
-def moodle_places(roster: Roster, students: Iterable[str]) -> Places:
+def moodle_paths(roster: Roster, students: Iterable[str]) -> FeedbackPaths:
     """Return the paths of students' feedback in Moodle's zip. Raises UsageError if the table is not from Moodle."""
     columns = [normalized(heading) for heading in roster.headings]
     if "identifier" not in columns:
@@ -58,14 +58,14 @@ def moodle_places(roster: Roster, students: Iterable[str]) -> Places:
     for student in students:
         number = normalized(rows.get(student, {}).get("identifier", "")).removeprefix(PARTICIPANT)
         if number.isascii() and number.isdigit():
-            name = NOT_IN_A_NAME.sub(" ", rows[student].get("full name", ""))[:MAX_NAME].strip() or PARTICIPANT.strip()
+            name = FORBIDDEN.sub(" ", rows[student].get("full name", ""))[:MAX_NAME].strip() or PARTICIPANT.strip()
             names[student] = f"{name}_{number}_assignsubmission_file_/{feedback.PAGE}"
         else:
             left_out.append((student, f"{roster.path.name} has no identifier `Participant NUMBER` for this student"))
-    return Places(names, tuple(left_out))
+    return FeedbackPaths(names, tuple(left_out))
 
 
-def canvas_places(folder: Path, roster: Roster, assignment: str, students: Iterable[str]) -> Places:
+def canvas_paths(folder: Path, roster: Roster, assignment: str, students: Iterable[str]) -> FeedbackPaths:
     """Return the paths of students' feedback in Canvas's zip, which are the names of submitted files.
 
     Args:
@@ -77,24 +77,26 @@ def canvas_places(folder: Path, roster: Roster, assignment: str, students: Itera
     newest = newest_items(folder, roster, assignment)
     names, left_out = {}, []
     for student in students:
-        handed_in = [item.path.name for item in newest.get(student, ()) if _is_read(item)]
-        ranked = sorted((rank, name) for name in handed_in if (rank := _rank(name)) is not None)
+        recognized = [item.path.name for item in newest.get(student, ()) if _is_recognized(item)]
+        ranked = sorted((rank, name) for name in recognized if (rank := _rank(name)) is not None)
         if ranked:
             names[student] = ranked[0][1]
         else:
-            left_out.append((student, "the download has no page, archive or notebook of theirs that Canvas takes back"))
-    return Places(names, tuple(left_out))
+            left_out.append(
+                (student, "the download has no page, archive or notebook of this student that Canvas accepts again")
+            )
+    return FeedbackPaths(names, tuple(left_out))
 
 
-def write_archive(results: Collection[Result], places: Places, out: Path) -> None:
+def write_archive(results: Collection[Result], paths: FeedbackPaths, out: Path) -> None:
     """Write the zip with the feedback of results atomically."""
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=out.parent, prefix=".feedback-") as scratch:
         written = Path(scratch) / "feedback.zip"
         with zipfile.ZipFile(written, "w", zipfile.ZIP_DEFLATED) as archive:
             for result in results:
-                if (name := places.names.get(result.student)) is not None:
-                    archive.writestr(_member(name), _of_kind(name)(result, Path(scratch)))
+                if (name := paths.names.get(result.student)) is not None:
+                    archive.writestr(_member(name), _feedback_file(name, result, Path(scratch)))
         written.replace(out)
 
 
@@ -105,18 +107,15 @@ def _member(name: str) -> zipfile.ZipInfo:
     return member
 
 
-Write = Callable[[Result, Path], bytes]
-
-
-def _of_kind(name: str) -> Write:
-    """Return the function that writes a result's feedback as a file of this type, with a folder for scratch files."""
-    low = name.casefold()
-    if low.endswith(".zip"):
-        return _zip
+def _feedback_file(name: str, result: Result, scratch: Path) -> bytes:
+    """Return a result's feedback as a file of the type that its name indicates. `scratch` gets temporary files."""
     if is_notebook(name):
-        return _notebook
+        return _notebook(result, scratch)
+    low, page = name.casefold(), feedback.write(result, scratch, artifacts=result.folder).read_bytes()
+    if low.endswith(".zip"):
+        return _zip(page)
     mode = next((mode for ending, mode in TAR.items() if low.endswith(ending)), None)
-    return _page if mode is None else lambda result, scratch: _tar(_page(result, scratch), mode)
+    return page if mode is None else _tar(page, mode)
 
 
 def _rank(name: str) -> int | None:
@@ -126,21 +125,17 @@ def _rank(name: str) -> int | None:
     return next((rank for rank, endings in enumerate(kinds) if low.endswith(endings)), 3 if is_notebook(name) else None)
 
 
-def _is_read(item: DownloadedItem) -> bool:
+def _is_recognized(item: DownloadedItem) -> bool:
     """Return whether Canvas recognizes the user in the file's name, and does not treat it as a link."""
     *parts, last = item.path.name.split("_")
     numbers = [part for part in parts if part.isascii() and part.isdigit()]
     return item.system == "canvas" and ("id", numbers[0]) in item.keys and not last.startswith("link")
 
 
-def _page(result: Result, scratch: Path) -> bytes:
-    return feedback.write(result, scratch, artifacts=result.folder).read_bytes()
-
-
-def _zip(result: Result, scratch: Path) -> bytes:
+def _zip(page: bytes) -> bytes:
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w") as archive:
-        archive.writestr(_member(feedback.PAGE), _page(result, scratch))
+        archive.writestr(_member(feedback.PAGE), page)
     return data.getvalue()
 
 

@@ -17,8 +17,8 @@ from autograder.exceptions import UsageError
 from autograder.run.sandbox import Isolation
 from autograder.suite import suites
 
-SCRIPTS = course_paths.ROOT / "assets" / "gradescope"  # both are executable, also in the zip
-# Required for grading in addition to the course with its hidden checks and reference.
+SCRIPTS = course_paths.ROOT / "assets" / "gradescope"  # the zip preserves their executable bits
+# What grading requires in addition to the course with its hidden checks and reference.
 COPIED = ("autograder", "sim", "assets", "pyproject.toml", "requirements.lock", "Makefile")
 
 
@@ -35,13 +35,9 @@ def write_autograder(assignment: str, out: Path, isolation: Isolation) -> None:
         copy_tool(COPIED, folder / "course")
         copy_course(course_paths.course().parts, folder / "course")
         for script in SCRIPTS.iterdir():
-            text = (
-                script.read_text(encoding="utf-8")
-                .replace("ASSIGNMENT", assignment)
-                .replace("ISOLATION", isolation.value)
-            )
+            text = script.read_text(encoding="utf-8").replace("ASSIGNMENT", assignment)
             shutil.copy2(script, folder)
-            (folder / script.name).write_text(text, encoding="utf-8")
+            (folder / script.name).write_text(text.replace("ISOLATION", isolation.value), encoding="utf-8")
         with zipfile.ZipFile(out, "x", zipfile.ZIP_DEFLATED) as archive:
             for path in sorted(folder.rglob("*")):
                 archive.write(path, path.relative_to(folder))

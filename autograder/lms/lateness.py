@@ -84,28 +84,28 @@ class LatePolicy:
         """Return the lateness of a student's submission."""
         extension = self.extensions.get(student, Extension())
         deadline = extension.until or (None if self.due is None else self.due + extension.days)
-        handed_in = extension.submitted or delivery.time
-        if handed_in is None and self.due is not None and delivery.late_by is not None:
-            handed_in = self.due + delivery.late_by
-        if handed_in is not None and deadline is not None:
-            return self._late_by(handed_in - deadline)
+        submitted = extension.submitted or delivery.time
+        if submitted is None and self.due is not None and delivery.late_by is not None:
+            submitted = self.due + delivery.late_by
+        if submitted is not None and deadline is not None:
+            return self._late_by(submitted - deadline)
         if delivery.late_by is not None and extension.until is None:
             return self._late_by(delivery.late_by - extension.days)
         if not delivery.late:
             return Lateness()
         if self.per_day or self.grace or student in self.extensions:
-            is_timed = handed_in is not None or delivery.late_by is not None
-            lacks = "--due" if is_timed else f"the time in the column {SUBMITTED!r} of --extensions"
-            return Lateness(unclear=f"it is late, and nothing says by how much: give {lacks}")
-        return self._keeps(self.flat, None)
+            is_timed = submitted is not None or delivery.late_by is not None
+            missing = "--due" if is_timed else f"the time in the column {SUBMITTED!r} of --extensions"
+            return Lateness(unclear=f"it is late, and nothing says by how much: give {missing}")
+        return self._deduct(self.flat, None)
 
     def _late_by(self, delay: timedelta) -> Lateness:
         if delay <= max(self.grace, timedelta()):
             return Lateness()
         days = math.ceil(delay / DAY)
-        return self._keeps(self.flat + self.per_day * days, days)
+        return self._deduct(self.flat + self.per_day * days, days)
 
-    def _keeps(self, lost: float, days: int | None) -> Lateness:
+    def _deduct(self, lost: float, days: int | None) -> Lateness:
         return Lateness(max(self.floor, 100.0 - lost, 0.0) / 100, days)
 
 
@@ -124,14 +124,14 @@ def _extension(row: Row, zone: tzinfo | None) -> Extension:
     if days and until:
         raise row.error(f"it has both {DAYS} and {UNTIL}: remove one")
     try:
-        granted = timedelta(days=float(days or 0))
+        extra = timedelta(days=float(days or 0))
     except (ValueError, OverflowError):
-        granted = timedelta(days=-1)
-    if not timedelta() <= granted <= MAX_DAYS * DAY:
+        extra = timedelta(days=-1)
+    if not timedelta() <= extra <= MAX_DAYS * DAY:
         raise row.error(f"{days!r} is not a number of days from 0 to {MAX_DAYS}")
     try:
         deadline = moment(until, zone) if until else None
-        return Extension(granted, deadline, moment(submitted, zone) if submitted else None)
+        return Extension(extra, deadline, moment(submitted, zone) if submitted else None)
     except UsageError as error:
         raise row.error(str(error)) from None
 

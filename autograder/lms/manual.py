@@ -74,7 +74,7 @@ def add_manual(
         if any(mark.points for mark in marks[student].values())
     )
     if strangers:
-        raise UsageError(f"points for {', '.join(strangers)}, who has no result: grade a submission first")
+        raise UsageError(f"points for {', '.join(strangers)} without a result: grade a submission first")
     added = [_added(result, marks.get(result.student, {}), cells) for result in results]
     pairs = zip(results, added, strict=True)
     return added, [(new.student, new.diagnosis.sentence) for old, new in pairs if old.status is not new.status]
@@ -118,5 +118,5 @@ def _points(row: Row, name: str, most: float) -> float | None:
     except ValueError:
         raise row.error(f"{text!r} is not a number of points for {name}; write 4.5, not 4,5") from None
     if not 0 <= points <= most:
-        raise row.error(f"{text} points for {name}, which has {most:g} at most and 0 at least")
+        raise row.error(f"{text} points for {name}: the points must be from 0 to {most:g}")
     return points

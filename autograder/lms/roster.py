@@ -39,7 +39,7 @@ COLUMNS = {
     "status": "status",
 }
 # The first of these kinds that a student has becomes the name of the result folder.
-NAMES_A_STUDENT = ("login", "number", "email", "identifier", "id", "name")
+FOLDER_NAME_KINDS = ("login", "number", "email", "identifier", "id", "name")
 # The kinds of identity that a text may be, the most certain first.
 ANY_KIND = ("login", "number", "sis id", "email", "identifier", "id", "github", "name")
 LATE = re.compile(r"\d \w+ late\b")  # in Moodle's status: "Submitted for grading - 1 day 2 hours late"
@@ -54,9 +54,9 @@ NOT_STUDENTS = ("points possible", "student, test")  # special rows of Canvas
 class Student:
     """A student of the roster.
 
-    `keys` are identities as pairs (kind, text), both normalized; kinds are values of `COLUMNS`. `row` is counted from
-    0, without the headings. `late` says whether Moodle's table marks the submission as late, and `late_by` by how many
-    seconds, rounded down by Moodle.
+    `id` is the name of the result folder. `keys` are identities as pairs (kind, text), both normalized; kinds are
+    values of `COLUMNS`. `row` counts from 0, without the headings. `late` is whether Moodle's table marks the
+    submission as late, and `late_by` the delay in seconds, rounded down by Moodle.
     """
 
     id: str
@@ -106,10 +106,10 @@ def read_roster(path: Path) -> Roster:
         raise UsageError(f"{path}: cannot be read as UTF-8 CSV: {error}") from None
     if not lines:
         raise UsageError(f"{path}: the table is empty")
-    is_heading = [bool(set(_kinds(line)) & set(NAMES_A_STUDENT)) for line in lines[:MAX_TITLE_LINES]]
+    is_heading = [bool(set(_kinds(line)) & set(FOLDER_NAME_KINDS)) for line in lines[:MAX_TITLE_LINES]]
     headings, *rows = lines[is_heading.index(True) if any(is_heading) else 0 :]
     kinds = _kinds(headings)
-    if not set(kinds) & set(NAMES_A_STUDENT):
+    if not set(kinds) & set(FOLDER_NAME_KINDS):
         known = ", ".join(sorted(COLUMNS))
         raise UsageError(f"{path}: no column identifies the students; the known headings are {known}")
     students = [student for index, row in enumerate(rows) if (student := _student(kinds, row, index)) is not None]
@@ -137,7 +137,9 @@ def _student(kinds: list[str], row: tuple[str, ...], index: int) -> Student | No
     if participant.startswith(PARTICIPANT):
         number = participant.removeprefix(PARTICIPANT)
         keys |= {("identifier", number), ("identifier and name", normalized(f"{number} {cells.get('name', '')}"))}
-    name = next(cells[kind] for kind in NAMES_A_STUDENT if kind in cells) if set(cells) & set(NAMES_A_STUDENT) else ""
+    name = (
+        next(cells[kind] for kind in FOLDER_NAME_KINDS if kind in cells) if set(cells) & set(FOLDER_NAME_KINDS) else ""
+    )
     status = next((part for part in cells.get("status", "").split(" - ") if LATE.search(part)), "")
     late_by = sum(int(count) * SECONDS[unit] for count, unit in PART.findall(status)) if status else None
     folder = name.replace("/", "-").replace("\0", "")

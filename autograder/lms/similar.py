@@ -28,7 +28,7 @@ MAX_CHARACTERS = 100_000  # of a text: about 2,500 lines, which take 0.5 s and 5
 MAX_PAIRS = 100  # whose texts are on the page
 
 Names = tuple[str, ...]
-Prints = Mapping[Names, CodeFingerprint]
+Fingerprints = Mapping[Names, CodeFingerprint]
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class Comparison:
 
 
 def compare(
-    codes: Mapping[str, str], given: str, least: float, in_part: Callable[[str, str], None] = lambda name, what: None
+    codes: Mapping[str, str], given: str, least: float, in_part: Callable[[str, str], None] = lambda name, part: None
 ) -> Comparison:
     """Return the groups of students with similar texts. Each student is in one group at most.
 
@@ -74,18 +74,18 @@ def compare(
             group. Groups are chains of similar pairs, so the two ends of a chain may be less similar.
         in_part: called with each student whose text is only compared in part, and a description of the part.
     """
-    given_print = _fingerprint(_dense(given))
-    prints: dict[Names, CodeFingerprint] = {}
+    given_fingerprint = _fingerprint(_dense(given))
+    fingerprints: dict[Names, CodeFingerprint] = {}
     for text, names in _by_text(codes, in_part).items():
-        fingerprint = prints[names] = _fingerprint(text)
-        fingerprint.hashes -= given_print.hashes
-        own_places = {key: places for key, places in fingerprint.hash_idx.items() if key in fingerprint.hashes}
-        fingerprint.hash_idx = own_places
-        fingerprint.token_coverage = get_token_coverage(own_places, MIN_MATCH_TOKENS, len(fingerprint.filtered_code))
-    own = {names: fingerprint for names, fingerprint in prints.items() if fingerprint.hashes}
+        fingerprint = fingerprints[names] = _fingerprint(text)
+        fingerprint.hashes -= given_fingerprint.hashes
+        positions = {key: where for key, where in fingerprint.hash_idx.items() if key in fingerprint.hashes}
+        fingerprint.hash_idx = positions
+        fingerprint.token_coverage = get_token_coverage(positions, MIN_MATCH_TOKENS, len(fingerprint.filtered_code))
+    own = {names: fingerprint for names, fingerprint in fingerprints.items() if fingerprint.hashes}
     links = sorted(_links(own, least), key=lambda pair: (-max(pair.shares), pair.names))
     groups = _with_texts(_joined(links), own)
-    return Comparison(groups, tuple(name for names in prints if names not in own for name in names))
+    return Comparison(groups, tuple(name for names in fingerprints if names not in own for name in names))
 
 
 def _by_text(codes: Mapping[str, str], in_part: Callable[[str, str], None]) -> dict[str, Names]:
@@ -100,7 +100,7 @@ def _by_text(codes: Mapping[str, str], in_part: Callable[[str, str], None]) -> d
     return students
 
 
-def _links(prints: Prints, least: float) -> Iterable[Pair]:
+def _links(prints: Fingerprints, least: float) -> Iterable[Pair]:
     """Yield the pairs of similar texts, and one pair for each text that several students have."""
     for names in prints:
         if len(names) > 1:
@@ -123,7 +123,7 @@ def _joined(links: Iterable[Pair]) -> list[Group]:
     return list(dict.fromkeys(group_of.values()))
 
 
-def _with_texts(groups: Sequence[Group], prints: Prints) -> tuple[Group, ...]:
+def _with_texts(groups: Sequence[Group], prints: Fingerprints) -> tuple[Group, ...]:
     """Return the groups in order, with the texts of the most similar pairs."""
     ranked = sorted((pair for group in groups for pair in group.pairs), key=_rank)
     with_texts = {pair: _with_highlights(pair, prints) for pair in ranked[:MAX_PAIRS]}
@@ -138,7 +138,7 @@ def _rank(pair: Pair) -> tuple[float, tuple[Names, Names]]:
     return -max(pair.shares), pair.names
 
 
-def _with_highlights(pair: Pair, prints: Prints) -> Pair:
+def _with_highlights(pair: Pair, prints: Fingerprints) -> Pair:
     together = pair.names[0] + pair.names[1]  # students with the same text
     first, second = (prints[together] if together in prints else prints[names] for names in pair.names)
     _, _, slices = compare_files(first, second)

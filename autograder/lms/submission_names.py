@@ -160,14 +160,14 @@ def _read_brightspace(path: Path, start: int, splits: list[re.Match[str]]) -> Do
 def _read_blackboard(path: Path, match: re.Match[str]) -> DownloadedItem:
     """Parse a name from Blackboard. The receipt identifies the student, because course and student may contain `_`."""
     login, file = _login(path.with_name(f"{match['head']}_attempt_{match['time']}.txt")), match["file"] or ""
-    known = bool(login) and match["head"].endswith(f"_{login}")
+    has_receipt = bool(login) and match["head"].endswith(f"_{login}")
     return DownloadedItem(
         path,
-        tuple((kind, login) for kind in ("login", "number", "email", "id")) if known else (),
+        tuple((kind, login) for kind in ("login", "number", "email", "id")) if has_receipt else (),
         (match["time"],),
         is_submission=bool(file),
         name=file,
-        doubt="" if known else "unclear: its Blackboard receipt is missing, or names another student",
+        doubt="" if has_receipt else "unclear: its Blackboard receipt is missing, or names another student",
         is_receipt=not file,
         system="blackboard",
         time="{}-{}-{} {}:{}:{}".format(*match["time"].split("-")),
@@ -221,8 +221,8 @@ def _without_doubtful_groups(items: list[DownloadedItem]) -> list[DownloadedItem
     """
     paths = [item.path for item in items]
     groups = [item for item in items if item.system == "sakai" and paths.count(item.path) > 1]
-    alone = {item.keys[:1] for item in items if item not in groups}
-    doubtful = {item.path for item in groups if item.keys[:1] in alone}
+    individuals = {item.keys[:1] for item in items if item not in groups}
+    doubtful = {item.path for item in groups if item.keys[:1] in individuals}
     doubt = "unclear: a member of this group also has an individual submission"
     return [replace(item, keys=(), doubt=doubt) if item.path in doubtful else item for item in items]
 

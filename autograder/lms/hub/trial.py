@@ -1,6 +1,6 @@
-"""A hub for trying on this machine: three students and a teacher, the exchange, and one installation of the course.
+"""A trial hub on this machine: three students and a teacher, the exchange, and one installation of the course.
 
-Students' servers run a release, which root owns. The teacher has a course directory of nbgrader's in the home folder.
+Students' servers run a release that root owns. The teacher has an nbgrader course directory in the home folder.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ import subprocess
 import sys
 import urllib.request
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from threading import Event
 from time import monotonic
@@ -29,7 +29,7 @@ from autograder.lms.hub.users import temporary_users
 STUDENTS = ("ada", "ben", "cleo")
 TEACHER = "teacher"
 START_SECONDS = 300.0  # a deadline for the hub, not an expectation
-PROXY = course_paths.ROOT / "assets" / "hub"  # package.json, and the lock of npm
+PROXY = course_paths.ROOT / "assets" / "hub"  # contains package.json and npm's lock file
 CONFIGURATION = """\
 from pathlib import Path
 from autograder.lms.hub.configuration import configure
@@ -46,10 +46,10 @@ class Hub:
 
     Attributes:
         url: its address, without a slash at the end.
-        password: of each user.
-        students: their names.
+        password: the password of every user.
+        students: the students' names.
         teacher: the teacher's name.
-        homes: the folder of their home folders.
+        homes: the parent of the users' home folders.
     """
 
     url: str
@@ -59,14 +59,14 @@ class Hub:
     homes: Path
 
 
-def install_release(place: Path) -> Path:
-    """Make a release in `place/course`, set it up with JupyterHub, and return its folder.
+def install_release(folder: Path) -> Path:
+    """Write a release to `folder/course`, set it up with JupyterHub, and return its path.
 
     Raises:
-        UsageError: the folder exists, or the set-up failed.
+        UsageError: the release exists, or its set-up failed.
     """
-    course = place / "course"
-    _run(place, sys.executable, "-m", "autograder", "release", "--out", str(course))
+    course = folder / "course"
+    _run(folder, sys.executable, "-m", "autograder", "release", "--out", str(course))
     _run(course, "make", "--silent", "setup", f"PYTHON={Path(sys.executable).resolve()}")
     pinned = ("--no-deps", "--require-hashes", "-r", str(course_paths.ROOT / "requirements-hub.lock"))
     _run(course, str(course / ".venv" / "bin" / "pip"), "install", "--quiet", *pinned)
@@ -74,7 +74,7 @@ def install_release(place: Path) -> Path:
 
 
 def install_proxy() -> Path:
-    """Install the hub's proxy by npm, as its lock pins it, if it is not there; return the folder.
+    """Install the hub's proxy with npm, as its lock file pins it, unless it is installed, and return its folder.
 
     Raises:
         UsageError: npm failed.
@@ -89,28 +89,28 @@ def install_proxy() -> Path:
 
 
 @contextmanager
-def serving(place: Path, course: Path, port: int = 0) -> Iterator[Hub]:
-    """Serve a hub with separate users on loopback; stop it and remove its users at the end.
+def serving(folder: Path, course: Path, port: int = 0) -> Iterator[Hub]:
+    """Run a hub with separate users on 127.0.0.1. Afterwards, stop it and remove its users.
 
     Args:
-        place: a folder that other users can enter, for all that the hub makes.
-        course: the students' folder after `make setup`; only root can write to it.
-        port: of the hub; a free one by default.
+        folder: a folder that other users can enter, for all files of the hub.
+        course: the students' release after `make setup`, which only root can change.
+        port: the port of the hub; a free one by default.
 
     Raises:
         UsageError: this user is not root, other users cannot enter the folders, or the hub does not start.
     """
     if os.geteuid() != 0:
-        raise UsageError("a hub starts its users' servers, and only root can do that: call it by sudo, or as root")
-    homes, exchange, state = (place / name for name in ("homes", "exchange", "state"))
-    for folder, mode in ((homes, 0o755), (exchange, 0o1777), (state, 0o700)):
-        shutil.rmtree(folder, ignore_errors=True)  # of an earlier trial, whose users are gone
-        folder.mkdir(parents=True)
-        folder.chmod(mode)
-    for folder in (course, homes):
-        if closed := closed_to_other_users(Path(sys.executable).resolve(), folder):
-            raise UsageError(closed)
-    suffix = hashlib.sha256(str(place).encode()).hexdigest()[:6]  # two clones of one machine can each have a hub
+        raise UsageError("only root can start the servers of a hub's users: run this with sudo or as root")
+    homes, exchange, state = (folder / name for name in ("homes", "exchange", "state"))
+    for path, mode in ((homes, 0o755), (exchange, 0o1777), (state, 0o700)):
+        shutil.rmtree(path, ignore_errors=True)  # of an earlier trial, whose users no longer exist
+        path.mkdir(parents=True)
+        path.chmod(mode)
+    for path in (course, homes):
+        if problem := closed_to_other_users(Path(sys.executable).resolve(), path):
+            raise UsageError(problem)
+    suffix = hashlib.sha256(str(folder).encode()).hexdigest()[:6]  # each clone on a machine can run a hub
     students = tuple(f"{name}-{suffix}" for name in STUDENTS)
     hub = Hub("", secrets.token_urlsafe(9), students, f"{TEACHER}-{suffix}", homes)
     groups = {f"students-{suffix}": students, f"teachers-{suffix}": (hub.teacher,)}
@@ -127,11 +127,11 @@ def serving(place: Path, course: Path, port: int = 0) -> Iterator[Hub]:
     with temporary_users(homes, hub.password, groups):
         _make_course_directory(homes / hub.teacher, hub.teacher)
         with running(state, (sys.executable, "-m", "jupyterhub", "-f", str(configuration)), port) as url:
-            yield Hub(url, hub.password, hub.students, hub.teacher, hub.homes)
+            yield replace(hub, url=url)
 
 
 def _make_course_directory(home: Path, owner: str) -> None:
-    """Give a teacher the chapters as a course directory of nbgrader's, with its settings where Jupyter finds them."""
+    """Copy the chapters to an nbgrader course directory in a teacher's home, with settings that Jupyter finds."""
     course, settings = home / "course", home / ".jupyter"
     chapters = course_paths.course().chapters
     shutil.copytree(course_paths.course().root / chapters, course / chapters, ignore=course_paths.NOT_COPIED)
@@ -145,20 +145,20 @@ def _make_course_directory(home: Path, owner: str) -> None:
 
 @contextmanager
 def running(state: Path, command: Sequence[str], port: int = 0) -> Iterator[str]:
-    """Run JupyterHub in the folder `state`; yield its address once it answers.
+    """Run JupyterHub, and yield its address once it responds.
 
     Args:
-        state: where the hub keeps its data and its log.
-        command: starts the hub; options of ports are added to it.
-        port: of the hub on loopback; a free one by default.
+        state: the folder for the hub's data and log.
+        command: the command that starts the hub, to which the options for its ports are added.
+        port: the port of the hub on 127.0.0.1; a free one by default.
 
     Raises:
         UsageError: the hub does not start.
     """
-    free = _free_ports(3)
-    url = f"http://127.0.0.1:{port or free[0]}"
-    ports = (f"--JupyterHub.bind_url={url}", f"--JupyterHub.hub_port={free[1]}")
-    command = [*command, *ports, f"--ConfigurableHTTPProxy.api_url=http://127.0.0.1:{free[2]}"]
+    hub_port, internal_port, proxy_port = _free_ports(3)
+    url = f"http://127.0.0.1:{port or hub_port}"
+    options = (f"--JupyterHub.bind_url={url}", f"--JupyterHub.hub_port={internal_port}")
+    command = [*command, *options, f"--ConfigurableHTTPProxy.api_url=http://127.0.0.1:{proxy_port}"]
     environment = {name: value for name, value in os.environ.items() if name not in ("ROS_DOMAIN_ID", "PYTHONPATH")}
     with (state / "log").open("wb") as log:
         hub = subprocess.Popen(command, cwd=state, env=environment, stdout=log, stderr=log, start_new_session=True)
@@ -166,7 +166,7 @@ def running(state: Path, command: Sequence[str], port: int = 0) -> Iterator[str]
             _wait(hub, f"{url}/hub/api/", state / "log")
             yield url
         finally:
-            hub.terminate()  # it stops its users' servers and the proxy
+            hub.terminate()  # it also stops its users' servers and the proxy
             try:
                 hub.wait(timeout=60)
             except subprocess.TimeoutExpired:
@@ -186,13 +186,9 @@ def _wait(hub: subprocess.Popen[bytes], url: str, log: Path) -> None:
 
 
 def _free_ports(count: int) -> list[int]:
-    with_ports = [socket.socket() for _ in range(count)]
-    for one in with_ports:
-        one.bind(("127.0.0.1", 0))
-    ports = [int(one.getsockname()[1]) for one in with_ports]
-    for one in with_ports:
-        one.close()
-    return ports
+    with ExitStack() as stack:
+        sockets = [stack.enter_context(socket.create_server(("127.0.0.1", 0))) for _ in range(count)]
+        return [int(each.getsockname()[1]) for each in sockets]
 
 
 def _run(folder: Path, *command: str) -> None:
@@ -200,4 +196,4 @@ def _run(folder: Path, *command: str) -> None:
     environment = {**os.environ, "PATH": os.pathsep.join([bin_folder, os.environ.get("PATH", os.defpath)])}
     done = subprocess.run(command, cwd=folder, env=environment, check=False)
     if done.returncode != 0:
-        raise UsageError(f"{' '.join(command)} ended with {done.returncode}: its lines above say why")
+        raise UsageError(f"{' '.join(command)} failed with exit status {done.returncode}: its output is above")

@@ -14,17 +14,17 @@ from pathlib import Path
 
 from autograder.exceptions import UsageError
 
-MARK = "made by make hub"  # in the comment of each user that was made here: others are never touched
+MARK = "made by make hub"  # the comment (GECOS field) of each user that this module created; it removes no others
 
 
 @contextmanager
 def temporary_users(homes: Path, password: str, groups: Mapping[str, Sequence[str]]) -> Iterator[None]:
-    """Make groups and their users, with homes below `homes`; remove them in the end, with their processes and homes.
+    """Create groups and their users, with home folders in `homes`. Afterwards, remove them with all their processes.
 
-    Remains of a killed trial are removed first.
+    What a killed trial left behind is removed first.
 
     Raises:
-        UsageError: a user of that name was there before.
+        UsageError: another user has one of the names.
     """
     remove_users(groups)
     try:
@@ -40,17 +40,17 @@ def temporary_users(homes: Path, password: str, groups: Mapping[str, Sequence[st
 
 
 def remove_users(groups: Mapping[str, Sequence[str]]) -> None:
-    """Remove those users and groups that were made here, if they are there.
+    """Remove groups and their users, with the home folders, if they exist.
 
     Raises:
-        UsageError: a user of that name was not made here.
+        UsageError: this module did not create a user of that name.
     """
     for group, names in groups.items():
         for name in names:
             with contextlib.suppress(KeyError):
                 user = pwd.getpwnam(name)
                 if user.pw_gecos != MARK:
-                    raise UsageError(f"there is a user {name} on this machine already, who was not made by make hub")
+                    raise UsageError(f"this machine has another user {name}, not made by make hub: rename or remove it")
                 _kill_processes(user.pw_uid)
                 _run("userdel", "--remove", name)
         with contextlib.suppress(KeyError):
@@ -59,7 +59,7 @@ def remove_users(groups: Mapping[str, Sequence[str]]) -> None:
 
 
 def _kill_processes(uid: int) -> None:
-    """Kill all processes of a user: kernels outlive a server that was killed."""
+    """Kill all processes of a user, because kernels survive if their server is killed."""
     for process in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError):
             if process.stat().st_uid == uid:
@@ -68,6 +68,6 @@ def _kill_processes(uid: int) -> None:
 
 def _run(*command: str, text: str = "") -> None:
     done = subprocess.run(command, cwd="/", input=text, text=True, capture_output=True, check=False)
-    # 12: userdel could not remove a mail spool or a home that is not there
+    # 12: userdel found no mail spool or home folder to remove
     if done.returncode not in (0, 12):
         raise UsageError(f"{' '.join(command)}: {done.stderr.strip() or done.returncode}")

@@ -1,4 +1,4 @@
-"""Configures nbgrader for a course; its `nbgrader_config.py` calls this."""
+"""Configures nbgrader for a course. Its `nbgrader_config.py` calls `configure`."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from autograder.author.course.forms import SETTINGS
 
 
 def configure(c: Any, root: Path) -> None:
-    """Set up nbgrader for the course in the folder `root`.
+    """Configure nbgrader for the course in the folder `root`.
 
-    `NBGRADER_EXCHANGE` names the exchange folder of a class. Without it the folder is `.build/exchange`.
+    The environment variable `NBGRADER_EXCHANGE` sets the exchange folder, which is `.build/exchange` by default.
     """
     # nbgrader runs `alembic` from PATH, which does not contain this environment unless it is activated.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
     c.CourseDirectory.root = str(root)
     c.CourseDirectory.course_id = course_paths.course().name
     c.CourseDirectory.source_directory = course_paths.course().chapters
-    # Build products of colcon and Python are neither released nor collected.
+    # Do not release or collect the build products of colcon and Python.
     c.CourseDirectory.ignore = [
         *(".ipynb_checkpoints", "__pycache__", "*.pyc", "*.egg-info", ".pytest_cache"),
         *("build", "install", "log", "feedback"),
@@ -49,5 +49,5 @@ def configure(c: Any, root: Path) -> None:
         for step in Autograde.autograde_preprocessors.default()
     ]
 
-    # Feedback and formgrader show students' text, which must not run scripts on the page.
+    # Feedback and formgrader show students' text, which must not run scripts in the browser.
     c.HTMLExporter.filters = {"markdown2html": "autograder.lms.nbgrader.sanitized_markdown"}

@@ -25,7 +25,7 @@ from autograder.result.causes import FAILED_AS_WELL
 PICTURES = ("image/png", "image/jpeg")
 # Limits for colour codes in a text. nbconvert's run time is quadratic in their number, and in the numbers of each.
 MAX_COLOURS = 1000
-_COMMAND = re.compile(r"\[(?:(?P<colour>[0-9;]{0,30}m)|[0-?]{0,30}[ -/]{0,3}[@-~])")
+_TERMINAL_CODE = re.compile(r"\[(?:(?P<colour>[0-9;]{0,30}m)|[0-?]{0,30}[ -/]{0,3}[@-~])")
 
 
 def grade_outputs(points: float, page: PageView, group: GroupView, *, first: bool) -> list[NotebookNode]:
@@ -114,8 +114,8 @@ def _text(value: object) -> str:
 
 def _after_escape(part: str, keeps_colours: bool) -> str:
     """Return the cleaned text after an escape character. Only colour codes are kept, if `keeps_colours` is set."""
-    command = _COMMAND.match(part)
-    if command is None:
+    code = _TERMINAL_CODE.match(part)
+    if code is None:
         return clean(part)
-    text = clean(part[command.end() :])
-    return f"\x1b{command[0]}{text}" if keeps_colours and command["colour"] is not None else text
+    text = clean(part[code.end() :])
+    return f"\x1b{code[0]}{text}" if keeps_colours and code["colour"] is not None else text

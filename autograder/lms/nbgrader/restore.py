@@ -23,9 +23,9 @@ class RestoreCells(NbGraderPreprocessor):
 
     def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
         coursedir = self.parent.parent.coursedir
-        marks = resources["nbgrader"]
-        folder = coursedir.format_path(coursedir.source_directory, ".", marks["assignment"])
-        source = nbformat.read(Path(folder) / f"{marks['notebook']}.ipynb", as_version=4)
+        names = resources["nbgrader"]
+        folder = coursedir.format_path(coursedir.source_directory, ".", names["assignment"])
+        source = nbformat.read(Path(folder) / f"{names['notebook']}.ipynb", as_version=4)
         return restored(nb, in_form(source, Form.RELEASED)), resources
 
 
@@ -40,7 +40,7 @@ def restored(submitted: NotebookNode, released: NotebookNode) -> NotebookNode:
     for cell in notebook.cells:
         cell.source = clean(cell.source)
         cell.pop("attachments", None)
-        # A browser cannot distinguish two cells with the same id, and nbformat only warns.
+        # A browser cannot distinguish two cells with the same id, and nbformat only warns about them.
         while cell.get("id") is None or cell.id in ids:
             cell.id = nbformat.v4.new_raw_cell().id
         ids.add(cell.id)

@@ -53,8 +53,8 @@ class SandboxedGrade(NbGraderPreprocessor):
                 nothing is recorded.
         """
         coursedir = self.parent.parent.coursedir
-        marks = resources["nbgrader"]
-        assignment, student = marks["assignment"], marks["student"]
+        nbgrader_resources = resources["nbgrader"]
+        assignment, student = nbgrader_resources["assignment"], nbgrader_resources["student"]
         submitted = Path(coursedir.format_path(coursedir.submitted_directory, student, assignment))
         results = Path(coursedir.root) / self.results / assignment
         try:
@@ -76,7 +76,7 @@ class SandboxedGrade(NbGraderPreprocessor):
             self._write_scores(nb, result, results / student)
             feedback.write(result, results / student)
         except Exception:
-            self._request_manual_grading(marks)
+            self._request_manual_grading(nbgrader_resources)
             raise
         return nb, resources
 
@@ -86,12 +86,12 @@ class SandboxedGrade(NbGraderPreprocessor):
             cells = decode(executed.read_bytes()) if executed.is_file() else []
         except (ValueError, RecursionError) as error:
             raise GraderError(f"{executed} cannot be read: {error}. Delete its folder, and grade again") from None
-        count = Counter(_name(cell) for cell in cells)
-        ran = {_name(cell): cell for cell in cells if count[_name(cell)] == 1}
+        count = Counter(_key(cell) for cell in cells)
+        executed_cells = {_key(cell): cell for cell in cells if count[_key(cell)] == 1}
         for cell in nb.cells:
             if cell.cell_type == "code":
-                same = ran.get(_name(cell))
-                outputs = [] if same is None or clean(same.source) != cell.source else same.outputs
+                match = executed_cells.get(_key(cell))
+                outputs = [] if match is None or clean(match.source) != cell.source else match.outputs
                 cell.outputs = sanitized_outputs(outputs)
                 cell.execution_count = None
 
@@ -100,31 +100,31 @@ class SandboxedGrade(NbGraderPreprocessor):
         page = page_view(result, out)
         groups = {view.name: view for view in page.groups}
         graded = [cell for cell in nb.cells if is_grade(cell) and not is_solution(cell)]
-        named = [group(cell) or f"(none, cell {grade_id(cell)})" for cell in graded]
-        if sorted(named) != sorted(groups):
+        names = [group(cell) or f"(none, cell {grade_id(cell)})" for cell in graded]
+        if sorted(names) != sorted(groups):
             raise GraderError(
-                f"{result.assignment}: its grade cells have the groups {sorted(named)}, but its suite has "
+                f"{result.assignment}: its grade cells have the groups {sorted(names)}, but its suite has "
                 f"{sorted(groups)}: correct the source notebook and run `nbgrader generate_assignment` again"
             )
-        for cell, name in zip(graded, named, strict=True):
-            view, worth = groups[name], float(cell.metadata.nbgrader["points"])
-            if abs(view.max_points - worth) > 1e-6:
+        for cell, name in zip(graded, names, strict=True):
+            view, max_points = groups[name], float(cell.metadata.nbgrader["points"])
+            if abs(view.max_points - max_points) > 1e-6:
                 raise GraderError(
-                    f"{result.assignment}: the cell of group {name!r} is worth {worth:g} points, but its checks "
+                    f"{result.assignment}: the cell of group {name!r} is worth {max_points:g} points, but its checks "
                     f"{view.max_points:g}: run `nbgrader generate_assignment` again"
                 )
-            points = min(max(round(view.points, 4), 0.0), worth)
+            points = min(max(round(view.points, 4), 0.0), max_points)
             cell.outputs = grade_outputs(points, page, view, first=cell is graded[0])
 
-    def _request_manual_grading(self, marks: dict[str, str]) -> None:
+    def _request_manual_grading(self, names: dict[str, str]) -> None:
         """Mark the submission for manual grading. A previously recorded score is kept."""
-        with Gradebook(marks["db_url"]) as gradebook:
-            submission = gradebook.find_submission_notebook(marks["notebook"], marks["assignment"], marks["student"])
+        with Gradebook(names["db_url"]) as gradebook:
+            submission = gradebook.find_submission_notebook(names["notebook"], names["assignment"], names["student"])
             for grade in submission.grades:
                 grade.needs_manual_grade = True
             gradebook.db.commit()
 
 
-def _name(cell: NotebookNode) -> str:
+def _key(cell: NotebookNode) -> str:
     """Return the key for matching cells: the grade id, or the cell id if there is none."""
     return f"grade {grade_id(cell)}" if grade_id(cell) else f"cell {cell.get('id')}"

@@ -18,19 +18,21 @@ TAGS = """
     a abbr b blockquote br caption cite code col colgroup dd del details dfn div dl dt em figcaption figure h1 h2 h3 h4
     h5 h6 hr i img kbd li ol p pre q s samp small span strong sub summary sup table tbody td tfoot th thead tr u ul var
 """
-EVERYWHERE = ("class", "id", "title")
+GLOBAL_ATTRIBUTES = ("class", "id", "title")
 # A path below the notebook's folder, without a scheme, host, query, `..` or characters that a browser removes.
-_BESIDE = re.compile(r"(?!\.)[\w-][\w.-]*(?:/(?!\.)[\w-][\w.-]*)*", re.ASCII)
-# TeX commands that load extensions, styles or links in MathJax, and `\csname`, which can spell any of them.
+_RELATIVE_PATH = re.compile(r"(?!\.)[\w-][\w.-]*(?:/(?!\.)[\w-][\w.-]*)*", re.ASCII)
+# TeX commands that load extensions, styles or links in MathJax, and `\csname`, which can form any of them.
 _TEX = re.compile(r"\\(?=\s*(?:style|href|require|class|cssId|csname|unicode|includegraphics|url|data|html|mml))")
 
 
 def _image(tag: str, name: str, value: str) -> bool:
-    return name in (*EVERYWHERE, "alt", "width", "height") or (name == "src" and bool(_BESIDE.fullmatch(value)))
+    return name in (*GLOBAL_ATTRIBUTES, "alt", "width", "height") or (
+        name == "src" and bool(_RELATIVE_PATH.fullmatch(value))
+    )
 
 
 ATTRIBUTES = {
-    "*": list(EVERYWHERE),
+    "*": list(GLOBAL_ATTRIBUTES),
     "a": ["href"],
     "img": _image,
     "td": ["align", "colspan", "rowspan"],

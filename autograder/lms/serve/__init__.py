@@ -2,6 +2,5 @@
 
     submit(...) -> handlers -> store (on disk, then acknowledged) -> queue (whose turn it is) -> grading -> pages
 
-`queue` and `settings` are pure, and only `store` writes. The process may be killed at any instant: every acknowledged
-answer is graded, once.
+`queue` and `settings` are pure. The process may be killed at any time. Each acknowledged answer is graded exactly once.
 """

@@ -1,7 +1,7 @@
-"""Takes what students submit through nbgrader's exchange.
+"""Hands in what students submit through nbgrader's exchange.
 
-A submission is a folder STUDENT+ASSIGNMENT+TIME+RANDOM among those of the course. Its student made it, and can still
-change it. Therefore a process with the student's own rights packs it, and packs a link as a link.
+A submission is a folder STUDENT+ASSIGNMENT+TIME+RANDOM in the course's folder of the exchange. It belongs to the
+student, who can still change it. Therefore a process with the student's own rights packs it, without following links.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from autograder.lms.serve.shared import Refused, Service
 from autograder.notebook.handing_in import MAX_ANSWER
 
 LOG = logging.getLogger(__name__)
-LAST = "submission_secret.txt"  # the file that nbgrader writes after all others
-LOOK_SECONDS = 5.0  # between two looks
-PACK_SECONDS = 60.0  # to pack a submission
+LAST_FILE = "submission_secret.txt"  # nbgrader writes it after all others
+POLL_SECONDS = 5.0
+MAX_PACK_SECONDS = 60.0
 
 
 @dataclass(frozen=True)
-class Submitted:
-    """A submission in the exchange: its folder, its student, who owns it, and since when it is complete."""
+class ExchangeSubmission:
+    """A submission in the exchange: its folder, its student with user and group id, and when it was complete."""
 
     folder: Path
     student: str
@@ -43,15 +43,15 @@ class Submitted:
 
     @property
     def key(self) -> str:
-        """The key of its hand-in: each submission is handed in once."""
+        """The key of its hand-in, by which each submission is handed in only once."""
         return hashlib.sha256(self.folder.name.encode()).hexdigest()[:32]
 
 
-def find(inbound: Path) -> Iterator[Submitted]:
-    """Yield the complete submissions of users of this machine. One in another's name is not a submission.
+def find_submissions(inbound: Path) -> Iterator[ExchangeSubmission]:
+    """Yield the complete submissions of users of this machine. Folders with another user's name are ignored.
 
     Args:
-        inbound: the folder into which students submit. It exists once an assignment has been released.
+        inbound: the folder into which students submit. nbgrader creates it when it releases the first assignment.
 
     Raises:
         OSError: the folder cannot be read.
@@ -60,21 +60,21 @@ def find(inbound: Path) -> Iterator[Submitted]:
         return
     for entry in sorted(os.scandir(inbound), key=lambda each: each.name):
         student, plus, rest = entry.name.partition("+")
-        about = entry.stat(follow_symlinks=False)
-        if not plus or not stat.S_ISDIR(about.st_mode) or not os.path.lexists(Path(entry.path, LAST)):
+        status = entry.stat(follow_symlinks=False)
+        if not plus or not stat.S_ISDIR(status.st_mode) or not os.path.lexists(Path(entry.path, LAST_FILE)):
             continue
         try:
-            owner = pwd.getpwuid(about.st_uid)
+            owner = pwd.getpwuid(status.st_uid)
         except KeyError:
             continue
         if owner.pw_name == student:
-            # The time in the name is the student's own word; this one is the system's.
-            at = datetime.fromtimestamp(about.st_ctime, timezone.utc)
+            # A student could forge the time in the name, but not this one.
+            at = datetime.fromtimestamp(status.st_ctime, timezone.utc)
             assignment = rest.partition("+")[0]
-            yield Submitted(Path(entry.path), student, owner.pw_uid, owner.pw_gid, assignment, at)
+            yield ExchangeSubmission(Path(entry.path), student, owner.pw_uid, owner.pw_gid, assignment, at)
 
 
-def pack(submitted: Submitted) -> bytes:
+def pack(submission: ExchangeSubmission) -> bytes:
     """Return a submission as an archive.
 
     Raises:
@@ -82,17 +82,17 @@ def pack(submitted: Submitted) -> bytes:
     """
     is_root = os.geteuid() == 0
     with subprocess.Popen(
-        ["tar", "--create", "--gzip", "--directory", str(submitted.folder), "."],
-        cwd="/",  # `--directory` is entered with the student's rights
+        ["tar", "--create", "--gzip", "--directory", str(submission.folder), "."],
+        cwd="/",  # tar enters `--directory` with the student's rights
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         env={"PATH": os.defpath},
-        user=submitted.user if is_root else None,
-        group=submitted.group if is_root else None,
+        user=submission.user if is_root else None,
+        group=submission.group if is_root else None,
         extra_groups=[] if is_root else None,
     ) as tar:
         assert tar.stdout is not None
-        deadline = Timer(PACK_SECONDS, tar.kill)
+        deadline = Timer(MAX_PACK_SECONDS, tar.kill)
         deadline.start()
         try:
             data = tar.stdout.read(MAX_ANSWER + 1)
@@ -100,49 +100,46 @@ def pack(submitted: Submitted) -> bytes:
                 tar.kill()
         finally:
             tar.stdout.close()
-            status = tar.wait()
+            exit_status = tar.wait()
             deadline.cancel()
     if len(data) > MAX_ANSWER:
         raise UsageError(f"its archive is larger than {MAX_ANSWER // 2**20} MiB")
-    if status != 0:
-        raise UsageError(f"tar ended with {status}")
+    if exit_status != 0:
+        raise UsageError(f"tar ended with {exit_status}")
     return data
 
 
 class Exchange:
-    """Hands in what appears in the exchange, by the same rules as what comes from notebooks."""
+    """Hands in new submissions in the exchange, by the same rules as those from notebooks."""
 
     def __init__(self, service: Service, inbound: Path) -> None:
         self._service, self._inbound = service, inbound
-        self._said: set[str] = set()  # lines that are already in the log
+        self._logged: set[str] = set()  # folders and sentences that are already in the log
 
     async def watch(self) -> None:
-        """Look again and again for as long as the process lives."""
+        """Poll the exchange until the process ends."""
         while True:
             try:
-                for submitted in await asyncio.to_thread(lambda: list(find(self._inbound))):
-                    await self._take(submitted)
+                for submission in await asyncio.to_thread(lambda: list(find_submissions(self._inbound))):
+                    await self._hand_in(submission)
             except (OSError, sqlite3.Error) as error:
-                self._say(f"{self._inbound}: {error}")
-            await asyncio.sleep(LOOK_SECONDS)
+                if (sentence := f"{self._inbound}: {error}") not in self._logged:
+                    self._logged.add(sentence)
+                    LOG.warning("%s", sentence)
+            await asyncio.sleep(POLL_SECONDS)
 
-    async def _take(self, submitted: Submitted) -> None:
-        service, name = self._service, submitted.folder.name
-        if submitted.assignment not in service.settings.assignments or name in self._said:
+    async def _hand_in(self, new: ExchangeSubmission) -> None:
+        service, name = self._service, new.folder.name
+        if new.assignment not in service.settings.assignments or name in self._logged:
             return
-        if service.store.with_key(submitted.student, submitted.key) is not None:
+        if service.store.with_key(new.student, new.key) is not None:
             return
         try:
-            service.require_a_try(submitted.student, submitted.assignment, submitted.at)
-            answer = await asyncio.to_thread(pack, submitted)
+            service.require_try_left(new.student, new.assignment, new.at)
+            answer = await asyncio.to_thread(pack, new)
         except (Refused, UsageError, OSError) as error:
-            self._said.add(name)
+            self._logged.add(name)
             LOG.warning("%s in the exchange is not graded: %s", name, getattr(error, "sentence", error))
             return
-        service.store.receive(submitted.student, submitted.assignment, submitted.key, answer, submitted.at)
+        service.store.receive(new.student, new.assignment, new.key, answer, new.at)
         await service.grader.notify()
-
-    def _say(self, sentence: str) -> None:
-        if sentence not in self._said:
-            self._said.add(sentence)
-            LOG.warning("%s", sentence)

@@ -1,4 +1,4 @@
-"""Grades waiting answers, one after the other or several at once, in the sandbox of `autograder grade`."""
+"""Grades waiting answers, one or several at a time, in the sandbox of `autograder grade`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from autograder.grade import DEFAULT_SEED, grade_submission
+from autograder.grade import grade_submission
 from autograder.grade.job import Job
 from autograder.lms.serve import visible
 from autograder.lms.serve.hand_in import HandIn, Mark
@@ -22,84 +22,84 @@ from autograder.result.model import Result
 from autograder.run.sandbox import Isolation
 
 LOG = logging.getLogger(__name__)
-ANSWER = "answer.zip"  # whatever it is: intake reads an archive by its bytes
+ANSWER = "answer.zip"  # for any archive: intake detects the type by the content
 
 Grade = Callable[[Job], Result]
 
 
 @dataclass(frozen=True)
-class Way:
-    """How answers are graded: how many at once, the seed, the isolation level, and the grading function."""
+class GradingOptions:
+    """How answers are graded: the number of simultaneous jobs, the seed, the isolation level, and the function."""
 
-    jobs: int = 1
-    seed: int = DEFAULT_SEED
-    isolation: Isolation = Isolation.BUBBLEWRAP
+    jobs: int
+    seed: int
+    isolation: Isolation
     grade: Grade = grade_submission
 
 
 class Grader:
-    """Takes answers out of the queue. All of it but the gradings themselves happens in the loop's thread."""
+    """Grades the answers in the queue. Everything except the gradings themselves runs in the event loop's thread."""
 
-    def __init__(self, settings: Settings, store: Store, way: Way) -> None:
-        self._settings, self._store, self._way = settings, store, way
-        self._came = asyncio.Condition()
+    def __init__(self, settings: Settings, store: Store, options: GradingOptions) -> None:
+        self._settings, self._store, self._options = settings, store, options
+        self._queue_changed = asyncio.Condition()
         self._busy: dict[str, int] = {}  # students whose answer is being graded, with its number
-        self._set_aside: set[int] = set()  # on which the machine failed; they wait for the next start
+        self._failed: set[int] = set()  # numbers of answers that were not graded; they wait for the next start
 
     async def notify(self) -> None:
-        """Say that an answer came."""
-        async with self._came:
-            self._came.notify_all()
+        """Wake idle workers, because the queue has changed."""
+        async with self._queue_changed:
+            self._queue_changed.notify_all()
 
-    def is_graded_now(self, number: int) -> bool:
-        """Return whether a grading of this number is running."""
+    def is_being_graded(self, number: int) -> bool:
+        """Return whether the grading of the answer with this number is running."""
         return number in self._busy.values()
 
     def ahead_of(self, number: int) -> int:
-        """Return how many answers are graded before the one of this number, which waits."""
-        waiting = [each for each in self._store.waiting() if not self.is_graded_now(each.number)]
+        """Return how many answers are graded before the waiting one with this number."""
+        waiting = [each for each in self._store.waiting() if not self.is_being_graded(each.number)]
         return len(self._busy) + ahead_of(number, waiting, self._store.turns(), self._busy)
 
     async def run(self) -> None:
-        """Grade for as long as the process lives."""
-        with ThreadPoolExecutor(self._way.jobs) as pool:
-            await asyncio.gather(*(self._work(pool) for _ in range(self._way.jobs)))
+        """Grade until the process ends."""
+        with ThreadPoolExecutor(self._options.jobs) as pool:
+            await asyncio.gather(*(self._work(pool) for _ in range(self._options.jobs)))
 
     async def _work(self, pool: ThreadPoolExecutor) -> None:
         while True:
-            handed_in = await self._take()
+            hand_in = await self._take()
             try:
-                answer = self._store.begin(handed_in.number)
-                out = self._store.folder(handed_in.number)
-                mark = await asyncio.get_running_loop().run_in_executor(pool, self._grade, handed_in, answer, out)
-                self._store.finish(handed_in.number, mark)
-            except Exception:  # of the machine: a submission's own failures are already in its result
-                LOG.exception("Number %d was not graded. It waits for the next start.", handed_in.number)
-                self._set_aside.add(handed_in.number)
+                answer = self._store.begin(hand_in.number)
+                out = self._store.folder(hand_in.number)
+                mark = await asyncio.get_running_loop().run_in_executor(pool, self._grade, hand_in, answer, out)
+                self._store.finish(hand_in.number, mark)
+            except Exception:  # a failure of the machine: the result contains failures of the submission
+                LOG.exception("Number %d was not graded. It waits for the next start.", hand_in.number)
+                self._failed.add(hand_in.number)
             finally:
-                del self._busy[handed_in.student]
-                await self.notify()  # the student may have another one
+                del self._busy[hand_in.student]
+                await self.notify()  # the student may have another waiting answer
 
     async def _take(self) -> HandIn:
-        """Wait for an answer to grade, and return it. From then on, its student is busy."""
-        async with self._came:
+        """Wait for an answer to grade, mark its student as busy, and return it."""
+        async with self._queue_changed:
             while True:
-                waiting = (each for each in self._store.waiting() if each.number not in self._set_aside)
-                turn = next_turn(waiting, self._store.turns(), self._busy)
-                if turn is not None and (hand_in := self._store.with_number(turn.number)) is not None:
+                waiting = (each for each in self._store.waiting() if each.number not in self._failed)
+                if hand_in := next_turn(waiting, self._store.turns(), self._busy):
                     self._busy[hand_in.student] = hand_in.number
                     return hand_in
-                await self._came.wait()
+                await self._queue_changed.wait()
 
-    def _grade(self, handed_in: HandIn, answer: bytes, out: Path) -> Mark:
-        """Grade an answer into its folder, with its page. A folder left by a killed process is rewritten."""
+    def _grade(self, hand_in: HandIn, answer: bytes, out: Path) -> Mark:
+        """Grade an answer, and write its result and feedback page to `out`, which a killed process may have filled."""
         with TemporaryDirectory(prefix="answer-") as scratch:
             path = Path(scratch) / ANSWER
             path.write_bytes(answer)
-            job = Job(path, handed_in.assignment, handed_in.student, self._way.seed, out, self._way.isolation)
-            result = self._way.grade(job)
-            settings = self._settings.assignments.get(handed_in.assignment)
+            options = self._options
+            job = Job(path, hand_in.assignment, hand_in.student, options.seed, out, options.isolation)
+            result = options.grade(job)
+            settings = self._settings.assignments.get(hand_in.assignment)
             if settings is not None and settings.shown is Shown.VISIBLE:
-                visible.write(visible.run_visible(path, handed_in.assignment, self._way.isolation), out)
+                visible.write(visible.run_visible(path, hand_in.assignment, options.isolation), out)
         feedback.write(result, out)
         return Mark(result.status, result.score, result.max_score)

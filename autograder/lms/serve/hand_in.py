@@ -1,4 +1,4 @@
-"""A hand-in, and which of a student's counts."""
+"""A student's hand-in, and the choice of the one that counts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class HandIn:
-    """A student's submission: its number, which counts arrivals from 1, and its mark once it is graded."""
+    """A student's submission: its number in the order of arrival, from 1, its time, and its mark once it is graded."""
 
     number: int
     student: str
@@ -30,20 +30,18 @@ class HandIn:
 
     @property
     def costs_a_try(self) -> bool:
-        """Whether it is one of a day's tries. Where the grader failed, the student has it back."""
+        """Whether it counts as one of a day's tries. If the grader failed, it does not."""
         return self.mark is None or self.mark.status is not Status.NOT_GRADED
 
 
 def counting(own: Sequence[HandIn], *, best: bool) -> HandIn | None:
-    """Return which of a student's hand-ins of an assignment counts, None if none has a mark yet.
+    """Return the hand-in that counts, or None if none has a mark yet.
 
     Args:
-        own: the student's, in the order in which they came.
-        best: whether the best one counts, and the later one of two equal ones; or else the last one.
+        own: a student's hand-ins of one assignment, in the order of their arrival.
+        best: whether the one with the most points counts (the later one of two equal ones), or else the last one.
     """
-    graded = [(each, each.mark) for each in own if each.mark is not None and each.mark.status is Status.GRADED]
+    graded = [(each.mark.points, each) for each in own if each.mark is not None and each.mark.status is Status.GRADED]
     if not graded:
         return None
-    if not best:
-        return graded[-1][0]
-    return max(graded, key=lambda pair: (pair[1].points, pair[0].number))[0]
+    return max(graded, key=lambda pair: (pair[0], pair[1].number))[1] if best else graded[-1][1]

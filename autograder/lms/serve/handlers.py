@@ -1,13 +1,13 @@
-"""The addresses of the service, below its prefix on the hub. Only the hub authenticates users.
+"""The HTTP handlers of the service, below its prefix on the hub. The hub authenticates all users.
 
-    GET  ./                               one's own hand-ins
-    GET  ./feedback/NUMBER                the page of one; 403 for another student's
+    GET  ./                               the user's own hand-ins
+    GET  ./feedback/NUMBER                the feedback on a hand-in; 403 if it belongs to another student
     GET  ./class/ASSIGNMENT               the class, for instructors
-    GET  ./class/ASSIGNMENT/results.json  its results that count, for `autograder export`
-    POST ./class/ASSIGNMENT/regrade       lets all that the class handed in be graded again
-    PUT  ./hand-ins/ASSIGNMENT/KEY        hands in the body, by a token of the hub's
+    GET  ./class/ASSIGNMENT/results.json  the results that count, for `autograder export`
+    POST ./class/ASSIGNMENT/regrade       grades all hand-ins of the class again
+    PUT  ./hand-ins/ASSIGNMENT/KEY        hands in the body; needs a token of the hub
 
-The same key again is the same hand-in: a client that got no answer can ask again.
+A repeated PUT with the same key is the same hand-in, so a client without a response can retry.
 """
 
 from __future__ import annotations
@@ -27,30 +27,30 @@ from autograder.lms.serve.settings import AssignmentSettings, Shown
 from autograder.lms.serve.shared import Refused, Service
 from autograder.notebook.handing_in import MAX_ANSWER
 
-KEY = r"[0-9a-f]{32}"  # of a hand-in, which its client draws
+KEY = r"[0-9a-f]{32}"  # of a hand-in; chosen at random by the client
 
 
 def application(service: Service, cookie_secret: bytes) -> Application:
-    """Return the application that answers below the service's prefix, which begins and ends with a slash."""
+    """Return the application for the paths below the service's prefix, which begins and ends with a slash."""
     routes: list[tuple[str, type[RequestHandler]]] = [
-        ("", Home),
-        (r"feedback/([0-9]{1,9})", Feedback),
-        (r"class/([^/]+)", Class),
-        (r"class/([^/]+)/results\.json", Results),
-        (r"class/([^/]+)/regrade", Regrade),
-        (rf"hand-ins/([^/]+)/({KEY})", HandingIn),
+        ("", HomeHandler),
+        (r"feedback/([0-9]{1,9})", FeedbackHandler),
+        (r"class/([^/]+)", ClassHandler),
+        (r"class/([^/]+)/results\.json", ResultsHandler),
+        (r"class/([^/]+)/regrade", RegradeHandler),
+        (rf"hand-ins/([^/]+)/({KEY})", HandInHandler),
         ("oauth_callback", HubOAuthCallbackHandler),
     ]
     return Application(
         [(service.prefix + path, handler) for path, handler in routes],
         service=service,
         cookie_secret=cookie_secret,
-        default_handler_class=NotThere,
+        default_handler_class=NotFoundHandler,
     )
 
 
-class Known(HubOAuthenticated, RequestHandler):
-    """A request of a user whom the hub knows; others are sent to the hub's login."""
+class HubUserHandler(HubOAuthenticated, RequestHandler):
+    """A handler for users of the hub. Other users are redirected to the hub's login."""
 
     service: Service
     student: str
@@ -66,10 +66,11 @@ class Known(HubOAuthenticated, RequestHandler):
 
     async def prepare(self) -> None:
         try:
-            async with self.service.asking:
-                await self.hub_auth.get_user(self, sync=False)  # kept for current_user, which would hold up all others
+            async with self.service.hub_requests:
+                # Cached for `current_user`, which would block the event loop.
+                await self.hub_auth.get_user(self, sync=False)
         except HTTPError:
-            raise Refused(503, "The hub does not say who you are. Try again.") from None
+            raise Refused(503, "The hub could not identify you. Try again.") from None
         user = self.current_user
         if user is None and self.request.method in ("GET", "HEAD"):
             self.redirect(self.get_login_url())
@@ -79,79 +80,78 @@ class Known(HubOAuthenticated, RequestHandler):
         self.student = user["name"]
 
     def write_error(self, status_code: int, **more: Any) -> None:
-        """Answer with the sentence of the error; a fault of the service's own has only its name."""
+        """Respond with a page that contains the error's sentence. For an internal error, it is the status's name."""
         self.set_header("Content-Type", "text/html; charset=utf-8")
         self.finish(pages.error(status_code, _sentence(status_code, more)))
 
     @property
-    def teaches(self) -> bool:
-        """Whether an instructor asks."""
+    def is_instructor(self) -> bool:
+        """Whether the user is an instructor."""
         return self.student in self.service.settings.instructors
 
     def assignment(self, name: str) -> AssignmentSettings:
-        """Return the settings of an assignment that a request names."""
+        """Return the settings of an assignment. Raises Refused if the service has none for it."""
         settings = self.service.settings.assignments.get(name)
         if settings is None:
             raise Refused(404, "There is no such assignment here.")
         return settings
 
     def require_instructor(self) -> None:
-        """Refuse all others."""
-        if not self.teaches:
+        """Raise Refused if the user is not an instructor."""
+        if not self.is_instructor:
             raise Refused(403, "This page is for instructors.")
 
-    def places(self, own: list[HandIn]) -> dict[int, pages.Place]:
-        """Return the positions of the waiting hand-ins in the queue."""
+    def queue_position(self, hand_in: HandIn) -> str:
+        """Describe the position of an ungraded hand-in in the queue."""
         grader = self.service.grader
-        return {
-            one.number: pages.Place(graded_now, 0 if graded_now else grader.ahead_of(one.number))
-            for one in own
-            if one.mark is None
-            for graded_now in (grader.is_graded_now(one.number),)
-        }
+        if grader.is_being_graded(hand_in.number):
+            return "being graded"
+        ahead = grader.ahead_of(hand_in.number)
+        return "next" if ahead == 0 else f"waits: {ahead} before it"
 
 
-class NotThere(Known):
-    """An unknown address."""
+class NotFoundHandler(HubUserHandler):
+    """The handler of all other paths."""
 
     async def prepare(self) -> None:
         raise Refused(404, "There is no such page.")
 
 
-class Home(Known):
-    """A student's own hand-ins."""
+class HomeHandler(HubUserHandler):
+    """The page with a student's own hand-ins."""
 
     def get(self) -> None:
-        """Show them."""
+        """Send the page."""
         service, own = self.service, self.service.store.of_student(self.student)
-        sections = pages.sections(service.settings, own, self.places(own), self.student, service.now())
+        positions = {hand_in.number: self.queue_position(hand_in) for hand_in in own if hand_in.mark is None}
+        sections = pages.sections(service.settings, own, positions, self.student, service.now())
         zone = str(service.settings.zone)
-        self.finish(pages.home(self.student, sections, teaches=self.teaches, prefix=service.prefix, zone=zone))
+        self.finish(pages.home(self.student, sections, teaches=self.is_instructor, prefix=service.prefix, zone=zone))
 
 
-class Feedback(Known):
-    """The page of one hand-in."""
+class FeedbackHandler(HubUserHandler):
+    """The page of a hand-in."""
 
     def get(self, number: str) -> None:
-        """Show it to its student, as far as the settings say, and to instructors."""
+        """Send instructors the whole page, and the student the parts that the settings allow."""
         hand_in = self.service.store.with_number(int(number))
         if hand_in is None:
             raise Refused(404, "There is no such hand-in.")
-        if hand_in.student != self.student and not self.teaches:
+        if hand_in.student != self.student and not self.is_instructor:
             raise Refused(403, "This is another student's feedback.")
         if hand_in.mark is None:
-            self.finish(pages.state(hand_in, self.places([hand_in])[hand_in.number].words))
+            self.finish(pages.state(hand_in, self.queue_position(hand_in)))
             return
-        each = self.service.settings.assignments.get(hand_in.assignment, AssignmentSettings())
-        shown = Shown.EVERYTHING if self.teaches else each.shown_to(self.student, self.service.now())
+        settings = self.service.settings.assignments.get(hand_in.assignment, AssignmentSettings())
+        shown = Shown.EVERYTHING if self.is_instructor else settings.shown_to(self.student, self.service.now())
         self.finish(pages.feedback(hand_in, self.service.store.folder(hand_in.number), shown))
 
 
-class Class(Known):
+class ClassHandler(HubUserHandler):
     """The page of a class."""
 
     def get(self, assignment: str) -> None:
-        """Show it to instructors."""
+        """Send the page to instructors."""
         self.require_instructor()
         self.assignment(assignment)
         store = self.service.store
@@ -159,11 +159,11 @@ class Class(Known):
         self.finish(pages.class_page(self.service.settings, assignment, hand_ins, waiting, self.service.prefix, form))
 
 
-class Regrade(Known):
+class RegradeHandler(HubUserHandler):
     """Grades a class again, for example after a check was fixed."""
 
     async def post(self, assignment: str) -> None:
-        """Let each graded answer wait again. The hub's library has checked that a page of the service sent the form."""
+        """Put each graded answer back into the queue. The hub's library has checked the form's XSRF token."""
         self.require_instructor()
         self.assignment(assignment)
         self.service.store.grade_again(assignment)
@@ -171,68 +171,68 @@ class Regrade(Known):
         self.redirect(f"{self.service.prefix}class/{assignment}")
 
 
-class Results(Known):
-    """The results of a class that count."""
+class ResultsHandler(HubUserHandler):
+    """The results of a class that count, as a JSON file for `autograder export`."""
 
     def get(self, assignment: str) -> None:
-        """Send them to instructors as `autograder export` reads them."""
+        """Send the file to instructors."""
         self.require_instructor()
         best, store = self.assignment(assignment).best_counts, self.service.store
         by_student: dict[str, list[HandIn]] = {}
-        for one in store.of_assignment(assignment):
-            by_student.setdefault(one.student, []).append(one)
+        for hand_in in store.of_assignment(assignment):
+            by_student.setdefault(hand_in.student, []).append(hand_in)
         counted = filter(None, (counting(own, best=best) for own in by_student.values()))
         self.set_header("Content-Type", "application/json")
         self.set_header("Content-Disposition", f'attachment; filename="{assignment}-results.json"')
         self.write("[")
-        for place, one in enumerate(counted):
-            self.write(",\n" if place else "\n")
-            self.write((store.folder(one.number) / RESULT).read_bytes())
+        for index, hand_in in enumerate(counted):
+            self.write(",\n" if index else "\n")
+            self.write((store.folder(hand_in.number) / RESULT).read_bytes())
         self.finish("]\n")
 
 
 @stream_request_body
-class HandingIn(Known):
-    """Takes an answer. The body is read once the hub has said whose it is, up to the bound."""
+class HandInHandler(HubUserHandler):
+    """Receives answers. The body is read, up to the size limit, only after the hub has identified the student."""
 
     async def prepare(self) -> None:
         self._answer = bytearray()
-        if not self.hub_auth.get_token(self, in_cookie=False):  # a page elsewhere could send a cookie
+        if not self.hub_auth.get_token(self, in_cookie=False):  # a page of another site could send a cookie
             raise Refused(403, "Hand in with a token of the hub in the header Authorization.")
         await super().prepare()
-        self._require_bound(int(self.request.headers.get("Content-Length", "0")))
+        self._require_size(int(self.request.headers.get("Content-Length", "0")))
 
     def data_received(self, chunk: bytes) -> None:
-        self._require_bound(len(self._answer) + len(chunk))
+        self._require_size(len(self._answer) + len(chunk))
         self._answer += chunk
 
-    def _require_bound(self, size: int) -> None:
+    def _require_size(self, size: int) -> None:
         if size > MAX_ANSWER:
             raise Refused(413, f"An answer has at most {MAX_ANSWER // 2**20} MiB.")
 
     async def put(self, assignment: str, key: str) -> None:
-        """Keep the answer, and acknowledge it once it is on the disk."""
+        """Store the answer, and acknowledge it when it is on the disk."""
         self.assignment(assignment)
         service, now = self.service, self.service.now()
-        known = service.store.with_key(self.student, key)
-        if known is None:
-            service.require_a_try(self.student, assignment, now)
+        hand_in = service.store.with_key(self.student, key)
+        if hand_in is None:
+            service.require_try_left(self.student, assignment, now)
             if not self._answer:
                 raise Refused(400, "The answer is empty.")
             try:
-                known = service.store.receive(self.student, assignment, key, bytes(self._answer), now)
+                hand_in = service.store.receive(self.student, assignment, key, bytes(self._answer), now)
             except sqlite3.Error:
-                raise Refused(503, "The answer could not be kept. Nothing was handed in: try again.") from None
+                raise Refused(503, "The answer could not be stored. Nothing was handed in: try again.") from None
             await service.grader.notify()
-        elif known.assignment != assignment:
-            raise Refused(409, "This key is that of another hand-in.")
+        elif hand_in.assignment != assignment:
+            raise Refused(409, "Another hand-in has this key.")
         self.set_status(HTTPStatus.CREATED)
         self.finish(
             {
-                "number": known.number,
-                "handed_in": known.at.isoformat(),
+                "number": hand_in.number,
+                "handed_in": hand_in.at.isoformat(),
                 "tries_left": service.tries_left(self.student, assignment, now),
-                "page": f"{service.prefix}feedback/{known.number}",
+                "page": f"{service.prefix}feedback/{hand_in.number}",
             }
         )
 

@@ -1,4 +1,4 @@
-"""The process of the service: it listens where the hub says, and grades until it is ended, in whatever way."""
+"""The process of the service: it listens at the address that the hub sets, and grades until it is stopped or killed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tornado.httpserver import HTTPServer
 
 from autograder.exceptions import UsageError
 from autograder.lms.serve.exchange import Exchange
-from autograder.lms.serve.grading import Grader, Way
+from autograder.lms.serve.grading import Grader, GradingOptions
 from autograder.lms.serve.handlers import application
 from autograder.lms.serve.settings import Settings
 from autograder.lms.serve.shared import Service
@@ -34,7 +34,7 @@ TOKEN, NAME, URL, PREFIX = (
 
 @dataclass(frozen=True)
 class Address:
-    """Where the service listens, and the part of the hub's addresses that is its own."""
+    """The address at which the service listens, and the prefix of its paths on the hub."""
 
     host: str
     port: int
@@ -42,7 +42,7 @@ class Address:
 
 
 def address(environment: Mapping[str, str]) -> Address:
-    """Return the address that a hub gives its service. Raises UsageError if no hub started this process."""
+    """Return the address that the hub sets for its service. Raises UsageError if no hub started this process."""
     missing = [name for name in (TOKEN, NAME, URL, PREFIX) if not environment.get(name)]
     if missing:
         raise UsageError(
@@ -55,27 +55,29 @@ def address(environment: Mapping[str, str]) -> Address:
     return Address(url.hostname, url.port, f"/{prefix.strip('/')}/")
 
 
-def serve(settings: Settings, folder: Path, way: Way, place: Address) -> None:
-    """Serve until this process is ended. Nothing is lost by that, at any instant.
+def serve(settings: Settings, folder: Path, options: GradingOptions, listen_at: Address) -> None:
+    """Serve until this process ends, which may happen at any time without losing an answer.
 
     Raises UsageError if the folder or the address cannot be used, and IsolationError if the sandbox cannot be made.
     """
-    require(way.isolation)
-    # Ctrl-C ends the process at once, like any other signal. Running gradings are repeated later.
+    require(options.isolation)
+    # Ctrl-C ends the process at once, like any other signal. The next start repeats the running gradings.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     store = Store(folder)
-    asyncio.run(_serve(settings, store, way, place))
+    asyncio.run(_serve(settings, store, options, listen_at))
 
 
-async def _serve(settings: Settings, store: Store, way: Way, place: Address) -> None:
-    grader = Grader(settings, store, way)
-    service = Service(settings, store, grader, place.prefix)
-    # A cookie is valid for the lifetime of this process. After that, the browser logs in again by itself.
+async def _serve(settings: Settings, store: Store, options: GradingOptions, listen_at: Address) -> None:
+    grader = Grader(settings, store, options)
+    service = Service(settings, store, grader, listen_at.prefix)
+    # Cookies expire when this process ends. The browser then logs in again without asking.
     server = HTTPServer(application(service, secrets.token_bytes(32)), max_body_size=4 * MAX_ANSWER)
     try:
-        server.listen(place.port, place.host)
+        server.listen(listen_at.port, listen_at.host)
     except OSError as error:
-        raise UsageError(f"{place.host}:{place.port}: cannot listen there ({os.strerror(error.errno or 0)})") from None
+        raise UsageError(
+            f"{listen_at.host}:{listen_at.port}: cannot listen there ({os.strerror(error.errno or 0)})"
+        ) from None
     if settings.exchange is None:
         await grader.run()
     else:

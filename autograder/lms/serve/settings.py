@@ -1,17 +1,17 @@
-"""The instructor's settings of the service: a YAML file, whose mistakes are named with their lines.
+"""Reads the instructor's settings of the service from a YAML file. Errors name the line.
 
-    instructors: [grace]              they see the class and everybody's feedback
-    timezone: Europe/Berlin           of the times below, and of the day of the tries; UTC by default
-    exchange: /srv/ros2/exchange/ros2-python/inbound   what students submit there is graded, too
+    instructors: [grace]              may see the class and all feedback
+    timezone: Europe/Berlin           for the times below and for tries per day; UTC by default
+    exchange: /srv/ros2/exchange/ros2-python/inbound   submissions in this folder are also graded
     assignments:
       10_mapping:
-        due: 2026-10-12 23:59         nothing is taken after it; never by default
-        tries_a_day: 5                of a student; 5 by default
+        due: 2026-10-12 23:59         the last time for handing in; never by default
+        tries_a_day: 5                for each student; 5 by default
         shown: visible                before it is due: everything, visible, points or nothing
-        counts: best                  which of a student's marks counts: best or last; last by default
+        counts: best                  the mark that counts for a student: best or last; last by default
         extensions: {ada: 2026-10-19 23:59}
 
-Only `assignments` is needed.
+Only `assignments` is required.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ from sim.exceptions import WorldError
 from sim.fields import Reader, Units, bad
 
 TRIES_A_DAY = 5
-MOST_TRIES = 1000
-MOST_STUDENTS = 100_000
+MAX_TRIES = 1000
+MAX_INSTRUCTORS = 100_000
 MAX_BYTES = 1024 * 1024
 
 
@@ -41,13 +41,13 @@ class Shown(str, Enum):
 
     EVERYTHING = "everything"  # the feedback page
     VISIBLE = "visible"  # the checks that students can run themselves
-    POINTS = "points"  # the sum
-    NOTHING = "nothing"  # that it was received and graded
+    POINTS = "points"  # their sum
+    NOTHING = "nothing"  # only that the answer was received and graded
 
 
 @dataclass(frozen=True)
 class AssignmentSettings:
-    """The settings of one assignment. Times know their zone; None is never."""
+    """The settings of one assignment. Times have a time zone; None means never."""
 
     due: datetime | None = None
     tries_a_day: int = TRIES_A_DAY
@@ -56,7 +56,7 @@ class AssignmentSettings:
     extensions: Mapping[str, datetime] = field(default_factory=dict)
 
     def due_of(self, student: str) -> datetime | None:
-        """Return until when a student can hand in."""
+        """Return the last time at which a student can hand in, or None if there is no limit."""
         return self.extensions.get(student, self.due)
 
     def is_open(self, student: str, now: datetime) -> bool:
@@ -65,7 +65,7 @@ class AssignmentSettings:
         return due is None or now <= due
 
     def shown_to(self, student: str, now: datetime) -> Shown:
-        """Return the parts of their own gradings that a student sees."""
+        """Return the parts of a grading that the student sees."""
         return self.shown if self.is_open(student, now) else Shown.EVERYTHING
 
 
@@ -79,27 +79,28 @@ class Settings:
     exchange: Path | None = None
 
     def tries_left(self, assignment: str, earlier: Iterable[datetime], now: datetime) -> int:
-        """Return how often a student, with hand-ins at these times, can hand in today."""
+        """Return how often a student with earlier hand-ins at these times can still hand in today."""
         today = now.astimezone(self.zone).date()
         used = sum(time.astimezone(self.zone).date() == today for time in earlier)
         return max(0, self.assignments[assignment].tries_a_day - used)
 
 
 def read_settings(path: Path) -> Settings:
-    """Read a file of settings. Raises UsageError, which names the file and the line, if it is wrong."""
+    """Read a settings file. Raises UsageError, with the file and the line, if it is invalid."""
     try:
         top = _composed(path)
         read = Reader(path, Units())
         fields = read.fields(top, "the file", ("assignments",), ("instructors", "timezone", "exchange"))
         zone = _zone(read, fields.get("timezone"))
-        instructors = (_text(read, node, "an instructor") for node in _items(read, fields.get("instructors")))
+        items = read.items(fields.get("instructors"), "instructors", MAX_INSTRUCTORS)
+        instructors = frozenset(_text(read, node, "an instructor") for node in items)
         names = suites.graded_assignments()
         entries = read.fields(fields["assignments"], "assignments", (), names)
         assignments = {name: _assignment(read, name, node, zone) for name, node in entries.items()}
         if not assignments:
             raise bad(path, fields["assignments"], "there is no assignment", f"Name one, such as {names[0]}")
-        return Settings(assignments, frozenset(instructors), zone, _exchange(read, fields.get("exchange")))
-    except WorldError as error:  # of the readers that the simulator's files have, too
+        return Settings(assignments, instructors, zone, _exchange(read, fields.get("exchange")))
+    except WorldError as error:  # from `Reader`, which also reads the simulator's files
         raise UsageError(str(error)) from None
 
 
@@ -124,14 +125,14 @@ def _composed(path: Path) -> yaml.MappingNode:
 
 
 def _assignment(read: Reader, name: str, node: yaml.Node, zone: tzinfo) -> AssignmentSettings:
-    if isinstance(node, yaml.ScalarNode) and not node.value:  # its name alone
+    if isinstance(node, yaml.ScalarNode) and not node.value:  # only its name
         return AssignmentSettings()
     known = ("due", "tries_a_day", "shown", "counts", "extensions")
     fields = read.fields(node, name, (), known)
     due = _time(read, fields["due"], "due", zone) if "due" in fields else None
     extensions = _extensions(read, fields.get("extensions"), zone)
     if extensions and due is None:
-        raise bad(read.path, fields["extensions"], f"{name} has extensions and is never due", "Say when it is `due`")
+        raise bad(read.path, fields["extensions"], f"{name} has extensions and is never due", "Add `due`")
     shown = read.choice(fields.get("shown"), "shown", [each.value for each in Shown], Shown.EVERYTHING.value)
     counts = read.choice(fields.get("counts"), "counts", ("best", "last"), "last")
     return AssignmentSettings(due, _tries(read, fields.get("tries_a_day")), Shown(shown), counts == "best", extensions)
@@ -151,19 +152,19 @@ def _tries(read: Reader, node: yaml.Node | None) -> int:
     if node is None:
         return TRIES_A_DAY
     number = read.number(node, "tries_a_day")
-    if number != int(number) or not 1 <= number <= MOST_TRIES:
-        raise bad(read.path, node, f"tries_a_day is {number:g}", f"Give a whole number from 1 to {MOST_TRIES}")
+    if number != int(number) or not 1 <= number <= MAX_TRIES:
+        raise bad(read.path, node, f"tries_a_day is {number:g}", f"Give a whole number from 1 to {MAX_TRIES}")
     return int(number)
 
 
-def _time(read: Reader, node: yaml.Node, what: str, zone: tzinfo) -> datetime:
-    text = _text(read, node, what)
+def _time(read: Reader, node: yaml.Node, label: str, zone: tzinfo) -> datetime:
+    text = _text(read, node, label)
     try:
         time = datetime.fromisoformat(text)
     except ValueError:
-        raise bad(read.path, node, f"{what} is {text!r}", "Give a time such as 2026-10-12 23:59") from None
-    if len(text) <= len("2026-10-12"):  # Python takes a day for its first instant, and people for its last
-        raise bad(read.path, node, f"{what} has no time of day", f"Write {text} 23:59")
+        raise bad(read.path, node, f"{label} is {text!r}", "Give a time such as 2026-10-12 23:59") from None
+    if len(text) <= len("2026-10-12"):  # Python would read a date as its first moment, but people mean its last
+        raise bad(read.path, node, f"{label} has no time of day", f"Write {text} 23:59")
     return time if time.tzinfo is not None else time.replace(tzinfo=zone)
 
 
@@ -183,16 +184,12 @@ def _zone(read: Reader, node: yaml.Node | None) -> tzinfo:
         return timezone.utc
     try:
         return zoneinfo.ZoneInfo(name)
-    except (OSError, ValueError, KeyError):  # a folder, a path outside the database, and an unknown name
+    except (OSError, ValueError, KeyError):  # a folder, a path outside the database, or an unknown name
         raise bad(read.path, node, f"there is no time zone {name!r}", "Give one such as Europe/Berlin") from None
 
 
-def _items(read: Reader, node: yaml.Node | None) -> list[yaml.Node]:
-    return read.items(node, "instructors", MOST_STUDENTS)
-
-
-def _text(read: Reader, node: yaml.Node, what: str) -> str:
-    text = read.text(node, what).strip()
+def _text(read: Reader, node: yaml.Node, label: str) -> str:
+    text = read.text(node, label).strip()
     if not text:
-        raise bad(read.path, node, f"{what} is blank", "Write it, or leave the line out")
+        raise bad(read.path, node, f"{label} is blank", "Write it, or leave the line out")
     return text

@@ -1,4 +1,4 @@
-"""The service's shared state, and who can hand in when."""
+"""The service's shared state, and the rules for handing in."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from autograder.lms.serve.pages import TIME
 from autograder.lms.serve.settings import Settings
 from autograder.lms.serve.store import Store
 
-MOST_QUESTIONS = 8  # to the hub at once
+MAX_HUB_REQUESTS = 8  # at the same time
 
 
 class Refused(HTTPError):
-    """An answer to a wrong request: a status, and the sentence that its page or its JSON says."""
+    """A refused request: the HTTP status, and the sentence for the page or the JSON of the response."""
 
     def __init__(self, status: int, sentence: str) -> None:
         super().__init__(status, sentence)
@@ -27,28 +27,28 @@ class Refused(HTTPError):
 
 @dataclass(frozen=True)
 class Service:
-    """The shared state of what takes answers in. `now` returns the current time, with its zone."""
+    """The state that the handlers and the exchange share. `now` returns the current time with its zone."""
 
     settings: Settings
     store: Store
     grader: Grader
     prefix: str
     now: Callable[[], datetime] = lambda: datetime.now(timezone.utc)
-    # A whole class at once waits here: in the queue of the client that asks the hub, it would time out.
-    asking: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MOST_QUESTIONS))
+    # Requests of a whole class wait here, because they would time out in the queue of the hub's client.
+    hub_requests: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MAX_HUB_REQUESTS))
 
-    def require_a_try(self, student: str, assignment: str, at: datetime) -> None:
+    def require_try_left(self, student: str, assignment: str, at: datetime) -> None:
         """Raise Refused, with the reason, if a student cannot hand in an assignment of the settings at this time."""
-        each = self.settings.assignments[assignment]
-        due = each.due_of(student)
-        if due is not None and not each.is_open(student, at):
-            when = due.astimezone(self.settings.zone).strftime(TIME)
-            raise Refused(403, f"{assignment} was due at {when}. Ask your instructor.")
+        rules = self.settings.assignments[assignment]
+        due = rules.due_of(student)
+        if due is not None and not rules.is_open(student, at):
+            due_text = due.astimezone(self.settings.zone).strftime(TIME)
+            raise Refused(403, f"{assignment} was due at {due_text}. Ask your instructor.")
         if self.tries_left(student, assignment, at) == 0:
-            raise Refused(429, f"You have handed in {each.tries_a_day} times today. Hand in again tomorrow.")
+            raise Refused(429, f"You have handed in {rules.tries_a_day} times today. Hand in again tomorrow.")
 
     def tries_left(self, student: str, assignment: str, at: datetime) -> int:
-        """Return how often a student can still hand in an assignment on that day."""
+        """Return how often a student can still hand in an assignment on the day of this time."""
         own = self.store.of_student(student)
-        times = [one.at for one in own if one.assignment == assignment and one.costs_a_try]
+        times = [each.at for each in own if each.assignment == assignment and each.costs_a_try]
         return self.settings.tries_left(assignment, times, at)

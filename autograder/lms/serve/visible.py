@@ -1,4 +1,4 @@
-"""The visible checks on a submission, with the same results as `check(...)` on the same files."""
+"""Runs the visible checks on a submission, with the same results as `check(...)` on the same files."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ NOT_RUN = "The visible checks were not run on this answer. Run check(...) in the
 class VisibleReport:
     """The results of the visible checks."""
 
-    sentence: str  # why they could not run, or the packages were not built; empty otherwise
+    sentence: str  # why they could not run, or why packages were not built; empty otherwise
     checks: tuple[CheckResult, ...] = ()
 
 
 def run_visible(answer: Path, assignment: str, isolation: Isolation) -> VisibleReport:
-    """Run the visible checks on an answer in a worker sandbox. If the checks raise an error, it is in the log."""
+    """Run the visible checks on an answer in a worker sandbox, and log an error that they raise."""
     try:
-        whole: dict[str, Any] = {"exercises": (), "part": "", "first": ()}
-        with run_on(answer.resolve(), isolation, "check", assignment=assignment, **whole) as (reply, _):
+        all_checks: dict[str, Any] = {"exercises": (), "part": "", "first": ()}
+        with run_on(answer.resolve(), isolation, "check", assignment=assignment, **all_checks) as (reply, _):
             diagnosis, checks = reply["diagnosis"], reply["checks"]
     except GraderError as error:
         LOG.error("The visible checks of %s: %s", assignment, visible(str(error)))
@@ -48,10 +48,10 @@ def write(report: VisibleReport, folder: Path) -> None:
 
 
 def read(folder: Path) -> VisibleReport:
-    """Read the report in the folder of a result. Raises UsageError if it holds something else."""
+    """Read the report in the folder of a result. Raises UsageError if it cannot be read."""
     try:
         report: VisibleReport = structure(VisibleReport, json.loads((folder / FILE).read_text(encoding="utf-8")))
-    except FileNotFoundError:  # the settings were others then
+    except FileNotFoundError:  # it was graded with other settings
         return VisibleReport(NOT_RUN)
     except (ValueError, TypeError, KeyError) as error:
         raise UsageError(f"{folder / FILE}: cannot be read: {error}") from None

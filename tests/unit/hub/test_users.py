@@ -13,7 +13,7 @@ from autograder.lms.hub.users import remove_users
 
 
 def test_a_user_who_was_not_made_by_a_trial_is_not_removed() -> None:
-    with pytest.raises(UsageError, match="there is a user root on this machine already"):
+    with pytest.raises(UsageError, match="this machine has another user root, not made by make hub"):
         remove_users({"a-group-that-is-not-there": ["root"]})
 
 

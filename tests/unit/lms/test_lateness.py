@@ -189,7 +189,7 @@ def test_a_csv_file_has_the_late_days_and_the_mark_beside_the_score(graded: Path
     [
         ("student,day\nzoe,1\n", "extensions.csv, line 1: it needs one of the columns days, until, submitted"),
         ("days\n1\n", "extensions.csv, line 1: the column 'student' is missing"),
-        ("student,days\neve,1\n", "extensions.csv, line 2: 'eve' fits no student, or several"),
+        ("student,days\neve,1\n", "extensions.csv, line 2: 'eve' matches no student or several"),
         ("student,days\nzoe,-1\n", "extensions.csv, line 2: '-1' is not a number of days from 0 to 3660"),
         ("student,days\nzoe,nan\n", "extensions.csv, line 2: 'nan' is not a number of days"),
         ("student,days\nzoe,1e99\n", "extensions.csv, line 2: '1e99' is not a number of days"),

@@ -20,7 +20,7 @@ from typing import Any
 from autograder.grade import grade_submission
 from autograder.grade.job import Job
 from autograder.lms.serve import service
-from autograder.lms.serve.grading import Way
+from autograder.lms.serve.grading import GradingOptions
 from autograder.lms.serve.settings import read_settings
 from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.worker_sandbox import WorkerReport
@@ -67,7 +67,7 @@ def serve(
         trace = _tracer(lines, kill_at)
         threading.settrace(trace)
         sys.settrace(trace)
-    options = Way(jobs, 7, Isolation.PROCESS, partial(grade_submission, run_job=run))
+    options = GradingOptions(jobs, 7, Isolation.PROCESS, partial(grade_submission, run_job=run))
     service.serve(read_settings(settings), data, options, service.address(environment))
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from autograder.exceptions import StudentError, UsageError
-from autograder.lms.serve.exchange import LAST, Submitted, find, pack
+from autograder.lms.serve.exchange import LAST_FILE, ExchangeSubmission, find_submissions, pack
 from autograder.notebook.handing_in import MAX_ANSWER
 from autograder.submission import intake
 from tests.unit.serve import serving
@@ -44,21 +44,21 @@ def submit(inbound: Path, random: str, student: str = STUDENT, assignment: str =
     folder = inbound / f"{student}+{assignment}+2026-05-04 09:00:00 UTC+{random}"
     (folder / MANIFEST).parent.mkdir(parents=True)
     (folder / MANIFEST).write_text(student)
-    (folder / LAST).touch()
+    (folder / LAST_FILE).touch()
     return folder
 
 
-def only_submission(inbound: Path) -> Submitted:
-    (submitted,) = find(inbound)
+def only_submission(inbound: Path) -> ExchangeSubmission:
+    (submitted,) = find_submissions(inbound)
     return submitted
 
 
 def test_a_submission_is_found_when_nbgrader_has_written_its_last_file(inbound: Path) -> None:
-    assert list(find(inbound / "missing")) == []
+    assert list(find_submissions(inbound / "missing")) == []
     folder = submit(inbound, "r4nd0m")
-    (folder / LAST).unlink()
-    assert list(find(inbound)) == []
-    (folder / LAST).touch()
+    (folder / LAST_FILE).unlink()
+    assert list(find_submissions(inbound)) == []
+    (folder / LAST_FILE).touch()
     submitted = only_submission(inbound)
     assert (submitted.student, submitted.assignment, submitted.folder) == (STUDENT, "02_nodes", folder)
 

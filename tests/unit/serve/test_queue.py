@@ -4,19 +4,26 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field
+from datetime import datetime, timezone
 
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autograder.lms.serve.queue import Waiting, ahead_of, in_order, next_turn
+from autograder.lms.serve.hand_in import HandIn
+from autograder.lms.serve.queue import ahead_of, in_order, next_turn
 
+AT = datetime(2026, 10, 5, tzinfo=timezone.utc)
 STUDENTS = st.sampled_from("abcde")
 # Events at the service: a student hands in, or (None) the next turn is served.
 EVENTS = st.lists(st.one_of(STUDENTS, st.none()), max_size=60)
 
 
-def arrived(students: str) -> list[Waiting]:
-    return [Waiting(number, student) for number, student in enumerate(students, 1)]
+def waiting(number: int, student: str) -> HandIn:
+    return HandIn(number, student, "02_nodes", AT)
+
+
+def arrived(students: str) -> list[HandIn]:
+    return [waiting(number, student) for number, student in enumerate(students, 1)]
 
 
 def order(students: str, turns: dict[str, int] | None = None, busy: str = "") -> str:
@@ -27,14 +34,14 @@ def order(students: str, turns: dict[str, int] | None = None, busy: str = "") ->
 class Desk:
     """A queue that serves one answer after another."""
 
-    waiting: list[Waiting] = field(default_factory=list)
+    waiting: list[HandIn] = field(default_factory=list)
     turns: dict[str, int] = field(default_factory=dict)
-    served: list[Waiting] = field(default_factory=list)
+    served: list[HandIn] = field(default_factory=list)
     count: int = 0
 
     def receive(self, student: str) -> None:
         self.count += 1
-        self.waiting.append(Waiting(self.count, student))
+        self.waiting.append(waiting(self.count, student))
 
     def serve(self) -> None:
         if (turn := next_turn(self.waiting, self.turns, ())) is not None:
@@ -67,7 +74,7 @@ def test_a_student_who_is_being_graded_comes_after_all_others() -> None:
 
 
 def test_a_student_has_one_answer_graded_at_a_time() -> None:
-    assert next_turn(arrived("aab"), {}, ("a",)) == Waiting(3, "b")
+    assert next_turn(arrived("aab"), {}, ("a",)) == waiting(3, "b")
     assert next_turn(arrived("aa"), {}, ("a",)) is None
 
 

@@ -11,7 +11,6 @@ import pytest
 
 from autograder.exceptions import UsageError
 from autograder.lms.serve.hand_in import HandIn, Mark, counting
-from autograder.lms.serve.queue import Waiting
 from autograder.lms.serve.store import Store
 from autograder.result.model import Status
 
@@ -56,7 +55,7 @@ def test_an_interrupted_grading_waits_again_and_costs_no_turn(tmp_path: Path) ->
     assert store.turns() == {"ada": 1}
     store.close()
     reopened = Store(tmp_path)
-    assert reopened.waiting() == [Waiting(1, "ada"), Waiting(2, "bob")]
+    assert reopened.waiting() == [HandIn(1, "ada", "02_nodes", NOW), HandIn(2, "bob", "02_nodes", NOW)]
     assert reopened.turns() == {}
     reopened.close()
 
