@@ -44,7 +44,7 @@ def test_interfaces_that_need_a_code_package_of_the_submission_are_not_bundled(t
     assert bundled_packages(tmp_path, "robot_msgs") == set()
 
 
-def test_packages_that_need_each_other_end_the_search(tmp_path: Path) -> None:
+def test_a_cycle_of_dependencies_ends_the_search(tmp_path: Path) -> None:
     package(tmp_path, "one_msgs", "two_msgs", interface=True)
     package(tmp_path, "two_msgs", "one_msgs", interface=True)
     assert bundled_packages(tmp_path, "one_msgs") == {"one_msgs", "two_msgs"}

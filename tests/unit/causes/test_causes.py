@@ -54,7 +54,7 @@ def test_a_check_that_names_itself_or_an_unknown_check_has_no_cause(result: Make
     assert folded(result("a", FAILED, "gone"), result("b", FAILED, "b")) == [("a", "", ""), ("b", "", "")]
 
 
-def test_checks_not_run_for_the_same_reason_are_one_line(result: Make) -> None:
+def test_checks_that_were_not_run_for_the_same_reason_share_one_line(result: Make) -> None:
     build = [result(name, NOT_CHECKED, message="it does not build") for name in "abc"]
     assert folded(*build, result("d", NOT_CHECKED, "c", message="first c")) == [("a", "", "b c d")]
     assert causes(build)[0].not_checked == "Not checked: It is b. It is c."

@@ -22,7 +22,7 @@ def course(folder: Path, lines: str) -> Course:
 
 
 @pytest.mark.promise("A course is a folder with a `course.yaml`, which needs a `name` and a `title`.")
-def test_a_course_needs_a_name_and_a_title_and_all_else_has_a_default(tmp_path: Path) -> None:
+def test_a_course_needs_a_name_and_a_title_and_everything_else_has_a_default(tmp_path: Path) -> None:
     small = course(tmp_path, LINES)
     assert (small.name, small.title, small.chapters, small.checks) == ("small", "A small course", "chapters", "checks")
     assert small.released == ()

@@ -80,7 +80,7 @@ def test_each_exception_from_linking_names_a_term_of_the_glossary() -> None:
 
 
 @pytest.mark.promise("This robot finds its way by its lidar alone.")
-def test_the_robot_on_the_start_page_drives_into_nothing() -> None:
+def test_the_robot_on_the_start_page_hits_nothing() -> None:
     simulation = Simulation(load_world(course_paths.WORLDS / "lab.yaml"), (RobotSpec(),))
     recording = run(simulation, SCRIPT["wander"], seconds=40.0)
     hits = [event for event in recording.events if event.kind == "collision"]

@@ -57,7 +57,7 @@ def test_each_graded_chapter_shows_two_answers_with_what_differs(assignment: str
         ("stats: It has states.\n", "names 'stats', which is not a variant; the variants are: states"),
     ],
 )
-def test_a_slip_in_the_list_is_named(
+def test_a_mistake_in_the_list_of_shown_answers_is_named(
     text: str | None, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     variants = tmp_path / "ch02_nodes" / "variants"

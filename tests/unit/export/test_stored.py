@@ -51,7 +51,7 @@ def test_a_file_that_is_not_json_is_named(tmp_path: Path) -> None:
         load(tmp_path)
 
 
-def test_a_list_with_something_else_in_it_is_named_by_entry(make_result: MakeResult, tmp_path: Path) -> None:
+def test_an_entry_that_is_not_a_result_is_named_by_its_position(make_result: MakeResult, tmp_path: Path) -> None:
     (tmp_path / "results.json").write_text(json.dumps([make_result().to_json(), {}]))
     with pytest.raises(UsageError, match=r"results\.json, entry 1: not a grading result: the top level"):
         load(tmp_path)

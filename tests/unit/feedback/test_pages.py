@@ -106,7 +106,7 @@ def test_consequences_are_folded_under_their_cause_and_named_once_in_their_own_g
     assert page.tags.count("details") == 2  # what failed as well, and a hint in it
 
 
-def test_many_checks_that_could_not_be_checked_are_a_line_that_unfolds(
+def test_many_checks_that_could_not_run_are_a_line_that_unfolds(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
     first = make_check("first", "It starts.", 1.0, "graph")
@@ -269,7 +269,7 @@ def test_control_characters_and_lone_surrogates_do_not_reach_the_page(make_resul
 
 
 @pytest.mark.promise("`feedback.html` is one file that opens in any browser.")
-def test_a_page_asks_for_nothing_from_the_network(
+def test_a_page_loads_nothing_from_the_network(
     make_result: MakeResult, track: Callable[..., Artifact], tmp_path: Path
 ) -> None:
     page = Page(feedback.write(make_result(artifacts=(track(tmp_path),)), tmp_path))

@@ -269,7 +269,9 @@ def test_a_fraction_that_a_student_s_data_make_impossible_fails_only_that_check(
     assert (plugin.failures, list(plugin.unjudged)) == ([], ["reads"])
 
 
-def test_an_error_without_a_student_s_data_is_the_grader_s_failure_even_after_a_check_with_some(grade: Grade) -> None:
+def test_an_error_without_a_student_s_data_is_the_grader_s_failure_even_after_a_check_with_such_data(
+    grade: Grade,
+) -> None:
     plugin = grade("""
         from autograder.submission.reading import hold
 
@@ -288,7 +290,7 @@ def test_an_error_without_a_student_s_data_is_the_grader_s_failure_even_after_a_
 
 
 @pytest.mark.parametrize("error", ["GraderError('lost')", "OSError(5, 'EIO')", "RuntimeError()", "SystemExit(0)"])
-def test_an_error_that_data_do_not_cause_is_the_grader_s_failure(grade: Grade, error: str) -> None:
+def test_an_error_that_data_cannot_cause_is_the_grader_s_failure(grade: Grade, error: str) -> None:
     plugin = grade(f"""
         from autograder.submission.reading import hold
 

@@ -79,7 +79,7 @@ def test_a_result_with_a_number_that_no_page_can_show_is_refused(result: Result,
 
 
 @pytest.mark.parametrize("name", ["result.json", "notebook.ipynb", "a.run.json"])
-def test_each_file_that_is_parsed_is_counted_first(result: Result, name: str) -> None:
+def test_the_values_of_each_file_are_counted_before_it_is_parsed(result: Result, name: str) -> None:
     reply_files = files(replace(result, artifacts=(Artifact("a.png", "track", "0" * 64, "x", run="a.run.json"),)))
     values = b'{"cells": [' + b"[]," * NOTEBOOK_VALUES + b"0]}"
     with pytest.raises(ReplyError, match=r"more than [0-9,]+ values|cannot identify image"):
@@ -97,7 +97,7 @@ def test_a_result_that_names_a_file_a_thousand_times_is_refused(result: Result) 
         checked(files(repeated, **{"a.png": bytes(MIB)}), JOB)
 
 
-def test_a_notebook_of_all_outputs_and_lines_that_a_run_may_have_is_accepted(result: Result) -> None:
+def test_a_notebook_with_the_maximum_of_outputs_and_lines_is_accepted(result: Result) -> None:
     """Stored as a list of lines, such a text would have millions of values and too many bytes."""
     values = [{"output_type": "display_data", "data": {"application/json": [[]] * (MAX_VALUES - 20)}, "metadata": {}}]
     lines = [new_output("stream", text="\n" * 4 * MIB)]

@@ -30,7 +30,7 @@ def exceed_limit(inflow: Inflow, topic: str, size: int) -> str:
     return caught.value.diagnosis.sentence
 
 
-def test_one_message_too_many_names_the_topic_that_had_most() -> None:
+def test_one_message_too_many_names_the_topic_with_the_most_messages() -> None:
     inflow = Inflow(Received(messages=10))
     for topic in ("/loud", "/loud", "/quiet") * 3:
         inflow.add(topic, 8)
@@ -38,7 +38,7 @@ def test_one_message_too_many_names_the_topic_that_had_most() -> None:
     assert "sent 7 messages of 0.0 MiB in all on /loud" in exceed_limit(inflow, "/quiet", 8)
 
 
-def test_large_messages_are_bounded_in_all() -> None:
+def test_the_total_size_of_messages_is_bounded() -> None:
     inflow = Inflow()
     for _ in range(4):
         inflow.add("/map", RECEIVED.size // 4)

@@ -62,7 +62,7 @@ def test_a_zip_of_another_method_is_unpacked_in_steps(tmp_path: Path) -> None:
         tracemalloc.stop()
 
 
-def test_all_archives_of_a_submission_have_one_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_archives_of_a_submission_share_one_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(unpacking, "MAX_UNPACKED_BYTES", 20 * MIB)
     for number in range(8):
         (tmp_path / f"{number}.tar.bz2").write_bytes(tar_of_zeros(3 * MIB))
@@ -87,7 +87,7 @@ def test_thousands_of_nested_packages_are_found_quickly() -> None:
     assert time.process_time() - began < 10  # it took 90 s when each file was compared with each package
 
 
-def test_a_submission_that_ends_its_reader_does_not_end_the_grading_of_a_class(
+def test_a_submission_that_crashes_its_reader_does_not_end_the_grading_of_a_class(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def fail(*_: object) -> None:

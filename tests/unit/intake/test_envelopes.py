@@ -283,7 +283,7 @@ def test_at_least_sixty_envelopes_are_tested() -> None:
     "If a file is missing or unchanged since the release, it is taken from the notebook's cell.",
 )
 @pytest.mark.parametrize("envelope", FOLDERS)
-def test_a_folder_is_graded_as_the_plain_answer(
+def test_a_folder_is_graded_like_the_plain_answer(
     envelope: str, answer: Answer, plain: Submission, tmp_path: Path
 ) -> None:
     _expect_same(read_submission(write(tmp_path / "ada", FOLDERS[envelope](answer)), CHAPTER), plain)
@@ -291,7 +291,7 @@ def test_a_folder_is_graded_as_the_plain_answer(
 
 @pytest.mark.parametrize("change", NOTEBOOKS)
 @pytest.mark.parametrize("location", ["alone", "in its folder"])
-def test_a_notebook_is_graded_as_the_plain_answer(
+def test_a_notebook_is_graded_like_the_plain_answer(
     change: str, location: str, answer: Answer, plain: Submission, tmp_path: Path
 ) -> None:
     book = {BOOK: answer.notebook(NOTEBOOKS[change])}
@@ -300,7 +300,7 @@ def test_a_notebook_is_graded_as_the_plain_answer(
 
 
 @pytest.mark.parametrize("name", ARCHIVES)
-def test_a_file_is_graded_as_the_plain_answer(name: str, answer: Answer, plain: Submission, tmp_path: Path) -> None:
+def test_a_file_is_graded_like_the_plain_answer(name: str, answer: Answer, plain: Submission, tmp_path: Path) -> None:
     (tmp_path / name).write_bytes(ARCHIVES[name](answer))
     _expect_same(read_submission(tmp_path / name, CHAPTER), plain)
 

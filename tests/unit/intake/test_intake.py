@@ -247,7 +247,7 @@ def _nest(folder: Path, names: list[str]) -> None:
 
 
 @pytest.mark.parametrize("is_copied", [False, True], ids=["as it is", "as root copies it for another user"])
-def test_a_path_that_no_system_opens_is_left_out_and_named(tmp_path: Path, is_copied: bool) -> None:
+def test_a_path_that_is_too_long_to_open_is_left_out_and_named(tmp_path: Path, is_copied: bool) -> None:
     def submitted_path(root: Path) -> Path:
         if is_copied:
             copy_submission(root, root.parent / f"{root.name} copied")
@@ -380,7 +380,7 @@ def test_a_zip_with_an_endless_list_of_files_is_refused_before_it_is_read(tmp_pa
     assert "it holds too many files" in _refusal(tmp_path / "long.zip")[1]
 
 
-def test_outputs_are_dropped_only_of_a_notebook_that_parses_to_few_values() -> None:
+def test_outputs_are_dropped_only_if_the_notebook_parses_to_few_values() -> None:
     book = b'{"nbformat": 4, "cells": [{"cell_type": "code", "source": "", "outputs": [%s]}]}'
     assert b"outputs" not in without_outputs(book % b'{"text": "\\"x"}')
     for outputs in (b"[]," * 3_000_000 + b"[]", b'"a",' * 1_000_001 + b'""', b"[" * 9_000_000):

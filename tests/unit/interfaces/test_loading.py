@@ -25,7 +25,7 @@ def workspace(tmp_path: Path) -> Workspace:
     return Workspace(tmp_path, find(), tmp_path)
 
 
-def test_arrays_are_multiplied_through_all_packages_of_a_submission(workspace: Workspace) -> None:
+def test_array_sizes_are_multiplied_through_all_packages_of_a_submission(workspace: Workspace) -> None:
     assert load_interfaces(workspace, "sample_msgs").msg.M.__name__ == "M"
     with pytest.raises(StudentError, match=r"src/many_msgs: msg/M\.msg.*arrays of more than 100000 elements"):
         load_interfaces(workspace, "most_msgs")

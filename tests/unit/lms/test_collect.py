@@ -88,7 +88,7 @@ def test_the_files_of_a_moodle_submission_without_folders_are_gathered(tmp_path:
     assert (collected.older, collected.unmatched) == ((), ())
 
 
-def test_the_name_of_a_moodle_file_cannot_make_it_another_students(tmp_path: Path) -> None:
+def test_the_name_of_a_moodle_file_cannot_assign_it_to_another_student(tmp_path: Path) -> None:
     name = "Jane Doe_102_assignsubmission_file_x_101_assignsubmission_file_a.zip"
     collected, entries = collect_entries(write_download(tmp_path / "d", name), MOODLE)
     assert entries == {"jane@example.edu": name}
@@ -127,7 +127,7 @@ def test_the_files_of_a_canvas_attempt_are_gathered_whatever_their_numbers(tmp_p
 
 
 @pytest.mark.promise("A late attempt replaces an earlier one that was on time.")
-def test_the_files_of_a_late_canvas_attempt_replace_those_of_one_in_time(tmp_path: Path) -> None:
+def test_the_files_of_a_late_canvas_attempt_replace_those_of_an_earlier_one(tmp_path: Path) -> None:
     folder = write_download(
         tmp_path / "canvas",
         "doejane_7001_9001_draft.zip",

@@ -48,7 +48,7 @@ def test_a_day_that_has_begun_counts_from_the_deadline_and_the_floor_stays(
     assert DAILY.judge("ada", delivered(after)) == Lateness(pytest.approx(kept), days)
 
 
-def test_a_penalty_is_the_same_for_each_delay_and_takes_no_more_than_all() -> None:
+def test_a_flat_penalty_is_the_same_for_each_delay_and_no_penalty_exceeds_the_mark() -> None:
     policy = LatePolicy(flat=20, due=DUE)
     assert [policy.judge("ada", delivered(after)).kept for after in (HOUR, 9 * DAY)] == [0.8, 0.8]
     assert LatePolicy(per_day=30, due=DUE).judge("ada", delivered(9 * DAY)).kept == 0.0
@@ -76,7 +76,7 @@ def test_a_row_of_the_table_overrides_the_due_time_and_the_systems_time(extensio
     assert policy.judge("bob", delivered(3 * DAY)).days == 3
 
 
-def test_moodles_delay_counts_without_a_due_time_and_days_are_taken_from_it() -> None:
+def test_moodles_delay_counts_without_a_due_time_and_extension_days_are_subtracted_from_it() -> None:
     policy = LatePolicy(per_day=10, extensions={"ada": Extension(days=DAY), "eve": Extension(until=DUE)})
     late = Delivery(late=True, late_by=DAY + 2 * HOUR)
     assert [policy.judge(name, late).days for name in ("ada", "bob")] == [1, 2]
@@ -111,7 +111,7 @@ def test_a_time_without_a_zone_gets_the_given_one_and_a_day_means_its_end(text: 
     assert moment(text, timezone.utc).isoformat() == expected
 
 
-def test_a_time_without_any_zone_is_this_machines(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_time_without_any_zone_is_in_the_machines_time_zone(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TZ", "HERE-5")  # POSIX: five hours before UTC
     time.tzset()
     try:

@@ -160,7 +160,7 @@ def test_a_wrong_table_of_points_is_an_error_that_names_the_line_and_writes_noth
     assert not (assessed / "out.csv").exists()
 
 
-def test_an_assignment_without_such_cells_takes_no_table_of_points(tmp_path: Path, make_result: MakeResult) -> None:
+def test_an_assignment_without_manual_cells_accepts_no_table_of_points(tmp_path: Path, make_result: MakeResult) -> None:
     write_json(tmp_path / "results" / "zoe" / "result.json", make_result("zoe").to_json())
     (tmp_path / "manual.csv").write_text("student,q2-answer\nzoe,6\n")
     completed = export(tmp_path, "csv", "--manual", str(tmp_path / "manual.csv"))

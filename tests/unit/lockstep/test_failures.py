@@ -103,7 +103,7 @@ def test_a_program_that_a_signal_ended_is_reported_with_the_signal() -> None:
         ),
     ],
 )
-def test_a_program_over_a_limit_is_reported_with_the_limit(
+def test_a_program_that_exceeds_a_limit_is_reported_with_the_limit(
     code: str, limits: dict[str, float], kind: Kind, words: str
 ) -> None:
     diagnosis = diagnose_exit(_ended_process(code, **limits))

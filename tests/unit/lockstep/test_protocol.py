@@ -109,7 +109,7 @@ def test_a_description_says_what_the_program_reads() -> None:
     }
 
 
-def test_texts_are_cut() -> None:
+def test_long_texts_of_an_event_are_cut() -> None:
     _, crash = protocol.parse(_line(**{**CRASH, "message": "m" * 3 * MAX_TEXT, "traceback": "t" * 3 * MAX_TEXT}))
     assert (len(crash.message), len(crash.traceback)) == (MAX_TEXT, MAX_TEXT)
 

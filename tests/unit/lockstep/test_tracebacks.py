@@ -37,7 +37,7 @@ OWN = """Traceback (most recent call last):
 ZeroDivisionError: division by zero"""
 
 
-def test_only_the_students_frames_are_left_with_their_lines_and_the_error() -> None:
+def test_only_the_students_frames_are_kept_with_their_lines_and_the_error() -> None:
     assert own_frames(CRASH) == OWN
 
 
@@ -88,5 +88,5 @@ def test_a_message_of_several_lines_is_kept() -> None:
         ("/usr/lib/python3.12/runpy.py", "/usr/lib/python3.12/runpy.py"),
     ],
 )
-def test_a_built_files_path_is_shown_as_its_sources(path: str, shown: str) -> None:
+def test_the_path_of_a_built_file_is_shown_as_that_of_its_source(path: str, shown: str) -> None:
     assert with_source_paths(f'File "{path}", line 1') == f'File "{shown}", line 1'

@@ -48,7 +48,7 @@ def test_the_checks_of_an_exercise_are_those_of_its_sentences(
     assert _ids(assignment, name) == expected
 
 
-def test_a_number_that_the_notebook_does_not_have_is_answered_with_those_that_it_has() -> None:
+def test_an_unknown_exercise_number_is_answered_with_the_known_ones() -> None:
     with pytest.raises(UsageError) as raised:
         part_of("03_interfaces", exercise=4, step=None, question=None)
     assert str(raised.value) == (
@@ -87,7 +87,7 @@ def test_an_exercise_ends_at_the_next_heading_of_its_level_and_headings_in_code_
     assert exercises("x") == (Exercise("exercise", 1, "the only one", ("first", "second", "third")),)
 
 
-def test_the_files_that_only_cells_after_a_part_write_are_later(chapter: Path) -> None:
+def test_files_that_only_later_cells_write_belong_to_later_parts(chapter: Path) -> None:
     cells = [
         new_code_cell("%%writefile ws/given.py\na = 0"),
         _contract_cell("## Exercise 1", "first"),

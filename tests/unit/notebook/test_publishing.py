@@ -12,7 +12,7 @@ from autograder.exceptions import UsageError
 from autograder.notebook.publishing import messages_at, planned, types_of
 
 
-def test_messages_arrive_at_their_steps_as_they_were(tmp_path: Path) -> None:
+def test_messages_arrive_unchanged_at_their_steps(tmp_path: Path) -> None:
     plan = planned(lambda t: {"mode": String(data=f"é {t}"), "/n": Int32(data=-7)} if t >= 0.2 else None, 0.4, tmp_path)
     types = types_of(plan)
     assert types == {"/mode": String, "/n": Int32}

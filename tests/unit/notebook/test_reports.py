@@ -91,7 +91,7 @@ def test_a_report_passes_when_every_check_does() -> None:
     assert not CheckReport("02_nodes", LINES).passed
 
 
-def test_a_notice_is_a_sentence_and_its_detail() -> None:
+def test_a_notice_shows_a_sentence_and_its_detail() -> None:
     assert repr(Notice("Nothing moves.", "line 3")) == "Nothing moves.\nline 3"
     assert repr(Notice("Nothing moves.")) == "Nothing moves."
 

@@ -12,12 +12,12 @@ def test_missing_and_changed_files_below_the_folders_are_named() -> None:
     assert changed_files({"lamp/lamp.py": b"a = 2\n"}, GIVEN, FOLDERS) == ["lamp/lamp.py", "launch/lamp.py"]
 
 
-def test_white_space_further_files_and_files_elsewhere_are_free() -> None:
+def test_changes_of_white_space_further_files_and_files_elsewhere_are_allowed() -> None:
     kept = {"lamp/lamp.py": b"a  =  1", "launch/lamp.py": b"b = 2\n", "lamp/more.py": b"", "setup.py": b"d = 4\n"}
     assert changed_files(kept, GIVEN, FOLDERS) == []
 
 
-def test_a_file_may_be_as_a_notebook_gives_it_without_the_copyright_comment() -> None:
+def test_a_file_may_lack_the_copyright_comment_as_in_the_notebook() -> None:
     licence = b"# Copyright 2026 Somebody\n#\n# Licensed under ...\n\n"
     given = {"lamp/lamp.py": licence + b"a = 1\n"}
     assert changed_files({"lamp/lamp.py": b"a = 1\n"}, given, FOLDERS) == []

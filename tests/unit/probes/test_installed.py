@@ -90,6 +90,6 @@ def test_links_are_neither_listed_nor_read(install: Path, tmp_path: Path) -> Non
     assert contents.read("folder/key.yaml") is None
 
 
-def test_a_file_too_large_is_not_read(install: Path) -> None:
+def test_a_file_that_is_too_large_is_not_read(install: Path) -> None:
     (install / "lamp/share/lamp/config/lamp.yaml").write_bytes(b"#" * (installed.MAX_BYTES + 1))
     assert installed.look(install, "lamp").read("config/lamp.yaml") is None

@@ -40,7 +40,7 @@ def test_a_text_is_read_with_types_defaults_bounds_and_constants() -> None:
     assert parse("pkg", PATH, TEXT) == EXPECTED
 
 
-def test_messages_of_the_own_package_and_texts_are_read_as_they_are_written() -> None:
+def test_types_of_the_same_package_and_string_defaults_are_read_verbatim() -> None:
     part = parse("pkg", "msg/M.msg", 'Other other\nstd_msgs/Header header\nstring word "go"\nint8[3] three\n').parts[0]
     assert [field.type for field in part.fields] == ["Other", "std_msgs/Header", "string", "int8[3]"]
     assert part.fields[2].default == "go"
@@ -91,7 +91,7 @@ def test_each_difference_of_a_definition_is_reported_in_one_sentence(
     assert differences_of(TEXT.replace(old, new)) == [(aspect, f"{PATH}, {sentence}")]
 
 
-def test_another_order_is_named_once() -> None:
+def test_a_different_order_of_fields_is_named_once() -> None:
     text = f"{REQUEST}---\nstring<=80 reason\nbool possible\n"
     order = f"{PATH}, response: the order of the fields is reason, possible, it should be possible, reason."
     assert differences_of(text) == [(Aspect.FIELDS, order)]

@@ -54,7 +54,7 @@ def test_no_sentence_is_written_if_no_parameter_is_missing() -> None:
         (0.3, 0.4, False),
     ],
 )
-def test_values_are_the_same_only_in_the_same_type(value: object, expected: object, equal: bool) -> None:
+def test_values_are_equal_only_if_their_types_are_equal(value: object, expected: object, equal: bool) -> None:
     assert same(value, expected) is equal  # type: ignore[arg-type]
 
 
@@ -63,7 +63,7 @@ def test_differences_distinguish_an_integer_from_a_double() -> None:
     assert sentences == ["a is 1 instead of 1.0", "c is not set instead of 'x'"]
 
 
-def test_numbers_take_the_type_that_a_node_declares_and_nothing_else_does() -> None:
+def test_only_numbers_are_converted_to_the_declared_type() -> None:
     declared = {"a": 20.0, "b": 1, "c": "x", "d": True}
     converted = as_declared({"a": 45, "b": 2.0, "c": 3, "d": 1, "e": 4}, declared)
     assert {name: repr(value) for name, value in converted.items()} == {
@@ -80,7 +80,7 @@ def test_a_text_of_a_node_is_shortened_to_one_line_of_bounded_length() -> None:
     assert len(shortened("x" * 10_000)) == SHOWN + 1
 
 
-def test_a_file_is_read_in_its_order(tmp_path: Path) -> None:
+def test_the_nodes_of_a_file_are_read_in_their_order(tmp_path: Path) -> None:
     path = tmp_path / "fleet.yaml"
     path.write_text("scout:\n  ros__parameters: {a: 1}\n/**:\n  ros__parameters:\n    b: 2.0\n")
     assert list(read_file(path).items()) == [("scout", {"a": 1}), ("/**", {"b": 2.0})]

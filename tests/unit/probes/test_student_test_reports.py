@@ -45,7 +45,7 @@ def test_a_test_in_a_class_belongs_to_its_module() -> None:
     assert claims == Claims({"test_limits::Speed::test_a": ClaimedOutcome.PASSED}, {"test_limits::Speed::test_a": ""})
 
 
-def test_a_message_is_cut_to_its_bound() -> None:
+def test_a_long_message_is_cut() -> None:
     text = f'<testsuite><testcase classname="t" name="a"><failure message="{"x" * 9999}"/></testcase></testsuite>'
     claims = parse_claims(text.encode())
     assert claims is not None

@@ -64,7 +64,7 @@ def test_the_reason_is_one_short_line_of_harmless_text() -> None:
     assert sentence.startswith("config.yaml cannot be read: a b\ufffdxxx")
 
 
-def test_data_are_attributed_until_they_are_released_the_latest_last() -> None:
+def test_data_stay_attributed_until_they_are_released() -> None:
     put_down()
     with reading("a.yaml"):
         pass

@@ -54,7 +54,7 @@ def test_long_texts_of_a_program_are_shortened_with_a_remark(turns: Check) -> No
     assert CheckResult.of(turns, Outcome.FAILED, "y" * MAX_SENTENCE).message == "y" * MAX_SENTENCE
 
 
-def test_a_result_sums_what_its_checks_earned(make_result: MakeResult) -> None:
+def test_the_score_of_a_result_is_the_sum_of_its_checks(make_result: MakeResult) -> None:
     result = make_result()
     assert (result.score, result.max_score, result.percent) == (4.0, 10.0, 40.0)
 
@@ -100,7 +100,7 @@ def test_a_result_survives_conversion_to_json(make_result: MakeResult, broken_re
         assert from_json(plain) == result
 
 
-def test_the_schema_is_itself_a_schema() -> None:
+def test_the_schema_is_a_valid_json_schema() -> None:
     jsonschema.Draft202012Validator.check_schema(schema())
 
 
@@ -180,7 +180,7 @@ def test_a_file_name_that_is_not_utf8_can_be_written_and_read_back(make_result: 
     assert from_json(json.loads((tmp_path / "result.json").read_bytes())) == result
 
 
-def test_a_student_error_carries_its_diagnosis() -> None:
+def test_a_student_error_has_its_diagnosis() -> None:
     diagnosis = Diagnosis(Kind.SYNTAX_ERROR, "setup.py, line 3: a bracket is not closed")
     error = StudentError(diagnosis)
     assert error.diagnosis is diagnosis

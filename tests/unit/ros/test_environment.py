@@ -130,7 +130,7 @@ def test_child_processes_get_overlays_first_and_only_requested_variables() -> No
     assert "ROS_DOMAIN_ID" not in ROS.variables()
 
 
-def test_crossing_into_another_environment_drops_the_wheels_libraries_and_keeps_a_sourced_ones() -> None:
+def test_another_environment_gets_the_libraries_of_a_sourced_ros_but_not_those_of_the_wheels() -> None:
     sourced = {"LD_LIBRARY_PATH": "/opt/ros/jazzy/lib", "HOME": "/home/me"}
     assert without_wheel_bootstrap(sourced) == sourced
     assert without_wheel_bootstrap({**sourced, "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}) == {"HOME": "/home/me"}

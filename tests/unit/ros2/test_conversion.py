@@ -49,7 +49,7 @@ def test_long_values_are_cut_and_marked() -> None:
     assert message_to_csv(String(data="abcdef"), truncate_length=3) == "abc..."
 
 
-def test_arrays_and_strings_can_be_summed_up() -> None:
+def test_arrays_and_strings_can_be_summarised() -> None:
     values = message_to_ordereddict(LaserScan(ranges=[1.0]), no_arr=True)
     assert values["ranges"] == "<sequence type: float, length: 1>"
     assert message_to_ordereddict(PoseWithCovariance(), no_arr=True)["covariance"] == "<array type: double[36]>"

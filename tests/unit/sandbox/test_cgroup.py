@@ -22,7 +22,7 @@ def _hierarchy(root: Path, *folders: str) -> None:
         (root / folder).mkdir(parents=True)
 
 
-def test_version_1_offers_the_own_group_of_the_pids_controller_and_those_above(tmp_path: Path) -> None:
+def test_version_1_offers_the_process_s_group_of_the_pids_controller_and_those_above(tmp_path: Path) -> None:
     _hierarchy(tmp_path, "pids/user/session", "memory/other")
     mountinfo = (
         f"33 31 0:30 / {tmp_path}/memory rw,relatime - cgroup cgroup rw,memory\n"

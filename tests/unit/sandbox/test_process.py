@@ -76,7 +76,7 @@ def test_a_program_cannot_read_from_the_grader_s_stdin() -> None:
         assert "EOFError" in process.output
 
 
-def test_time_is_limited() -> None:
+def test_the_run_time_of_a_program_is_limited() -> None:
     with Process(_python("while True: pass"), Limits(wall_seconds=0.5)) as process:
         assert process.wait(LONG)
         assert process.exit_reason is ExitReason.WALL_TIME
@@ -202,7 +202,7 @@ def test_measuring_an_ended_process_gives_no_process() -> None:
     assert measure(process.pid).pids == ()
 
 
-def test_a_missing_program_is_an_error_at_once() -> None:
+def test_a_missing_program_raises_an_error_at_once() -> None:
     with pytest.raises(FileNotFoundError):
         Process(["/no/such/program"], Limits())
 

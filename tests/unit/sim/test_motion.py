@@ -132,7 +132,7 @@ def test_simulated_time_is_counted_in_whole_nanoseconds() -> None:
     assert step(simulation, state, dt=0.05).time_ns == state.time_ns + 50_000_000
 
 
-def test_perfect_wheels_measure_the_truth() -> None:
+def test_odometry_of_perfect_wheels_equals_the_true_pose() -> None:
     simulation = Simulation(NOWHERE, (replace(FREE, start=Pose(2.0, 1.0, 1.0)),))
     state = start(simulation)
     for command in (Command(0.5, 0.3), Command(-0.2, 1.0), Command(0.7, 0.0)):

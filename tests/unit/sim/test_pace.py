@@ -41,13 +41,13 @@ def test_a_delay_beyond_the_longest_leap_is_reported_and_dropped() -> None:
 
 
 @pytest.mark.parametrize(("tick", "speed"), [(1.0, 0.1), (0.02, 1000.0)])
-def test_a_long_tick_and_a_high_speed_are_reached(tick: float, speed: float) -> None:
+def test_long_ticks_and_high_speeds_are_reached(tick: float, speed: float) -> None:
     pace = Pace(tick)
     advanced = sum(advance(pace, number * PERIOD, speed) for number in range(3001))
     assert advanced == pytest.approx(30.0 * speed)
 
 
-def test_a_pause_and_a_new_start_are_not_caught_up() -> None:
+def test_the_time_of_a_pause_or_a_new_start_is_not_caught_up() -> None:
     pace = Pace(0.02)
     advance(pace, 0.0, 1.0)
     assert pace.due(5.0, 1.0, paused=True) == 0.0

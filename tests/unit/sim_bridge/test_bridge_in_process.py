@@ -125,7 +125,7 @@ def test_the_live_view_shows_and_drives_the_robot_of_the_bridge(
         view.pause()
         return view
 
-    with ThreadPoolExecutor(1) as thread:  # other tests may have left a loop running in this one
+    with ThreadPoolExecutor(1) as thread:  # other tests may have left a loop running in this thread
         view = thread.submit(asyncio.run, watch()).result()
     assert bridge.paused
     before = view.time

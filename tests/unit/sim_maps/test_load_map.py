@@ -100,7 +100,7 @@ def test_the_origin_moves_and_turns_a_map(tmp_path: Path) -> None:
         (255, {"mode": "raw"}, False),
     ],
 )
-def test_the_threshold_of_a_wall_is_that_of_map_server(
+def test_walls_have_the_threshold_of_map_server(
     tmp_path: Path, shade: int, fields: dict[str, str], is_wall: bool
 ) -> None:
     raw = fields.get("mode") == "raw"
@@ -137,7 +137,7 @@ def test_the_course_s_map_loads_and_tolerance_straightens_it() -> None:
     assert exact.bounds == pytest.approx(simpler.bounds, abs=0.05)
 
 
-def test_load_also_takes_worlds() -> None:
+def test_load_also_reads_worlds() -> None:
     assert load(ROOT / "assets" / "worlds" / "lab.yaml").name == "the lab"
 
 

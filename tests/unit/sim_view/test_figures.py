@@ -45,7 +45,7 @@ def test_names_can_be_omitted(world: World) -> None:
     assert texts(ax) == {"The lab", "12.0 × 8.0 m"}  # noqa: RUF001
 
 
-def test_a_given_axes_is_drawn_into(world: World, recording: Recording) -> None:
+def test_a_picture_can_be_drawn_into_given_axes(world: World, recording: Recording) -> None:
     figure = Figure()
     left, right = figure.subplots(1, 2)
     assert show(world, ax=left).figure is figure
@@ -69,7 +69,7 @@ def test_robots_and_their_scans_are_drawn_with_a_state(world: World) -> None:
     assert "robot at (1.40 m, 0.80 m)" in full.alt
 
 
-def test_a_track_says_how_long_it_is_and_what_happened(recording: Recording) -> None:
+def test_a_track_states_its_duration_and_its_collisions(recording: Recording) -> None:
     picture = plot(recording)
     title = " ".join(texts(picture.figure.axes[0]))
     collisions = sum(event.kind == "collision" for event in recording.events)
@@ -98,7 +98,7 @@ def test_a_track_is_coloured_by_time_or_clearance(recording: Recording, colour: 
     assert colour in texts(scale)
 
 
-def test_one_robot_can_be_picked(recording: Recording) -> None:
+def test_one_robot_can_be_selected(recording: Recording) -> None:
     picture = plot(recording, robot="two")
     (track,) = tracks(picture.figure.axes[0])
     assert track.get_segments()[0][0] == pytest.approx(recording.poses[0, 1, :2])
