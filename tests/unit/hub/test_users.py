@@ -19,6 +19,6 @@ def test_a_user_who_was_not_made_by_a_trial_is_not_removed() -> None:
 
 def test_users_other_than_root_are_told_how_to_start_a_hub(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "geteuid", lambda: 1000)
-    with pytest.raises(UsageError, match="call it by sudo, or as root"), trial.serving(tmp_path, tmp_path):
+    with pytest.raises(UsageError, match="run this with sudo or as root"), trial.serving(tmp_path, tmp_path):
         pass
     assert list(tmp_path.iterdir()) == []

@@ -182,7 +182,7 @@ def test_of_several_files_the_easiest_to_open_of_the_newest_attempt_is_used(
     )
     completed = export(tmp_path, "canvas-feedback", CANVAS, "--download", str(download))
     assert completed.exit_code == 1
-    assert "Left out: jdoe: the download has no page, archive or notebook of theirs" in completed.output
+    assert "Left out: jdoe: the download has no page, archive or notebook of this student" in completed.output
     with zipfile.ZipFile(tmp_path / "feedback.zip") as archive:
         assert archive.namelist() == ["mllerzo_LATE_7002_9002_answer-1.zip"]
 

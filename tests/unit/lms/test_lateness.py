@@ -195,7 +195,7 @@ def test_a_csv_file_has_the_late_days_and_the_mark_beside_the_score(graded: Path
         ("student,days\nzoe,1e99\n", "extensions.csv, line 2: '1e99' is not a number of days"),
         ("student,until\nzoe,4 May\n", "extensions.csv, line 2: '4 May' is not a time in ISO 8601"),
         ("student,days,until\nzoe,1,2026-05-08\n", "extensions.csv, line 2: it has both days and until"),
-        ("student,days\nzoe,1\nzoe,2\n", "extensions.csv, line 3: zoe is in .*, line 2, too"),
+        ("student,days\nzoe,1\nzoe,2\n", "extensions.csv, line 3: zoe is also in .*, line 2: remove"),
     ],
 )
 def test_a_wrong_table_of_extensions_is_an_error_that_names_the_line(graded: Path, text: str, reason: str) -> None:
