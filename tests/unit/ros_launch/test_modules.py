@@ -34,9 +34,9 @@ def test_a_module_offers_its_names_or_the_page_says_that_they_are_not_covered(mo
             assert f"`{missing[1]}`" in PAGE_TEXT
 
 
-@pytest.mark.parametrize("module", PAGE["INNER_NAMES"])
+@pytest.mark.parametrize("module", PAGE["INTERNAL_NAMES"])
 def test_each_name_listed_as_not_covered_raises_an_error_that_says_so(module: str) -> None:
-    for name in PAGE["INNER_NAMES"][module].split():
+    for name in PAGE["INTERNAL_NAMES"][module].split():
         if f"{module}.{name}" in MODULES:
             continue  # a submodule of this name can be imported
         with pytest.raises(NotInStandInError, match=f"'{module}.{name}' is not covered"):
