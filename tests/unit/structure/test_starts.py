@@ -25,7 +25,6 @@ ELSEWHERE = {  # modules that start programs in the present folder, and why it i
     "building/build.py": "rm imports nothing",
     "building/interfaces/compile.py": "the compiler gets absolute paths, from a process in /",
     "cli/ros.py": "`autograder ros COMMAND` becomes the user's command, in the user's folder",
-    "doctor/apt.py": "env, sudo and apt-get import nothing",
     "grade/worker.py": "rm imports nothing",
     "notebook/terminal.py": "`shell` runs the user's command, in the user's folder",
     "ros/ros2/pkg_create.py": "git, for the user's own name",
