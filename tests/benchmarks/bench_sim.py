@@ -72,7 +72,7 @@ def caster(world: World, lidar: LidarSpec, engine: str) -> Callable[[Pose], obje
 
 
 def observer(world: World, engine: str) -> Callable[[Pose], object]:
-    """Return a call of `observe`, which yields a LaserScan's fields in single precision."""
+    """Return a function that calls `observe`, for a LaserScan's fields in single precision."""
     simulation = Simulation(world, (RobotSpec(lidar=FAR_360),), engine=engine)  # type: ignore[arg-type]
     state = start(simulation)
     robot = state.robots[0]

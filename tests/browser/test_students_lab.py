@@ -98,7 +98,7 @@ def test_a_file_and_its_cell_that_were_both_changed_are_both_kept(page: Page, la
     assert f"{FILE} was changed outside of this cell. Its old text was copied to {copy}." in outputs
 
 
-def test_the_student_interface_has_no_button_validate(page: Page, lab: Lab, chapter: Path) -> None:
+def test_the_student_interface_has_no_validate_button(page: Page, lab: Lab, chapter: Path) -> None:
     lab.show(page, f"{chapter.name}/{FIRST.notebook_path.name}")
     expect(page.locator(".jp-NotebookPanel-toolbar")).to_be_visible(timeout=PATIENCE * 1000)
     assert page.evaluate("() => window.jupyterapp.hasPlugin('@jupyterlab/notebook-extension:tracker')")

@@ -92,7 +92,7 @@ def workspace(tmp_path: Path) -> Workspace:
     return Workspace(tmp_path / "ws", environment.find(), scratch)
 
 
-def test_values_cross_as_json_with_nan_and_infinities(workspace: Workspace) -> None:
+def test_values_are_passed_as_json_with_nan_and_infinities(workspace: Workspace) -> None:
     doubled, limit = calls(workspace, "demo", call("double", [1.0, nan, inf]), look("LIMIT"))
     assert same(doubled.value, [2.0, nan, inf])
     assert doubled.printed == "doubling\n"

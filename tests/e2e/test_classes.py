@@ -111,7 +111,7 @@ def test_the_gradebook_has_the_points_that_the_grader_gave(graded: Graded, assig
     for pupil in graded.pupils:
         result = graded.parallel[pupil.name]
         grades = graded.room.grades(pupil.name)
-        # A question that needs manual grading gets no points at first, and needs none if the student wrote nothing.
+        # A question for manual grading waits for its grade, or has no points because the student wrote nothing.
         recorded = {name: (score, worth) for name, (score, worth, _) in grades.items() if name.startswith("grade-")}
         assert all(by_hand or not score for name, (score, _, by_hand) in grades.items() if name not in recorded)
         expected = {

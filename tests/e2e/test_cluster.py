@@ -195,7 +195,7 @@ def test_ctrl_c_keeps_the_gradings_that_have_started_and_resume_grades_the_rest(
     ) as process:
         assert process.stdout is not None
         assert process.stdout.readline().startswith("[1/3]")
-        os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the workers get it as well
+        os.killpg(process.pid, signal.SIGINT)  # like a terminal, which also signals the workers
         reports = process.stdout.read()
     assert process.returncode == 130, reports
     assert reports.endswith("\nStopped. Finished results are in out: the same command with --resume grades the rest.\n")

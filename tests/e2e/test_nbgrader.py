@@ -114,7 +114,7 @@ def code_lines(path: Path) -> list[str]:
     return sorted(line for line in lines if len(line) > 24 and "(" in line and not set("\"'#") & set(line))
 
 
-def test_the_release_holds_no_solution_and_nothing_of_the_hidden_suite(graded: Classroom) -> None:
+def test_the_release_contains_no_solution_and_nothing_of_the_hidden_suite(graded: Classroom) -> None:
     files = [path for path in (graded.course / "release").rglob("*") if path.is_file()]
     text = "\n".join(path.read_text(encoding="utf-8", errors="replace") for path in files)
     notebook = nbformat.read(graded.course / "release" / ASSIGNMENT / f"{ASSIGNMENT}.ipynb", as_version=4)

@@ -104,7 +104,7 @@ def test_two_public_programs_exchange_messages(
         "text": True,
         "env": environment,
     }
-    pipes["start_new_session"] = True  # SIGINT reaches `ros2 run` and its program, as from a terminal
+    pipes["start_new_session"] = True  # so that SIGINT reaches `ros2 run` and its program, as from a terminal
     with (
         subprocess.Popen(ros(workspace, f"ros2 run {first}"), **pipes) as server,  # type: ignore[call-overload]
         subprocess.Popen(ros(workspace, f"ros2 run {second}"), **pipes) as client,  # type: ignore[call-overload]

@@ -110,7 +110,7 @@ def test_the_system_is_read_only_and_what_is_writable_is_limited() -> None:
     assert _reached("writing", "settings", "disk") == []
 
 
-def test_a_sandbox_cannot_exhaust_the_kernel_s_limits_per_user() -> None:
+def test_a_sandbox_cannot_exhaust_limits_of_the_kernel_per_user() -> None:
     assert _reached("inotify", "descriptors") == []
 
 
@@ -156,7 +156,7 @@ def connect_to_loopback(scratch: Path, code: str) -> dict[str, bool]:
     return answers
 
 
-def test_a_node_reaches_the_worker_sandbox_s_loopback_and_a_build_does_not() -> None:
+def test_a_node_reaches_the_loopback_of_the_worker_sandbox_and_a_build_does_not() -> None:
     code = "import socket\nsocket.create_connection(('127.0.0.1', PORT), timeout=5)\nprint('REACHED')"
     assert in_worker_sandbox(connect_to_loopback, code) == {"True": True, "False": False}
 
@@ -258,7 +258,7 @@ def _until(condition: Callable[[], bool]) -> None:
         threading.Event().wait(0.02)
 
 
-def test_a_signal_reaches_the_student_s_own_process_and_its_status_comes_back() -> None:
+def test_a_signal_reaches_the_students_process_and_its_status_is_returned() -> None:
     code = """
 import os, signal, sys
 def end(*_):
@@ -291,7 +291,7 @@ def control_groups(scratch: Path) -> str:
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="prlimit limits every user except root")
 @BOUNDED
-def test_the_processes_of_root_s_sandbox_are_counted_by_the_kernel() -> None:
+def test_the_kernel_counts_the_processes_of_a_sandbox_of_root() -> None:
     assert "/autograder-" in in_worker_sandbox(control_groups)
 
 

@@ -137,7 +137,7 @@ def own_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     asyncio.set_event_loop(None)
     loop.close()
     if not STAND_IN:
-        gc.collect()  # finds the sockets that it left open here, where they are allowed, and not in another test
+        gc.collect()  # reports the sockets that it left open here, where such warnings are ignored
 
 
 def _install_fleet(prefix: Path) -> None:

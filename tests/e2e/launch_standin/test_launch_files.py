@@ -73,7 +73,7 @@ def test_a_condition_that_is_neither_true_nor_false_is_an_error(start: Start) ->
     assert "invalid condition expression, expected one of [true, 1, false, 0] but got 'maybe'" in launch.text
 
 
-def test_an_included_file_gets_arguments_that_end_with_their_group(start: Start) -> None:
+def test_arguments_of_an_included_file_are_limited_to_their_group(start: Start) -> None:
     launch = start("include", "rate:=20.0")
     launch.wait_for("ready: /included on /beat label='42' rate=20.0")
     launch.wait_for("name is not set here")
@@ -128,7 +128,7 @@ def test_a_crash_is_reported_with_command_and_exit_code_and_other_processes_cont
     assert re.search(CLEANLY.format("light"), launch.text)
 
 
-def test_the_end_of_a_required_node_ends_everything(start: Start) -> None:
+def test_the_end_of_a_required_node_ends_the_launch(start: Start) -> None:
     launch = start("required")
     assert launch.finish() == 0
     assert "[INFO] [launch]: process[crash-2] was required: shutting down launched system" in launch.text

@@ -55,13 +55,13 @@ def report(fleet: Path, tmp_path_factory: pytest.TempPathFactory) -> str:
     return run_pytest(folder, fleet, file)
 
 
-def test_tests_of_all_kinds_run_beside_their_launch_and_after_its_end(report: str) -> None:
+def test_tests_of_all_kinds_run_during_their_launch_and_after_its_end(report: str) -> None:
     assert set(re.findall(r"^PASSED \S+::(\w+)", report, re.MULTILINE)) == PASSED, report
 
 
-def test_a_test_can_fail_beside_its_launch_and_after_its_end(report: str) -> None:
+def test_a_test_can_fail_during_its_launch_and_after_its_end(report: str) -> None:
     failed = set(re.findall(r"^FAILED \S+::(\w+) - ", report, re.MULTILINE))
-    assert failed == {"test_that_fails_beside_the_launch", "test_that_fails_after_the_end"}, report
+    assert failed == {"test_that_fails_during_the_launch", "test_that_fails_after_the_end"}, report
     assert "AssertionError: assert 'something else' in " in report
     assert "assert 0 == 5" in report
 

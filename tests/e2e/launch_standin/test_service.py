@@ -180,7 +180,7 @@ def test_the_end_of_the_launch_cancels_coroutines_and_timers() -> None:
     assert done == ["cancelled"]
 
 
-def test_signal_handlers_are_as_before_after_a_launch() -> None:
+def test_a_launch_restores_the_signal_handlers() -> None:
     numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
     before = [signal.getsignal(number) for number in numbers]
     service_with(LogInfo(msg="short")).run()

@@ -59,7 +59,7 @@ async def test_async_generator(beacon, launch_context):
 
 
 @pytest.mark.launch(fixture=launched)
-def test_that_fails_beside_the_launch(beacon, launch_context):
+def test_that_fails_during_the_launch(beacon, launch_context):
     tools.assert_output_sync(launch_context, beacon, contains("something else"), timeout=0.1)
 
 
