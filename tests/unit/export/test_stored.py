@@ -1,4 +1,4 @@
-"""Reading stored results."""
+"""Stored results are read, and unreadable ones are named."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The zips of feedback that Moodle and Canvas take back, read as these systems read them.
+"""The zips of feedback for upload to Moodle and Canvas, read as these systems read them.
 
 `moodle_reads` and `canvas_reads` parse the names of files as the systems' own code does: Moodle's
 mod/assign/feedback/file/importziplib.php (`is_valid_filename_for_import`), and Canvas's

@@ -13,7 +13,7 @@ import pytest
 
 @pytest.mark.nightly
 def test_the_simulator_benchmark_returns_finite_positive_figures(request: pytest.FixtureRequest) -> None:
-    """In a process of its own, without ir-sim, which only `make bench` installs."""
+    """In a separate process, without ir-sim, which only `make bench` installs."""
     measure = "print(json.dumps(figures(1, 1, 0.2, compare=False)))"
     script = f"import json; from tests.benchmarks.bench_sim import figures; {measure}"
     environment = {**os.environ, "PYTHONPATH": str(request.config.rootpath)}

@@ -79,7 +79,7 @@ def test_the_scans_are_the_same_bits_on_every_machine(name: str) -> None:
 def test_a_processor_without_vector_units_or_fused_multiply_add_computes_the_same_scans(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
-    """numpy's, numba's and the C library's fast paths are switched off in a process of its own."""
+    """numpy's, numba's and the C library's fast paths are switched off in a separate process."""
     environment = {
         **os.environ,
         "PYTHONPATH": str(request.config.rootpath),

@@ -1,6 +1,6 @@
 """Counts the steps that a backtracking regular expression takes, and makes texts that are hard for it.
 
-`steps` carries out Python's own parse tree, one step for each character or alternative that is tried. A count is the
+`Steps` executes Python's own parse tree, one step for each character or alternative that is tried. A count is the
 same on every machine, which a time is not. A bound such as `{1,200}` counts as `{1,8}`: a bounded repetition
 is a constant factor, and short texts have to show it as one.
 """
