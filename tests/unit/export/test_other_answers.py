@@ -64,6 +64,6 @@ def test_a_mistake_in_the_list_of_shown_answers_is_named(
     (variants / "states").mkdir(parents=True)
     if text is not None:
         (variants / SHOWN).write_text(text)
-    monkeypatch.setattr(course_paths, "CHECKS", tmp_path)
+    monkeypatch.setitem(vars(course_paths), "CHECKS", tmp_path)  # `setattr` would leave the computed value there
     with pytest.raises(UsageError, match=message):
         other_answers("02_nodes")
