@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 import random
 
-from autograder.checking import CheckFailed, expect, group, hint
+from rclpy.time import Time
+
+from autograder.checking import LOCKSTEP, CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, Part, scan
 from autograder.checks.ch08_capstone.hidden.exact_limits import (
     OPEN,
@@ -20,6 +22,8 @@ from autograder.checks.ch08_capstone.support.contract import TOLERANCE
 from autograder.checks.ch08_capstone.support.system import System
 
 check = group("step_2")
+
+LATE = 4.0  # s: the age of a scan that comes late, much more than a busy machine's delay
 
 
 @check(
@@ -56,6 +60,22 @@ def test_sectors(seeing: System, draw: random.Random) -> None:
     seeing.see(OPEN, 1.0)
     count = len(seeing.messages(began).clearances)
     expect(9 <= count <= 11, f"10 scans became {count} clearances.", fraction=0.5)
+    expect_own_stamp(seeing)
+
+
+def expect_own_stamp(seeing: System) -> None:
+    """Fail the check unless a scan that comes late becomes a clearance with the scan's stamp."""
+    shown = scan()
+    late = seeing.see(shown, age=LATE).clearances
+    expect(bool(late), f"No clearance came while scans did whose stamps were {LATE:.0f} s old.", fraction=0.5)
+    taken, stamp = Time.from_msg(shown.header.stamp), Time.from_msg(late[-1].message.header.stamp)
+    newer = (stamp - taken).nanoseconds / 1e9
+    expect(
+        abs(newer) < (0.001 if seeing.harness.time == LOCKSTEP else LATE / 2),  # in real time, one scan may be behind
+        f"With scans that come {LATE:.0f} s after they were taken, the clearance's stamp was {newer:+.3f} s from the "
+        "scan's: its header is the scan's own.",
+        fraction=0.5,
+    )
 
 
 @check(
