@@ -54,8 +54,6 @@ def test_sectors(seeing: System, draw: random.Random) -> None:
                 fraction=0.25,
             )
         expect(bool(newest.valid), "With a reading from every beam, valid was false.", fraction=0.5)
-        stamped = newest.header.stamp.sec > 0  # whose frame it has is asked where less depends on it
-        expect(stamped, "The clearance's stamp is 0: its header is not the scan's own.", fraction=0.5)
     began = seeing.seconds
     seeing.see(OPEN, 1.0)
     count = len(seeing.messages(began).clearances)
@@ -64,16 +62,19 @@ def test_sectors(seeing: System, draw: random.Random) -> None:
 
 
 def expect_own_stamp(seeing: System) -> None:
-    """Fail the check unless a scan that comes late becomes a clearance with the scan's stamp."""
+    """Fail the check unless a scan that comes late becomes a clearance with the scan's stamp.
+
+    Whose frame the clearance has is checked with the readings, where less depends on it.
+    """
     shown = scan()
     late = seeing.see(shown, age=LATE).clearances
     expect(bool(late), f"No clearance came while scans did whose stamps were {LATE:.0f} s old.", fraction=0.5)
     taken, stamp = Time.from_msg(shown.header.stamp), Time.from_msg(late[-1].message.header.stamp)
-    newer = (stamp - taken).nanoseconds / 1e9
     expect(
-        abs(newer) < (0.001 if seeing.harness.time == LOCKSTEP else LATE / 2),  # in real time, one scan may be behind
-        f"With scans that come {LATE:.0f} s after they were taken, the clearance's stamp was {newer:+.3f} s from the "
-        "scan's: its header is the scan's own.",
+        # In real time, the last scan may still be on its way.
+        abs((stamp - taken).nanoseconds) < (1e6 if seeing.harness.time == LOCKSTEP else LATE / 2 * 1e9),
+        f"With scans that come {LATE:.0f} s after they were taken, the last of them at {taken.nanoseconds / 1e9:.3f} s,"
+        f" the clearance's stamp was {stamp.nanoseconds / 1e9:.3f} s: its header is the scan's own.",
         fraction=0.5,
     )
 
