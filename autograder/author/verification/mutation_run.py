@@ -162,8 +162,9 @@ def run_mutants(
         new: tuple[MutantResult, ...] = ()
         if missing:
             with prepared_run(assignment, workers, seed) as run:
-                grade = lambda mutant: run.run_mutant(mutant, version)  # noqa: E731
-                new = map_parallel(grade, missing, jobs=workers.count, on_done=append)
+                new = map_parallel(
+                    lambda mutant: run.run_mutant(mutant, version), missing, jobs=workers.count, on_done=append
+                )
     by_id = stored | {result.id: result for result in new}
     return tuple(by_id[mutant.id] for mutant in chosen)
 

@@ -19,14 +19,8 @@ BOUNDARY = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 ARITHMETIC = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
 ARITHMETIC |= {ast.FloorDiv: ("//", "/"), ast.Mod: ("%", "//")}
 LEVELS = {"debug": "info", "info": "debug", "warning": "info", "error": "warning", "fatal": "error"}
-TEXT_ARGUMENTS = {
-    "description",
-    "additional_constraints",
-    "reason",
-    "msg",
-    "maintainer",
-    "maintainer_email",
-}  # for people
+# Keyword arguments whose text only people read.
+TEXT_ARGUMENTS = {"description", "additional_constraints", "reason", "msg", "maintainer", "maintainer_email"}
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 Replacement = tuple[int, int, str]  # start and end of the replaced part in UTF-8 bytes, and the new text
