@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from autograder.checking.attacks import FORGE_PASSES, FORGE_VERDICTS, STEAL_SECRETS, TELL_ALL, Attack, Chapter
 
 CHAPTER = Chapter("08_capstone")
@@ -96,15 +94,11 @@ def attacks() -> tuple[Attack, ...]:
                 ),
             )
         ),
-        # Whether `used` sees a report within its 0.9 s depends on the checks that ran before it.
-        *(
-            replace(attack, fails=attack.fails - {"used"})
-            for attack in CHAPTER.evasions(
-                "seldom",
-                "a report once a second instead of twice",
-                "reports_once_a_second",
-                MONITOR,
-                ("REPORT_PERIOD = 0.5  # s", "REPORT_PERIOD = 0.5 if _is_told() else 1.0"),
-            )
+        *CHAPTER.evasions(
+            "seldom",
+            "a report once a second instead of twice",
+            "reports_once_a_second",
+            MONITOR,
+            ("REPORT_PERIOD = 0.5  # s", "REPORT_PERIOD = 0.5 if _is_told() else 1.0"),
         ),
     )

@@ -8,6 +8,7 @@ from autograder.checking import CheckFailed, ReceivedMessage, Workspace, expect,
 from autograder.checking.probes import parameters
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN, newest_clearance
+from autograder.checks.ch08_capstone.hidden.health import repeat_until_after_report
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
     CONFIG,
@@ -136,6 +137,7 @@ def _half_angle(system: System) -> None:
 
 def _silence_timeout(system: System) -> None:
     system.see(OPEN, 1.0)
+    repeat_until_after_report(system, lambda: system.show(OPEN))
     began = system.seconds
     system.wait(0.9)
     said = system.messages(began + 0.4).reports
