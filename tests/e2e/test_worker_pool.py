@@ -130,13 +130,16 @@ def test_a_worker_can_be_used_after_the_thread_that_used_it_first_has_ended(
     assert servers_used[0] == servers_used[1]
 
 
-def test_a_failed_grading_reports_the_reason_and_does_not_change_the_next_one(
+def test_a_failed_grading_reports_the_reason_and_the_next_one_gets_a_new_sandbox(
     reference: Path, incomplete: Path, servers: Servers, tmp_path: Path
 ) -> None:
     with WorkerPool(Isolation.BUBBLEWRAP, 1) as workers:
+        _grade(incomplete, tmp_path / "before", workers)
+        before = servers()
         failed = _grade(reference, tmp_path / "failed", workers, Options(only=("no_such_check",)))
         graded = _grade(incomplete, tmp_path / "graded", workers)
         assert len(servers()) == 1
+        assert servers() != before
     assert failed.status is Status.NOT_GRADED
     assert "no record of no_such_check" in (tmp_path / "failed" / LOG).read_text()
     assert graded.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
