@@ -32,7 +32,7 @@ PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-r
 LINTERS := lint-types lint-standins lint-style lint-imports
 SIDE_BY_SIDE = $(MAKE) --no-print-directory -j $(words $(LINTERS)) --output-sync
 
-.PHONY: help setup demo test check nightly lint $(LINTERS) fast-engine lab tour classes docs bench cluster hub-setup hub cluster-certificates fuzz verify capstones real-launch sourced-layout public-packages tutorials lock clean
+.PHONY: help setup demo test check nightly lint $(LINTERS) fast-engine lab tour classes docs bench cluster hub-setup hub image cluster-certificates fuzz verify capstones real-launch sourced-layout public-packages tutorials lock clean
 
 help:           ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -121,6 +121,14 @@ hub-setup:      ## set up, with JupyterHub and Node.js for its proxy
 HUB_ARGS ?=
 hub: hub-setup  ## as root: run a trial JupyterHub with three students and a teacher, until Ctrl-C (HUB_ARGS=--port=8000)
 	@$(BIN)/python -m autograder.lms.hub $(HUB_ARGS)
+
+IMAGE ?= ros2-python-course
+IMAGE_ARGS ?=
+image:          ## as root: build the image of a student release with buildah (BASE= PACKAGES= IMAGE_ARGS=)
+	@$(BOOTSTRAP)
+	@rm -rf .build/image
+	@$(BIN)/autograder release --out .build/image
+	@assets/image/build .build/image $(IMAGE) $(IMAGE_ARGS)
 
 # A self-signed certificate and its key, for scheduler, workers and client. Existing ones are kept.
 cluster-certificates: cluster-certificates/cluster.pem ## create the certificate and key that the machines of a cluster share
