@@ -161,7 +161,8 @@ def _run_mutants(
 
     def show(result: MutantResult) -> None:
         if not result.killed:
-            echo(f"{chapter.assignment} mutant {result.id} {result.killer or 'survives'}")
+            outcome = f"{result.killer}: {result.error}" if result.error else "survives"
+            echo(f"{chapter.assignment} mutant {result.id} {outcome}")
 
     cache = out / chapter.assignment / "mutants.jsonl"
     skipped = {} if named else chapter.reasons

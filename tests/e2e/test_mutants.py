@@ -13,11 +13,14 @@ import pytest
 
 from autograder.author.verification.cases import Case, cases, rewritten_cases
 from autograder.author.verification.generated_mutants import generated_mutants
-from autograder.author.verification.mutation_run import prepared_run
+from autograder.author.verification.mutation_run import FAILED, prepared_run
 from autograder.author.verification.survivors import reasons
 from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
+from autograder.grade.job import Job
 from autograder.run.sandbox import Isolation
+from autograder.run.sandbox.process import ExitReason
+from autograder.run.sandbox.worker_sandbox import WorkerReport
 from autograder.suite import suites
 
 VERIFICATION = {
@@ -73,3 +76,21 @@ def test_a_patched_build_of_the_reference_is_graded_like_a_real_build(workers: W
         patched = [run.run_mutant(mutant).killer for mutant in mutants]
         run.shortcuts = {"patched": frozenset(), "unbuilt": frozenset()}
         assert [run.run_mutant(mutant).killer for mutant in mutants] == patched
+
+
+class FailingWorkers:
+    """Replaces a pool of workers. The grader fails on every submission."""
+
+    isolation = Isolation.BUBBLEWRAP
+
+    def __call__(self, job: Job) -> WorkerReport:
+        return WorkerReport(ExitReason.EXITED, 1, "Traceback (most recent call last):\nOSError: the disk is full")
+
+
+@pytest.mark.slow
+def test_a_mutant_on_which_the_grader_fails_has_the_error(workers: WorkerPool, monkeypatch: pytest.MonkeyPatch) -> None:
+    mutant = generated_mutants("01_package_structure").mutants[0]
+    with prepared_run("01_package_structure", workers, 2026) as run:
+        monkeypatch.setattr(run, "_workers", FailingWorkers())
+        result = run.run_mutant(mutant)
+    assert (result.killer, result.error) == (FAILED, "OSError: the disk is full")

@@ -23,9 +23,11 @@ from autograder.author.verification.mutants import write_reference
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.building.build import build_workspace
 from autograder.diagnosis import Kind
+from autograder.exceptions import GraderError
 from autograder.grade.job import Job, Options
 from autograder.grade.parallel import map_parallel
 from autograder.grade.pipeline import grade_submission
+from autograder.grade.store import LOG
 from autograder.result.model import Result, Status
 from autograder.ros import activate
 from autograder.run.workspace import Workspace
@@ -40,12 +42,18 @@ FAILED = "not graded"
 
 @dataclass(frozen=True)
 class MutantResult:
-    """The result of a mutant. `killer` is the check that failed, "" if none did, or FAILED if the grader failed."""
+    """The result of a mutant.
+
+    Attributes:
+        killer: the check that failed, "" if none did, or FAILED if the grader failed.
+        error: what the grader reported when it failed; the last line of its log.
+    """
 
     id: str
     killer: str
     seconds: float
     version: str
+    error: str = ""
 
     @property
     def killed(self) -> bool:
@@ -82,11 +90,15 @@ class MutationRun:
     def run_mutant(self, mutant: GeneratedMutant, version: str = "") -> MutantResult:
         """Grade a mutant until a check fails."""
         started = time.monotonic()
-        killer = next(filter(None, self._stages(mutant)), "")
-        if killer:
+        error = ""
+        try:
+            killer = next(filter(None, self._stages(mutant)), "")
+        except GraderError as failure:
+            killer, error = FAILED, str(failure)
+        if killer not in ("", FAILED):
             for location in {(mutant.file, mutant.function), (mutant.file, "")}:
                 self._killers[location][killer] += 1
-        return MutantResult(mutant.id, killer, round(time.monotonic() - started, 2), version)
+        return MutantResult(mutant.id, killer, round(time.monotonic() - started, 2), version, error)
 
     def _stages(self, mutant: GeneratedMutant) -> Iterator[str]:
         """Yield the killer of each stage, or "". Fast checks and likely killers come first."""
@@ -112,12 +124,17 @@ class MutationRun:
 
     def _killer(self, texts: dict[str, str], only: tuple[str, ...], built: str) -> str:
         result = self._grade(texts, Options(only=only, first_loss=True, pictures=False, built=built))
-        if result.status is not Status.GRADED or result.unjudged:
-            return FAILED
+        if result.unjudged:
+            raise GraderError(f"errors in the checks {', '.join(result.unjudged)}")
         failed = [check.id for check in result.checks if check.outcome is Outcome.FAILED]
         return failed[0] if failed else "" if result.diagnosis.kind is Kind.OK else result.diagnosis.kind.value
 
     def _grade(self, texts: dict[str, str], options: Options) -> Result:
+        """Grade the reference with some files replaced.
+
+        Raises:
+            GraderError: the grader failed.
+        """
         with tempfile.TemporaryDirectory(prefix="mutant-") as name:
             folder = Path(name)
             write_reference(self._suite.sources, folder / "mutant")
@@ -125,7 +142,10 @@ class MutationRun:
                 (folder / "mutant" / "src" / file).write_text(text, encoding="utf-8")
             assignment, isolation = self._suite.assignment, self._workers.isolation
             job = Job(folder / "mutant", assignment, "mutant", self._seed, folder / "out", isolation, options)
-            return grade_submission(job, self._workers)
+            result = grade_submission(job, self._workers)
+            if result.status is not Status.GRADED:
+                raise GraderError((job.out / LOG).read_text(encoding="utf-8").strip().rpartition("\n")[2])
+            return result
 
 
 def run_mutants(

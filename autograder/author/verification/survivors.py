@@ -56,9 +56,9 @@ class ChapterMutationResult:
         return len(self.results) - sum(reason.startswith("equivalent: ") for reason in self.survivors.values())
 
     @property
-    def failed(self) -> list[str]:
-        """The mutants on which the grader failed."""
-        return [result.id for result in self.results if result.killer == FAILED]
+    def failed(self) -> dict[str, str]:
+        """The ids of the mutants on which the grader failed, each with the grader's error."""
+        return {result.id: result.error for result in self.results if result.killer == FAILED}
 
     @property
     def unexplained(self) -> list[str]:
@@ -96,7 +96,11 @@ def faults(chapters: Sequence[ChapterMutationResult]) -> list[str]:
     A diff follows the sentence of a mutant without a reason, because the id does not show the change. A score is only
     judged if all mutants of the chapter, or of all chapters, were graded.
     """
-    sentences = [f"{each.assignment}: the grader failed on {name}" for each in chapters for name in each.failed]
+    sentences = [
+        f"{each.assignment}: the grader failed on {name}: {error}"
+        for each in chapters
+        for name, error in each.failed.items()
+    ]
     for each in chapters:
         diffs = {mutant.id: mutant.diff for mutant in each.generated.mutants}
         sentences += [

@@ -132,7 +132,9 @@ def test_a_mutant_that_was_not_graded_fails_the_verification(monkeypatch: pytest
     chapter = with_reason(
         chapter, monkeypatch, f"- {{outside: unspecified, mutants: ['{chapter.results[-1].id}']}}", tmp_path
     )
-    assert faults([chapter]) == [f"{ASSIGNMENT}: the grader failed on {chapter.results[-1].id}"]
+    last = replace(chapter.results[-1], error="OSError: the disk is full")
+    chapter = replace(chapter, results=(*chapter.results[:-1], last))
+    assert faults([chapter]) == [f"{ASSIGNMENT}: the grader failed on {last.id}: OSError: the disk is full"]
 
 
 @pytest.mark.parametrize(
