@@ -122,10 +122,10 @@ def link_first_uses(texts: Sequence[str], words: set[str]) -> list[str]:
         for word in sorted(words, key=len, reverse=True):
             excluded = [match.span() for match in NOT_PROSE.finditer(text)]
             pattern = r"\s+".join(map(re.escape, word.split()))
-            for use in re.finditer(rf"\b{pattern}s?\b", text, re.IGNORECASE):
-                if not any(use.start() < stop and start < use.end() for start, stop in excluded):
-                    shown = " ".join(use[0].split())
-                    text = f"{text[: use.start()]}{{term}}`{shown} <{word}>`{text[use.end() :]}"
+            for occurrence in re.finditer(rf"\b{pattern}s?\b", text, re.IGNORECASE):
+                if not any(occurrence.start() < stop and start < occurrence.end() for start, stop in excluded):
+                    text_of_link = " ".join(occurrence[0].split())
+                    text = f"{text[: occurrence.start()]}{{term}}`{text_of_link} <{word}>`{text[occurrence.end() :]}"
                     words = words - {word}
                     break
         linked.append(text)

@@ -110,11 +110,13 @@ def current() -> str:
         rows = []
         for sentence in sentences(text):
             tests = [
-                f"`{each.test}`" + " (nightly)" * each.is_nightly for each in all_promises if each.words in sentence
+                f"`{promise.test}`" + " (nightly)" * promise.is_nightly
+                for promise in all_promises
+                if promise.words in sentence
             ]
             if tests:
-                shown = MARKUP.sub(r"\1", sentence.strip("| ")).replace("|", "·")
-                rows.append((shown, "; ".join(sorted(set(tests)))))
+                sentence_text = MARKUP.sub(r"\1", sentence.strip("| ")).replace("|", "·")
+                rows.append((sentence_text, "; ".join(sorted(set(tests)))))
         parts += [f"## {page}\n", *table(("promise", "verified by"), rows)]
     return "\n".join(parts)
 

@@ -101,7 +101,7 @@ def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
 @pytest.fixture
 def entered_tmp_path(tmp_path: Path) -> Path:
     """A temporary folder that other users can enter: root's sandboxes run as other users."""
-    for folder in (tmp_path, *(each for each in tmp_path.parents if each.name.startswith(("pytest-", "popen-")))):
+    for folder in (tmp_path, *(parent for parent in tmp_path.parents if parent.name.startswith(("pytest-", "popen-")))):
         folder.chmod(0o711)
     return tmp_path
 
@@ -110,9 +110,9 @@ MakeCheck = Callable[..., Check]
 MakeResult = Callable[..., Result]
 
 
-def _check(id: str, title: str, points: float, group: str, **more: Any) -> Check:
+def _check(id: str, title: str, points: float, group: str, **fields: Any) -> Check:
     contract: dict[str, Any] = {"visibility": Visibility.HIDDEN, "hints": (), "doc": None}
-    return Check(id=id, title=title, points=points, group=group, **(contract | more))
+    return Check(id=id, title=title, points=points, group=group, **(contract | fields))
 
 
 STARTS = _check("starts", "The node starts and is called robot_controller.", 1, "graph")

@@ -20,9 +20,9 @@ def figures() -> dict[str, float]:
         folder = Path(name)
         write_reference(suites.hidden(ASSIGNMENT).packages, folder / "reference")
         _grade(folder, "cold")
-        before = _spent()
+        before = _cpu_seconds()
         _grade(folder, "warm")
-        return {"grade.capstone_core_s": round(_spent() - before, 2)}
+        return {"grade.capstone_core_s": round(_cpu_seconds() - before, 2)}
 
 
 def _grade(folder: Path, name: str) -> None:
@@ -31,7 +31,7 @@ def _grade(folder: Path, name: str) -> None:
         raise RuntimeError(f"the reference has {result.score:g} of {result.max_score:g} points")
 
 
-def _spent() -> float:
+def _cpu_seconds() -> float:
     """Return the processor time of the whole machine, in seconds.
 
     A sandbox kills processes that no parent waits for, so their own times are lost.

@@ -24,10 +24,10 @@ def figures() -> dict[str, float]:
             folder = Path(name, assignment)
             answers = {str(number): _answer(folder, assignment, number) for number in range(students)}
             _seconds({"0": answers["0"]}, assignment, folder, 1)
-            two = _seconds(answers, assignment, folder, 2)
-            results[f"class.submissions_per_minute_{assignment[:2]}"] = round(60 * students / two, 1)
+            elapsed = _seconds(answers, assignment, folder, 2)
+            results[f"class.submissions_per_minute_{assignment[:2]}"] = round(60 * students / elapsed, 1)
             if assignment == COMPARED:
-                results["class.two_workers_ratio"] = round(_seconds(answers, assignment, folder, 1) / two, 2)
+                results["class.two_workers_ratio"] = round(_seconds(answers, assignment, folder, 1) / elapsed, 2)
     return results
 
 
@@ -41,7 +41,7 @@ def _answer(folder: Path, assignment: str, number: int) -> Path:
 def _seconds(answers: Mapping[str, Path], assignment: str, folder: Path, jobs: int) -> float:
     start = time.monotonic()
     results = grade_all(answers, assignment, seed=DEFAULT_SEED, out=folder / "out", jobs=jobs)
-    spent = time.monotonic() - start
+    elapsed = time.monotonic() - start
     if any(result.score != result.max_score for result in results):
         raise RuntimeError(f"not every reference of {assignment} got full marks")
-    return spent
+    return elapsed

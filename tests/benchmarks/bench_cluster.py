@@ -30,8 +30,8 @@ SOURCE = "x = 1\n" * 4000  # 24 kB, the size of an answer to 02
 def figures() -> dict[str, float]:
     """Return the overhead per submission in milliseconds, measured with gradings that take no time."""
     with connected(LOCAL, THREADS, Path()) as client:
-        spent, _ = seconds(client, SUBMISSIONS, [0.0])
-    return {"cluster.overhead_ms": round(1000 * spent / SUBMISSIONS, 2)}
+        elapsed, _ = seconds(client, SUBMISSIONS, [0.0])
+    return {"cluster.overhead_ms": round(1000 * elapsed / SUBMISSIONS, 2)}
 
 
 def seconds(client: Client, submissions: int, pauses: Sequence[float]) -> tuple[float, float]:
@@ -42,9 +42,9 @@ def seconds(client: Client, submissions: int, pauses: Sequence[float]) -> tuple[
         start = time.monotonic()
         results: list[Result] = []
         grade_on(client, jobs, results.append, report=print, grade=partial(_reply, pauses))
-        spent = time.monotonic() - start
+        elapsed = time.monotonic() - start
     assert len({result.submission_sha256 for result in results}) == submissions
-    return spent, sum(result.seconds for result in results)
+    return elapsed, sum(result.seconds for result in results)
 
 
 def _job(folder: Path, number: int) -> Job:

@@ -43,7 +43,7 @@ def figures() -> dict[str, float]:
         colcon = _cost(lambda: _colcon(folder))
     return {
         "interface.cold_s": round(statistics.median(seconds for seconds, _ in cold), 3),
-        "interface.cold_core_s": round(statistics.median(spent for _, spent in cold), 3),
+        "interface.cold_core_s": round(statistics.median(core_seconds for _, core_seconds in cold), 3),
         "interface.cached_s": round(statistics.median(seconds for seconds, _ in cached), 4),
         "interface.colcon_s": round(colcon[0], 3),
         "interface.colcon_core_s": round(colcon[1], 3),
@@ -65,11 +65,11 @@ def _colcon(folder: Path) -> None:
 
 def _cost(work: Callable[[], object]) -> tuple[float, float]:
     """Return the seconds and core-seconds of a function, including all processes that it starts."""
-    start, before = time.perf_counter(), _spent()
+    start, before = time.perf_counter(), _cpu_seconds()
     work()
-    return time.perf_counter() - start, _spent() - before
+    return time.perf_counter() - start, _cpu_seconds() - before
 
 
-def _spent() -> float:
-    spent = os.times()
-    return spent.user + spent.system + spent.children_user + spent.children_system
+def _cpu_seconds() -> float:
+    times = os.times()
+    return times.user + times.system + times.children_user + times.children_system

@@ -186,7 +186,7 @@ def figures(
             begin = time.perf_counter()
             drive()
             fastest[name] = min(fastest[name], time.perf_counter() - begin)
-    results = {**best, **{name: seconds / spent for name, spent in fastest.items()}}
+    results = {**best, **{name: seconds / elapsed for name, elapsed in fastest.items()}}
     if compare:
         results["sim.irsim_ratio"] = results["sim.scan360_irsim_us"] / results["sim.scan360_numba_us"]
         results["sim.irsim_numpy_ratio"] = results["sim.scan360_irsim_us"] / results["sim.scan360_numpy_us"]

@@ -31,8 +31,8 @@ def main(results: str) -> None:
     if results != "draw":
         pauses = [result.seconds for result in load(Path(results))]
         commands = [[sys.executable, "-m", __spec__.name, json.dumps(pauses), str(workers)] for workers in WORKERS]
-        running = [subprocess.Popen(command, stdout=subprocess.PIPE) for command in commands]
-        measured = [json.loads(process.communicate()[0]) for process in running]
+        processes = [subprocess.Popen(command, stdout=subprocess.PIPE) for command in commands]
+        measured = [json.loads(process.communicate()[0]) for process in processes]
         figures = {"cores": os.cpu_count(), "pauses": sorted(set(pauses)), "measured": measured}
         MEASURED.write_text(json.dumps(figures, indent=1) + "\n")
     draw()
@@ -47,14 +47,14 @@ def measure(pauses: list[float], workers: int) -> dict[str, float]:
         with connected(address, 0, Path()) as client:
             client.wait_for_workers(workers)
             submissions = SUBMISSIONS * workers // WORKERS[-1]
-            spent, work = seconds(client, submissions, pauses)
+            elapsed, work = seconds(client, submissions, pauses)
         cluster.communicate()
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     return {
         "workers": workers,
         "submissions": submissions,
-        "seconds": round(spent, 1),
-        "speed_up": round(work / spent, 2),
+        "seconds": round(elapsed, 1),
+        "speed_up": round(work / elapsed, 2),
         "client_mib": round(memory),
     }
 

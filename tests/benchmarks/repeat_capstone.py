@@ -76,18 +76,20 @@ def grade(folder: Path, version: str, at_once: int, number: int) -> Grading:
     return Grading(version, number, at_once, percent, lost, traces, round(seconds, 2))
 
 
-def gradings(folder: Path, version: str, times: int, known: dict[int, Grading]) -> Iterator[Grading]:
+def gradings(folder: Path, version: str, times: int, stored_gradings: dict[int, Grading]) -> Iterator[Grading]:
     """Yield the remaining gradings: the first half with a core for each, the others under load."""
     cores = os.cpu_count() or 1
     half = range(1, times // 2 + 1)
     for numbers, at_once in ((half, cores), (range(half.stop, times + 1), CROWD * cores)):
         with ThreadPoolExecutor(at_once) as pool:
             pending = [
-                pool.submit(grade, folder, version, at_once, number) for number in numbers if number not in known
+                pool.submit(grade, folder, version, at_once, number)
+                for number in numbers
+                if number not in stored_gradings
             ]
             try:
-                for done in as_completed(pending):
-                    yield done.result()
+                for future in as_completed(pending):
+                    yield future.result()
             finally:
                 pool.shutdown(cancel_futures=True)
 
@@ -101,29 +103,36 @@ def main() -> int:
     if args.n < 1:
         parser.error("-n must be 1 or more")
     version = suites.hidden(ASSIGNMENT).version
-    known = {number: grading for number, grading in stored(args.report, version).items() if number <= args.n}
-    print(f"checks and grader {version}: {len(known)} of {args.n} are graded", flush=True)
+    gradings_by_number = {
+        number: grading for number, grading in stored(args.report, version).items() if number <= args.n
+    }
+    print(f"checks and grader {version}: {len(gradings_by_number)} of {args.n} are graded", flush=True)
     args.report.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as name, args.report.open("a") as report:
         report.write("\n" if cut_off(args.report) else "")
         write_reference(suites.hidden(ASSIGNMENT).packages, Path(name) / "reference")
-        for grading in gradings(Path(name), version, args.n, dict(known)):
+        for grading in gradings(Path(name), version, args.n, dict(gradings_by_number)):
             report.write(json.dumps(asdict(grading)) + "\n")
             report.flush()
-            known[grading.number] = grading
+            gradings_by_number[grading.number] = grading
             took = f"{grading.at_once} at once: {grading.seconds:5.1f} s"
-            print(f"{len(known):4} of {args.n}, {took}, {grading.percent:g} %", *grading.lost, sep="\n  ", flush=True)
-    return summarise(list(known.values()))
+            print(
+                f"{len(gradings_by_number):4} of {args.n}, {took}, {grading.percent:g} %",
+                *grading.lost,
+                sep="\n  ",
+                flush=True,
+            )
+    return summarise(list(gradings_by_number.values()))
 
 
-def summarise(known: list[Grading]) -> int:
+def summarise(graded: list[Grading]) -> int:
     """Report how many gradings agree, and describe how each of the others differs. Return the exit status."""
-    first = known[0].traces
-    bad = [grading for grading in known if grading.percent != 100.0 or not grading.traces or grading.traces != first]
+    first = graded[0].traces
+    bad = [grading for grading in graded if grading.percent != 100.0 or not grading.traces or grading.traces != first]
     for grading in bad:
         different = ", ".join(sorted({name for name, _ in grading.traces.items() ^ first.items()}))
         print(f"number {grading.number}: {grading.percent:g} %, other traces: {different or 'none'}")
-    print(f"{len(known) - len(bad)} of {len(known)} with all points and the same traces: {first}")
+    print(f"{len(graded) - len(bad)} of {len(graded)} with all points and the same traces: {first}")
     return 1 if bad else 0
 
 

@@ -62,7 +62,7 @@ def test_the_table_sorts_by_a_click_on_a_header(page: Page, table: Locator) -> N
     assert names(table)[0] == "alice"
 
 
-@pytest.mark.promise("its filter shows those who missed one check")
+@pytest.mark.promise("its filter shows the students who failed a check")
 def test_the_table_keeps_its_filter_after_visiting_a_page(page: Page, table: Locator) -> None:
     page.get_by_label("Find").fill("muller still")
     assert names(table) == ["Zoë Müller"]

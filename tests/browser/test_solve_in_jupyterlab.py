@@ -137,16 +137,16 @@ def test_a_chapters_release_is_solved_in_jupyterlab(page: Page, lab: Lab, screen
     counts = re.findall(r"(\d+) of (\d+) visible checks passed", text)
     assert counts
     assert all(passed == total for passed, total in counts), counts
-    drawn = {
+    pictures_by_cell = {
         cell: [output["data"]["image/png"] for output in outputs_of_cell if "image/png" in output.get("data", {})]
         for cell, outputs_of_cell in cell_outputs.items()
     }
-    assert not any(is_blank(picture) for pictures in drawn.values() for picture in pictures)
+    assert not any(is_blank(picture) for pictures in pictures_by_cell.values() for picture in pictures)
     figures = [cell.id for cell in chapter.read().cells if cell.cell_type == "markdown" and "](figures/" in cell.source]
     checks = [
         cell for cell, outputs_of_cell in cell_outputs.items() if "visible checks passed" in json.dumps(outputs_of_cell)
     ]
     page.set_viewport_size({"width": 1100, "height": 1100})
-    for cell in (*figures[:1], *[cell for cell, pictures in drawn.items() if pictures][:3], checks[-1]):
+    for cell in (*figures[:1], *[cell for cell, pictures in pictures_by_cell.items() if pictures][:3], checks[-1]):
         photograph(page, cell, screenshots / f"tour-{name}-{cell}.png")
     page.close()

@@ -47,11 +47,11 @@ class Classroom:
             name: str(folder / ".jupyter") for name in ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "IPYTHONDIR")
         }
         environment = {**os.environ, **own_folders, "NBGRADER_EXCHANGE": str(self.exchange)}
-        done = subprocess.run(
+        completed = subprocess.run(
             command, cwd=folder, env=environment, capture_output=True, text=True, timeout=1800, check=False
         )
-        assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
-        return done.stdout + done.stderr
+        assert completed.returncode == 0, f"{command}\n{completed.stdout}\n{completed.stderr}"
+        return completed.stdout + completed.stderr
 
     def nbgrader(self, verb: str, *arguments: str, folder: Path | None = None) -> str:
         """Run a verb of nbgrader on the assignment, in the course directory or in a student's folder."""

@@ -38,14 +38,14 @@ def create(folder: Path, package: str) -> Path:
     return folder / package
 
 
-def fill_in(created: Path, target: Path, given: Collection[str] = ()) -> None:
+def fill_in(created: Path, target: Path, given_folders: Collection[str] = ()) -> None:
     """Put the tool's files into `target`, a copy of the reference package, and add the student's files.
 
-    Modules, launch files, configuration and further tests stay the reference's. So do the folders in `given`, which
+    Modules, launch files, configuration and further tests stay the reference's. So do the `given_folders`, which
     students get with the chapter.
     """
     for file in sorted(created.rglob("*")):
-        if file.is_file() and file.relative_to(created).parts[0] not in given:
+        if file.is_file() and file.relative_to(created).parts[0] not in given_folders:
             copy = target / file.relative_to(created)
             copy.parent.mkdir(parents=True, exist_ok=True)
             copy.write_bytes(file.read_bytes())

@@ -47,10 +47,10 @@ def grade_monitored(folder: Path, assignment: str, submissions: Mapping[str, Pat
     command = group.enter([*bubblewrap, "--", sys.executable, "-m", "tests.e2e.leak_monitor", job])
     environment = {**os.environ, "TMPDIR": scratch}
     try:
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
+        completed = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+        assert completed.returncode == 0, completed.stderr
         state = json.loads((folder / "state.json").read_text())
-        assert (state["status"], state["after"]) == (0, state["before"]), done.stderr
+        assert (state["status"], state["after"]) == (0, state["before"]), completed.stderr
         assert [path for controller in group.folders for path in controller.iterdir() if path.is_dir()] == []
         assert _charged_memory(group) < 4 * MIB
     finally:

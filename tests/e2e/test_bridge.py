@@ -44,11 +44,11 @@ class Listener:
         self.node.create_subscription(kind, topic, received.append, qos)
         return received
 
-    def wait(self, condition: Callable[[], Any], what: str) -> None:
+    def wait(self, condition: Callable[[], Any], awaited: str) -> None:
         """Spin until the condition is true."""
         deadline = time.monotonic() + PATIENCE
         while not condition():
-            assert time.monotonic() < deadline, f"timed out waiting for {what}"
+            assert time.monotonic() < deadline, f"timed out waiting for {awaited}"
             self._executor.spin_once(timeout_sec=0.1)
 
     def call(self, kind: Any, name: str, request: Any) -> Any:
@@ -150,9 +150,9 @@ def test_the_robot_follows_cmd_vel_until_its_watchdog_stops_it(listener: Listene
     publisher.publish(command)
     listener.wait(lambda: odometry[-1].twist.twist.linear.x == pytest.approx(0.2), "the robot to drive")
     listener.wait(lambda: odometry[-1].twist.twist.linear.x == 0.0, "the watchdog to stop it")
-    last = odometry[-1].pose.pose
-    assert 0.03 < last.position.x < 0.2
-    assert 0.05 < 2.0 * math.atan2(last.orientation.z, last.orientation.w) < 0.5
+    pose = odometry[-1].pose.pose
+    assert 0.03 < pose.position.x < 0.2
+    assert 0.05 < 2.0 * math.atan2(pose.orientation.z, pose.orientation.w) < 0.5
 
 
 def test_a_command_that_is_not_finite_is_ignored(listener: Listener, simulator: Start) -> None:
@@ -208,13 +208,13 @@ def test_time_can_be_paused_stepped_exactly_and_resumed(listener: Listener, simu
 
     answer = listener.call(Trigger, "/simulator/reset", Trigger.Request())
     assert (answer.success, answer.message) == (True, "reset at 0.000 s")
-    running = listener.call(SetBool, "/simulator/pause", SetBool.Request(data=False))
-    assert running.message.startswith("running at")
+    resumed = listener.call(SetBool, "/simulator/pause", SetBool.Request(data=False))
+    assert resumed.message.startswith("running at")
     clock.clear()
     listener.wait(lambda: clock and seconds(clock[-1].clock) > 0.5, "time to advance")
     paused = listener.call(SetBool, "/simulator/pause", SetBool.Request(data=True))
-    again = listener.call(SetBool, "/simulator/pause", SetBool.Request(data=True))
-    assert paused.message == again.message
+    paused_again = listener.call(SetBool, "/simulator/pause", SetBool.Request(data=True))
+    assert paused.message == paused_again.message
 
 
 def test_the_speed_of_time_can_change_while_it_runs(listener: Listener, simulator: Start) -> None:

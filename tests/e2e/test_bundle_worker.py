@@ -57,9 +57,9 @@ def test_a_build_whose_files_cannot_be_stored_fails_with_a_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, script: str, sentence: str
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         build_in_worker(tmp_path, script)
-    assert sentence in caught.value.diagnosis.sentence
+    assert sentence in excinfo.value.diagnosis.sentence
 
 
 def test_inner_links_odd_names_and_deep_folders_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -118,11 +118,11 @@ def test_a_subclass_that_equals_everything_returns_as_a_plain_number(workspace: 
 
 
 def test_an_exception_is_recognized_by_its_class_and_base_classes(workspace: Workspace) -> None:
-    absent, pretender = calls(workspace, "demo", call("absent"), call("pretends"))
-    assert absent.raised == "Absent"
-    assert absent.kinds == ("Absent", "ValueError", "Exception", "BaseException", "object")
-    assert pretender.raised == "ValueError"
-    assert "ValueError" not in pretender.kinds
+    subclass_error, pretended_error = calls(workspace, "demo", call("absent"), call("pretends"))
+    assert subclass_error.raised == "Absent"
+    assert subclass_error.kinds == ("Absent", "ValueError", "Exception", "BaseException", "object")
+    assert pretended_error.raised == "ValueError"
+    assert "ValueError" not in pretended_error.kinds
 
 
 def test_exceptions_and_values_that_are_not_plain_are_named(workspace: Workspace) -> None:
@@ -157,21 +157,21 @@ def test_a_step_can_call_a_function_of_another_module(workspace: Workspace) -> N
 def test_a_module_that_cannot_be_imported_is_diagnosed(
     workspace: Workspace, module: str, kind: Kind, words: str
 ) -> None:
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         calls(workspace, module, call("f"))
-    assert caught.value.diagnosis.kind is kind
-    assert words in caught.value.diagnosis.sentence
-    assert "importlib" not in caught.value.diagnosis.detail  # the loader's frames do not help a student
+    assert excinfo.value.diagnosis.kind is kind
+    assert words in excinfo.value.diagnosis.sentence
+    assert "importlib" not in excinfo.value.diagnosis.detail  # the loader's frames do not help a student
 
 
 def test_code_that_ends_the_process_is_reported_as_ended_early(workspace: Workspace) -> None:
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         calls(workspace, "demo", call("gone"), call("double", [1]))
-    assert caught.value.diagnosis.kind is Kind.ENDED_EARLY
+    assert excinfo.value.diagnosis.kind is Kind.ENDED_EARLY
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "is_same"),
+    ("left", "right", "is_same"),
     [
         (nan, nan, True),
         (1, 1.0, True),
@@ -184,5 +184,5 @@ def test_code_that_ends_the_process_is_reported_as_ended_early(workspace: Worksp
         ({"a": 1}, {"a": 1}, True),
     ],
 )
-def test_json_values_are_compared_by_kind_and_value(one: object, other: object, is_same: bool) -> None:
-    assert same(one, other) is is_same
+def test_json_values_are_compared_by_kind_and_value(left: object, right: object, is_same: bool) -> None:
+    assert same(left, right) is is_same

@@ -68,9 +68,11 @@ def two_mutants(assignment: str) -> list[Mutant]:
     """Return two mutants: if possible, one whose files all have cells in the notebook, and one with other files."""
     heads = {cell.source.partition("\n")[0] for cell in Chapter(chapter(assignment)).read().cells}
     quick = [mutant for mutant in mutants(assignment) if not mutant.slow]
-    inside = [m for m in quick if all(edit.replace and f"%%writefile ws/src/{edit.file}" in heads for edit in m.edits)]
-    outside = [mutant for mutant in quick if mutant not in inside]
-    return [*inside[:1], *outside[:1], *inside[1:], *outside[1:]][:2]
+    in_cells = [
+        m for m in quick if all(edit.replace and f"%%writefile ws/src/{edit.file}" in heads for edit in m.edits)
+    ]
+    in_other_files = [mutant for mutant in quick if mutant not in in_cells]
+    return [*in_cells[:1], *in_other_files[:1], *in_cells[1:], *in_other_files[1:]][:2]
 
 
 @pytest.fixture(scope="module", params=suites.graded_assignments())

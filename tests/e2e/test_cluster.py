@@ -70,10 +70,10 @@ def stored_results(out: Path) -> dict[str, tuple[Any, dict[str, bytes]]]:
 def grade_during_kills(cluster: LocalCluster, kills: int, draw: random.Random) -> Path:
     """Grade the class, repeatedly if need be, until `kills` machines have been killed; return the last results."""
     victims = [CLIENT, SCHEDULER, *WORKERS]
-    deadline, run, killed = time.monotonic() + DEADLINE, 0, 0
+    deadline, attempt, killed = time.monotonic() + DEADLINE, 0, 0
     options = ("--scheduler", cluster.address, "--certificates", str(cluster.certificates), "--resume")
     cluster.restart_ended()
-    client = cluster.run(CLIENT, grade_command(f"out{run}", *options))
+    client = cluster.run(CLIENT, grade_command(f"out{attempt}", *options))
     while time.monotonic() < deadline:
         try:
             client.wait(draw.uniform(0.5, 8.0) if killed < kills else deadline - time.monotonic())
@@ -84,11 +84,11 @@ def grade_during_kills(cluster: LocalCluster, kills: int, draw: random.Random) -
         if client.poll() is None:
             continue
         # The file is written at the end. The status is 1, because two submissions are unclear.
-        if (cluster.client_folder / f"out{run}.json").is_file():
+        if (cluster.client_folder / f"out{attempt}.json").is_file():
             if killed >= kills:
-                return cluster.client_folder / f"out{run}"
-            run += 1
-        client = cluster.run(CLIENT, grade_command(f"out{run}", *options))
+                return cluster.client_folder / f"out{attempt}"
+            attempt += 1
+        client = cluster.run(CLIENT, grade_command(f"out{attempt}", *options))
     raise AssertionError(f"not graded within {DEADLINE} s, after {killed} kills:\n{cluster.log(CLIENT)[-3000:]}")
 
 
@@ -164,9 +164,9 @@ def test_a_worker_with_another_suite_is_rejected_and_gets_no_submission(
     jobs: list[Job], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     reports: list[str] = []
-    other = resource(ASSIGNMENT, Isolation.PROCESS).replace(suites.hidden(ASSIGNMENT).files_digest, "another")
+    other_resource = resource(ASSIGNMENT, Isolation.PROCESS).replace(suites.hidden(ASSIGNMENT).files_digest, "another")
     with connected(LOCAL, 1, tmp_path) as client:
-        monkeypatch.setattr(dispatch, "resource", lambda assignment, isolation: other)
+        monkeypatch.setattr(dispatch, "resource", lambda assignment, isolation: other_resource)
         monkeypatch.setattr(dispatch, "NO_WORKER_TIMEOUT_SECONDS", 0.0)
         with pytest.raises(ClusterError, match="no suitable worker was available"):
             grade_on(client, jobs, pytest.fail, report=reports.append, grade=reply_without_grading)
@@ -199,11 +199,11 @@ def test_ctrl_c_keeps_the_gradings_that_have_started_and_resume_grades_the_rest(
         reports = process.stdout.read()
     assert process.returncode == 130, reports
     assert reports.endswith("\nStopped. Finished results are in out: the same command with --resume grades the rest.\n")
-    done = {
+    finished = {
         student: (tmp_path / "out" / student / "result.json").stat().st_mtime_ns
         for student in stored_results(tmp_path / "out")
     }
-    assert 1 <= len(done) < 3
+    assert 1 <= len(finished) < 3
     subprocess.run(command, cwd=tmp_path, check=True)
     assert len(stored_results(tmp_path / "out")) == 3
     assert all(json.loads(path.read_text())["status"] == "graded" for path in tmp_path.glob("out/*/result.json"))

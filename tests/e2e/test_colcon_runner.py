@@ -81,10 +81,12 @@ def builds(scratch: Path, packages: list[list[str]]) -> list[dict[str, Any]]:
     outcomes = []
     for profile in (None, "colcon"):
         status, output = build(workspace, profile)
-        notes = [workspace.scratch / name for name in ("seen", "ended")]
-        seen, ended = (note.read_text().splitlines() if note.exists() else [] for note in notes)
+        note_files = [workspace.scratch / name for name in ("seen", "ended")]
+        seen_lines, ended_lines = (file.read_text().splitlines() if file.exists() else [] for file in note_files)
         installed = digests(workspace.install)
-        outcomes.append({"status": status, "output": output, "seen": seen, "ended": ended, "installed": installed})
+        outcomes.append(
+            {"status": status, "output": output, "seen": seen_lines, "ended": ended_lines, "installed": installed}
+        )
     return outcomes
 
 

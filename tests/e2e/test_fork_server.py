@@ -93,8 +93,12 @@ def reports(scratch: Path, network: bool) -> list[Any]:
         with start(spec, code, profile, "one", "two") as process:
             while not process.output.endswith("\n") and not process.wait(0.05):
                 pass
-            ours, theirs = (Path(f"/proc/{pid}/ns") for pid in ("self", process.innermost()))
-            shared = [name.name for name in ours.iterdir() if name.readlink() == (theirs / name.name).readlink()]
+            worker_namespaces, program_namespaces = (Path(f"/proc/{pid}/ns") for pid in ("self", process.innermost()))
+            shared = [
+                name.name
+                for name in worker_namespaces.iterdir()
+                if name.readlink() == (program_namespaces / name.name).readlink()
+            ]
             outcomes.append([json.loads(process.output), sorted(shared)])
     return outcomes
 
@@ -107,9 +111,9 @@ def test_a_forked_program_sees_the_same_environment_as_a_started_one(network: bo
     assert not {"mnt", "pid", "user", "ipc", "uts"} & set(shared)
     for report in (started, forked):
         del report["rights"]["NSpid"]  # differs, because bubblewrap's helper processes have numbers, too
-        caught = report["rights"].pop("SigCgt")[0]
+        caught_signals = report["rights"].pop("SigCgt")[0]
         # The higher signals are those of the C library's threads.
-        assert int(caught, 16) & 0x7FFFFFFF == 1 << signal.SIGINT - 1
+        assert int(caught_signals, 16) & 0x7FFFFFFF == 1 << signal.SIGINT - 1
     assert forked == started
     assert set(forked["rights"]["CapEff"] + forked["rights"]["CapBnd"]) == {"0" * 16}
 
@@ -268,8 +272,8 @@ def random_numbers(scratch: Path) -> list[str]:
 
 
 def test_forked_programs_draw_different_random_numbers() -> None:
-    one, other = in_worker_sandbox(random_numbers)
-    assert not set(one.split()) & set(other.split())
+    first, second = in_worker_sandbox(random_numbers)
+    assert not set(first.split()) & set(second.split())
 
 
 SEARCH = """
@@ -298,9 +302,9 @@ def search_memory(scratch: Path) -> list[str]:
 
 
 def test_a_forked_program_has_nothing_of_an_earlier_one_in_its_memory() -> None:
-    own, other = (int(count) for count in in_worker_sandbox(search_memory))
-    assert own >= 1
-    assert other == 0
+    first, second = (int(count) for count in in_worker_sandbox(search_memory))
+    assert first >= 1
+    assert second == 0
 
 
 def fork_late(scratch: Path) -> str:
@@ -323,9 +327,9 @@ def test_time_that_the_fork_server_needs_does_not_count_for_the_program() -> Non
 
 def start_without_profile(scratch: Path) -> list[Any]:
     """Launch twice with a profile that cannot be loaded; return each exit status and output, and the log messages."""
-    logged: list[str] = []
+    messages: list[str] = []
     handler = logging.Handler()
-    handler.emit = lambda record: logged.append(record.getMessage())  # type: ignore[method-assign]
+    handler.emit = lambda record: messages.append(record.getMessage())  # type: ignore[method-assign]
     logging.getLogger("autograder").addHandler(handler)
     spec, exits = program_sandbox(scratch), []
     (spec.workdir / "program.py").write_text("print('here')")
@@ -333,11 +337,11 @@ def start_without_profile(scratch: Path) -> list[Any]:
         with launch([sys.executable, str(spec.workdir / "program.py")], spec, profile="no such profile") as process:
             assert process.wait(TIMEOUT)
             exits.append([process.returncode, process.output])
-    return [exits, logged]
+    return [exits, messages]
 
 
 def test_programs_are_started_if_they_cannot_be_forked() -> None:
-    exits, logged = in_worker_sandbox(start_without_profile)
+    exits, messages = in_worker_sandbox(start_without_profile)
     assert exits == [[0, "here\n"]] * 2
-    assert len(logged) == 1
-    assert logged[0].startswith("programs are started one by one, which takes longer: ")
+    assert len(messages) == 1
+    assert messages[0].startswith("programs are started one by one, which takes longer: ")

@@ -179,17 +179,17 @@ def launched(scratch: Path) -> list[Any]:
     workspace.scratch.mkdir()
     with LaunchHarness(workspace, "pkg", "both.launch.py") as harness:
         harness.wait_for(lambda: harness.output.count("forked") == 2 and "shell" in harness.output, TIMEOUT)
-        running = [[running_program.package, running_program.name] for running_program in harness.programs()]
+        program_names = [[member.package, member.name] for member in harness.programs()]
         killed = harness.kill("waits", signal.SIGKILL)
         harness.wait_for(lambda: harness.output.count("died") == 2, TIMEOUT)
         stop = harness.interrupt(TIMEOUT)
-        return [harness.output, running, killed, stop.status, list(stop.left)]
+        return [harness.output, program_names, killed, stop.status, list(stop.left)]
 
 
 def test_programs_of_a_launch_are_forked_and_listed_by_name() -> None:
-    output, running, killed, status, leftovers = in_worker_sandbox(launched)
+    output, program_names, killed, status, leftovers = in_worker_sandbox(launched)
     assert output.count("forked False ['--ros-args']") == 2, output
-    assert running == [["pkg", "waits"]] * 2
+    assert program_names == [["pkg", "waits"]] * 2
     assert killed == 2
     assert output.count("exit code -9") == 2
     assert (status, leftovers) == (0, [])

@@ -24,8 +24,8 @@ ASSIGNMENT = "01_package_structure"
 def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder `/autograder` of an image that Gradescope has built, with the packages of this environment."""
     home = tmp_path_factory.mktemp("autograder")
-    ran = CliRunner().invoke(group, ["gradescope", ASSIGNMENT, "--out", str(home / "upload.zip")])
-    assert ran.exit_code == 0, ran.output
+    completed = CliRunner().invoke(group, ["gradescope", ASSIGNMENT, "--out", str(home / "upload.zip")])
+    assert completed.exit_code == 0, completed.output
     subprocess.run(["unzip", "-q", str(home / "upload.zip"), "-d", str(home / "source")], check=True)
     (home / "source" / "course" / ".venv").symlink_to(sys.prefix)
     return home
@@ -65,12 +65,12 @@ def test_without_namespaces_a_submission_has_no_result_and_the_output_says_why(h
     (home / "results" / "results.json").unlink(missing_ok=True)
     path = f"{tmp_path}{os.pathsep}{os.environ['PATH']}"
     script = home / "source" / "run_autograder"
-    ran = subprocess.run(
+    completed = subprocess.run(
         [script], env={**os.environ, "GRADESCOPE_HOME": str(home), "PATH": path}, capture_output=True, text=True
     )
-    assert ran.returncode == 1
-    assert "cannot isolate submissions" in ran.stderr
-    assert "No permissions to create new namespace" in ran.stderr
+    assert completed.returncode == 1
+    assert "cannot isolate submissions" in completed.stderr
+    assert "No permissions to create new namespace" in completed.stderr
     assert not (home / "results" / "results.json").exists()
 
 
@@ -98,11 +98,11 @@ def test_the_zip_contains_everything_for_setup_and_no_build_products(home: Path)
 def test_invalid_arguments_of_the_gradescope_command_are_a_usage_error(
     home: Path, arguments: list[str], message: str
 ) -> None:
-    ran = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-m", "autograder", "gradescope", *arguments, "--out", str(home / "upload.zip")],
         capture_output=True,
         text=True,
         check=False,
     )
-    assert ran.returncode == 2
-    assert message in ran.stderr
+    assert completed.returncode == 2
+    assert message in completed.stderr

@@ -53,11 +53,11 @@ def test_forbidden_installed_files_fail_the_build_with_a_sentence_and_are_not_co
     (package / "CMakeLists.txt").write_text(CMAKE.format(name="filler", python=os.path.realpath("/usr/bin/python3")))
     (package / "fill.py").write_text(code)
     (tmp_path / "home").mkdir()
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         build(Workspace(tmp_path / "ws", activate(), tmp_path / "home"), ("filler",))
-    assert caught.value.diagnosis.kind is Kind.BUILD_FAILED
-    assert sentence in caught.value.diagnosis.sentence
-    assert "setup.py and CMakeLists.txt must install plain files" in caught.value.diagnosis.sentence
+    assert excinfo.value.diagnosis.kind is Kind.BUILD_FAILED
+    assert sentence in excinfo.value.diagnosis.sentence
+    assert "setup.py and CMakeLists.txt must install plain files" in excinfo.value.diagnosis.sentence
     assert not any((tmp_path / "cache").rglob("install"))
     copied = sum(path.lstat().st_blocks * 512 for path in tmp_path.rglob("*"))
     assert copied < 8 * MIB

@@ -57,8 +57,8 @@ def test_an_interface_bundle_that_does_not_build_is_a_student_error_and_is_not_c
     broken = make_workspace(tmp_path / "broken")
     cmake = broken.root / "src" / INTERFACES / "CMakeLists.txt"
     cmake.write_text(cmake.read_text().replace("find_package(rosidl_default_generators", "find_package(no_such_thing"))
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         build(broken, (NODES,))
-    assert caught.value.diagnosis.kind is Kind.BUILD_FAILED
-    assert "no_such_thing" in caught.value.diagnosis.detail
+    assert excinfo.value.diagnosis.kind is Kind.BUILD_FAILED
+    assert "no_such_thing" in excinfo.value.diagnosis.detail
     assert list(own_cache.glob("*/install")) == []

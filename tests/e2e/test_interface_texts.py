@@ -38,16 +38,16 @@ def test_a_string_stays_a_string_in_c_cpp_and_python(tmp_path: Path) -> None:
     texts["TRIGRAPH"] = trigraph_text(file)
     quotes = {name: "'" if '"' in text else '"' for name, text in texts.items()}
     lines = [f"string {name}={quotes[name]}{text}{quotes[name]}" for name, text in texts.items()]
-    evil, say, words = texts["TRIGRAPH"], '??/"; @(x) %s //', ['??/"a', "b'"]
-    lines += [f"wstring WIDE='{evil}'", f"string say '{say}'", "string[] words ['??/\"a', \"b'\"]"]
+    trigraph, default, default_words = texts["TRIGRAPH"], '??/"; @(x) %s //', ['??/"a', "b'"]
+    lines += [f"wstring WIDE='{trigraph}'", f"string say '{default}'", "string[] words ['??/\"a', \"b'\"]"]
     prefix = build("texts_msgs", {"msg/A.msg": "\n".join(lines) + "\n"}, cache=Cache(tmp_path / "cache"))
     environment = {**os.environ, "PYTHONPATH": str(site_packages(prefix))}
     command = [sys.executable, "-c", READ]
     process = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     assert json.loads(process.stdout) == [
-        {**texts, "WIDE": evil, "SAY__DEFAULT": say, "WORDS__DEFAULT": words},
-        say,
-        words,
+        {**texts, "WIDE": trigraph, "SAY__DEFAULT": default, "WORDS__DEFAULT": default_words},
+        default,
+        default_words,
     ]
     assert not file.exists()
     sources = [path.read_text() for path in prefix.rglob("*") if path.suffix in (".h", ".py")]

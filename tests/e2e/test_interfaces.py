@@ -101,10 +101,10 @@ def test_both_ends_have_the_same_type_hash_and_exchange_messages() -> None:
 def test_an_invalid_definition_is_a_student_error(tmp_path: Path, line: str, words: list[str]) -> None:
     workspace = _workspace(tmp_path)
     (workspace.root / "src" / PACKAGE / "msg" / "RobotStatus.msg").write_text(f"{line}\n")
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         load_interfaces(workspace, PACKAGE)
-    assert caught.value.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
-    assert all(word in caught.value.diagnosis.sentence for word in words), caught.value.diagnosis.sentence
+    assert excinfo.value.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
+    assert all(word in excinfo.value.diagnosis.sentence for word in words), excinfo.value.diagnosis.sentence
 
 
 def test_a_missing_package_is_named(tmp_path: Path) -> None:

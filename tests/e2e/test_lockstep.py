@@ -111,7 +111,7 @@ STEPS = 60
 STEP_NS = 100_000_000  # the period of the programs' timers
 
 
-def trace(scratch: Path, program: str, runs: int) -> list[Any]:
+def record_runs(scratch: Path, program: str, runs: int) -> list[Any]:
     """Run a program several times in lockstep; return its messages in each run."""
     from std_msgs.msg import String
 
@@ -139,14 +139,14 @@ def trace(scratch: Path, program: str, runs: int) -> list[Any]:
 @lru_cache
 def two_runs(name: str) -> Any:
     """Return the traces of two runs of a program."""
-    return in_worker_sandbox(trace, PROGRAMS[name], 2)
+    return in_worker_sandbox(record_runs, PROGRAMS[name], 2)
 
 
 @pytest.mark.promise("Robot time is stepped.")
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_program_publishes_the_same_in_every_run_and_receives_every_message(name: str) -> None:
-    first, again = two_runs(name)
-    assert again == first
+    first, second = two_runs(name)
+    assert second == first
     numbers = {text.split(" heard ")[1].split()[1] for _, text in first["said"] if " heard message" in text}
     assert numbers == {str(number) for number in range(STEPS)}
 
@@ -173,7 +173,7 @@ def trace_with_short_timeout(scratch: Path, program: str) -> list[Any]:
     from autograder.harness import stepped
 
     stepped.DELIVERY_SECONDS = 1.0
-    return trace(scratch, program, 1)
+    return record_runs(scratch, program, 1)
 
 
 FORGER = """
@@ -206,7 +206,7 @@ def diagnose(scratch: Path, program: str) -> list[str]:
     from autograder.exceptions import StudentError
 
     try:
-        trace(scratch, program, 1)
+        record_runs(scratch, program, 1)
     except StudentError as error:
         return [error.diagnosis.kind.value, error.diagnosis.sentence]
     return ["ok", ""]

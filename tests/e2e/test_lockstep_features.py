@@ -48,7 +48,7 @@ def received(harness: Any, topic: str = "/said") -> list[Any]:
     return [[round(stamped.seconds, 3), stamped.message.data] for stamped in harness.messages(topic)]
 
 
-def twice(run: Any) -> Any:
+def same_result_twice(run: Any) -> Any:
     """Call a function twice, require the same result, and return it."""
     first, second = run(), run()
     assert first == second, f"{first}\n{second}"
@@ -87,7 +87,7 @@ def call_server(scratch: Path) -> Any:
             reply = harness.call(GetParameters, "/server/get_parameters", GetParameters.Request(names=["speed"]))
             return answers, reply.values[0].double_value, round(harness.seconds, 3), received(harness)
 
-    return twice(run)
+    return same_result_twice(run)
 
 
 def test_services_and_parameter_services_answer_without_a_step_of_ros_time() -> None:
@@ -137,7 +137,7 @@ def send_goals(scratch: Path, program: str) -> Any:
             outcomes = [[goal.accepted, goal.status] for goal in (short, rejected, long)]
             return [is_finished, outcomes, list(short.result.sequence), feedback, len(long.feedback), long.cancelled]
 
-    return twice(run)
+    return same_result_twice(run)
 
 
 @pytest.mark.parametrize("name", programs.ACTION_SERVERS)
@@ -147,7 +147,7 @@ def test_an_action_gives_feedback_and_a_result_in_ros_time(name: str) -> None:
     )
     assert is_finished
     assert sequence == [0, 1, 2]
-    assert [last for _, last in feedback] == [0, 1, 2]
+    assert [value for _, value in feedback] == [0, 1, 2]
     assert outcomes[:2] == [[True, 4], [False, 0]]
     times = [seconds - feedback[0][0] for seconds, _ in feedback]
     if "in many threads" in name:
@@ -172,7 +172,7 @@ def run_clients(scratch: Path) -> Any:
     received_by_client = {}
     for name, text in programs.CLIENTS.items():
         write_workspace(scratch, node=text)
-        received_by_client[name] = twice(lambda name=name: run(name))
+        received_by_client[name] = same_result_twice(lambda name=name: run(name))
     return received_by_client
 
 
@@ -195,7 +195,7 @@ def run_late_server(scratch: Path) -> Any:
             harness.run(0.4)
             return received(harness)
 
-    return twice(run)
+    return same_result_twice(run)
 
 
 def test_a_service_that_is_created_later_is_available_from_the_next_step() -> None:
@@ -215,7 +215,7 @@ def run_client_with_timeout(scratch: Path) -> Any:
             harness.run(1.2)
             return received(harness)
 
-    return twice(run)
+    return same_result_twice(run)
 
 
 def test_a_timeout_is_counted_in_ros_time_exact_to_the_tick() -> None:
@@ -234,17 +234,17 @@ def run_alone(scratch: Path, text: str, seconds: float) -> Any:
             harness.run(seconds)
             return [received(harness), received(harness, "/also"), received(harness, "/map"), harness.notes]
 
-    return twice(run)
+    return same_result_twice(run)
 
 
 def test_timers_can_be_created_late_cancelled_and_reset() -> None:
-    messages, also, _, _ = in_worker_sandbox(run_alone, programs.TIMERS, 1.3)
+    messages, repeated, _, _ = in_worker_sandbox(run_alone, programs.TIMERS, 1.3)
     texts = [text.rsplit(" ", 1)[0].split()[1] for _, text in messages]
     assert [s for (s, _), text in zip(messages, texts, strict=True) if text == "tick"] == [0.4, 0.8, 1.2]
     assert [s for (s, _), text in zip(messages, texts, strict=True) if text == "shot"] == [0.3, 1.1]
-    late = [s for (s, _), text in zip(messages, texts, strict=True) if text == "late"]
-    assert late == [0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75]
-    assert also == [[0.8, "tick"], [1.2, "tick"]]
+    late_times = [s for (s, _), text in zip(messages, texts, strict=True) if text == "late"]
+    assert late_times == [0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75]
+    assert repeated == [[0.8, "tick"], [1.2, "tick"]]
 
 
 def test_the_wall_clock_and_sleep_follow_ros_time() -> None:
@@ -295,7 +295,7 @@ def run_together(scratch: Path, texts: dict[str, str], seconds: float) -> Any:
             harness.run(seconds)
             return [received(harness), received(harness, "/map"), received(harness, "/ping")]
 
-    return twice(run)
+    return same_result_twice(run)
 
 
 def test_a_transient_local_message_reaches_a_late_subscription() -> None:
@@ -339,9 +339,12 @@ def receive_forged_messages(scratch: Path) -> Any:
     def run() -> Any:
         with open_harness(workspace, "talker", subscribes={"/words": word}) as harness:
             harness.run(0.3)
-            return [[round(each.seconds, 3), each.message.text] for each in harness.messages("/words")]
+            return [
+                [round(received_message.seconds, 3), received_message.message.text]
+                for received_message in harness.messages("/words")
+            ]
 
-    return twice(run)
+    return same_result_twice(run)
 
 
 def test_bytes_that_are_not_a_message_of_their_type_are_dropped_and_counted() -> None:
@@ -446,15 +449,15 @@ def run_with_optional_program(scratch: Path, text: str) -> Any:
         with harness:
             harness.run(0.5)
             answer = harness.call(Trigger, "/ask", Trigger.Request()).message
-            running = sorted(harness.running)
+            running_names = sorted(harness.running)
             harness.optional = frozenset()
             try:
                 harness.run(0.5)
             except StudentError as error:
-                return [answer, running, error.diagnosis.sentence]
-            return [answer, running, ""]
+                return [answer, running_names, error.diagnosis.sentence]
+            return [answer, running_names, ""]
 
-    return twice(run)
+    return same_result_twice(run)
 
 
 CRASHING = """
@@ -488,10 +491,10 @@ def test_other_programs_continue_if_an_optional_program_ends(text: str) -> None:
 
 
 def test_the_crash_of_an_optional_program_is_named_once_the_program_is_required() -> None:
-    answer, running, sentence = in_worker_sandbox(
+    answer, running_names, sentence = in_worker_sandbox(
         run_with_optional_program, CRASHING.format(period=0.7, reading="pass")
     )
-    assert (answer, running) == ("1", ["map", "optional", "server"])
+    assert (answer, running_names) == ("1", ["map", "optional", "server"])
     assert sentence.startswith("optional: ")
     assert "out of range" in sentence
 
@@ -506,20 +509,20 @@ def run_with_optional_program_in_real_time(scratch: Path, text: str) -> Any:
     harness.optional = frozenset({"optional"})
     with harness:
         harness.until(lambda: "optional" not in harness.running, 10.0)
-        answer, running = harness.call(Trigger, "/ask", Trigger.Request()).message, sorted(harness.running)
+        answer, running_names = harness.call(Trigger, "/ask", Trigger.Request()).message, sorted(harness.running)
     try:
         with open_harness(workspace, "server", "optional", "map", real=True) as harness:
             harness.run(10.0)
     except StudentError as error:
-        return [answer, running, error.diagnosis.sentence]
-    return [answer, running, ""]
+        return [answer, running_names, error.diagnosis.sentence]
+    return [answer, running_names, ""]
 
 
 @pytest.mark.parametrize(
     "text", ["raise ValueError('out of range')", CRASHING.format(period=0.7, reading="pass")], ids=["start", "timer"]
 )
 def test_in_real_time_other_programs_continue_and_a_required_program_that_fails_is_named(text: str) -> None:
-    answer, running, sentence = in_worker_sandbox(run_with_optional_program_in_real_time, text)
-    assert (answer, running) == ("1", ["map", "server"])
+    answer, running_names, sentence = in_worker_sandbox(run_with_optional_program_in_real_time, text)
+    assert (answer, running_names) == ("1", ["map", "server"])
     assert sentence.startswith("optional: ")
     assert "out of range" in sentence

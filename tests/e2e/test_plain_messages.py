@@ -42,8 +42,8 @@ def _value(kind: Any, draw: random.Random, new: Callable[[Any], Any]) -> Any:
     from rosidl_parser import definition as rosidl
 
     if isinstance(kind, rosidl.AbstractNestedType):
-        most = kind.size if isinstance(kind, rosidl.Array) else 3
-        count = most if isinstance(kind, rosidl.Array) else draw.randint(0, most)
+        max_length = kind.size if isinstance(kind, rosidl.Array) else 3
+        count = max_length if isinstance(kind, rosidl.Array) else draw.randint(0, max_length)
         return [_value(kind.value_type, draw, new) for _ in range(count)]
     if isinstance(kind, rosidl.NamespacedType):
         return new(kind)
@@ -74,7 +74,7 @@ def _fill(plain: Any, draw: random.Random) -> Any:
 def _real(plain: Any) -> Any:
     """Return a generated message with the values of a plain one."""
     if isinstance(plain, list):
-        return [_real(each) for each in plain]
+        return [_real(item) for item in plain]
     if not hasattr(plain, "_known"):
         return plain
     package, family, _ = plain._type.namespaced_name()

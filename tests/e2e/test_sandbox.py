@@ -216,9 +216,9 @@ def start_with_missing_mounts(scratch: Path) -> list[str]:
     errors = []
     for name in ("gone", "beside"):
         spec = Sandbox(scratch, mounts=(Mount(scratch, writable=True), Mount(scratch / name)))
-        with launch([sys.executable, "-c", "pass"], spec) as process, pytest.raises(GraderError) as raised:
+        with launch([sys.executable, "-c", "pass"], spec) as process, pytest.raises(GraderError) as excinfo:
             process.wait(10)
-        errors.append(str(raised.value))
+        errors.append(str(excinfo.value))
     return errors
 
 

@@ -118,10 +118,10 @@ def test_the_linters_and_the_tests_of_a_package_pass(reference: Terminal, test_o
     if package in MESSAGES:
         assert {report.name for report in reports} >= {f"{linter}.xunit.xml" for linter in LINTERS}, test_output
     else:
-        ran = {case.get("name", "").partition("[")[0] for case in cases}
+        test_names = {case.get("name", "").partition("[")[0] for case in cases}
         linters = {f"test_{linter}" for linter in LINTERS}
-        assert linters <= ran, test_output
-        assert ran - linters - {"test_copyright", "test_each_source_file_starts_with_its_licence"}, test_output
+        assert linters <= test_names, test_output
+        assert test_names - linters - {"test_copyright", "test_each_source_file_starts_with_its_licence"}, test_output
 
 
 @pytest.mark.parametrize("package", MESSAGES)
@@ -159,9 +159,9 @@ def test_each_installed_executable_starts_and_ends_cleanly(
         assert FIRST_LINES[name] in first_line
         answer = terminal.run(sys.executable, "-c", ASK, name)
         assert answer.returncode == 0, answer.stdout
-        rest = stop(process, number)
-    assert process.returncode == 0, rest
-    assert "Traceback" not in rest
+        output = stop(process, number)
+    assert process.returncode == 0, output
+    assert "Traceback" not in output
 
 
 def test_a_node_uses_the_values_of_its_parameter_file(terminal: Terminal, tmp_path: Path) -> None:

@@ -123,12 +123,12 @@ def test_a_compromised_worker_sees_only_its_submission_and_its_chapter(
     monkeypatch.setenv("A_KEY", "secret")
     others = [folder for folder in course_paths.check_folders() if folder.name != f"ch{ASSIGNMENT}"]
     hidden = [folder / part for folder in others for part in ("hidden", "mutants.yaml", "variants", "attacks.py")]
-    own = [course_paths.CHECKS / f"ch{ASSIGNMENT}" / name for name in ("mutants.yaml", "variants", "attacks.py")]
+    own_hidden = [course_paths.CHECKS / f"ch{ASSIGNMENT}" / name for name in ("mutants.yaml", "variants", "attacks.py")]
     chapters = [folder for folder in course_paths.CHAPTERS.iterdir() if folder.name != ASSIGNMENT]
     homes = ["/root", "/home", "/var", "/run", "/etc/passwd", "/etc/shadow", Path.home() / ".cache"]
     secrets = [
         *hidden,
-        *own,
+        *own_hidden,
         *chapters,
         *homes,
         course_paths.SOLUTIONS,
@@ -206,12 +206,12 @@ def test_shared_builds_come_from_an_untouched_worker_and_match_their_sources(
     grade(classroom, "alice")
     log = (classroom / "results" / "alice" / "grader.log").read_text()
     assert "BUILT ['built/install/forged_msgs/share/package.xml']" in log
-    mine = classroom / "mine" / "forged_msgs"
-    mine.mkdir(parents=True)
+    package = classroom / "mine" / "forged_msgs"
+    package.mkdir(parents=True)
     for name, text in files.items():
-        (mine / name).write_text(text)
+        (package / name).write_text(text)
     cached = {path.name for path in (classroom / "cache" / "autograder" / keeper.CACHE).iterdir() if path.is_dir()}
-    assert cached == {keeper.key(read_tree(mine.parent, SOURCES))}
+    assert cached == {keeper.key(read_tree(package.parent, SOURCES))}
 
 
 @pytest.mark.skipif(

@@ -99,9 +99,9 @@ def _zombies(pid: int) -> list[int]:
     zombies = []
     for child in procfs.children(pid):
         with contextlib.suppress(OSError):
-            ended = Path(f"/proc/{child}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+            is_zombie = Path(f"/proc/{child}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
             by_server = "autograder.author.verification" in Path(f"/proc/{pid}/cmdline").read_text()
-            zombies += [child] if ended and by_server else _zombies(child)
+            zombies += [child] if is_zombie and by_server else _zombies(child)
     return zombies
 
 

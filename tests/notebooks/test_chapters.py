@@ -66,8 +66,8 @@ def test_no_text_mentions_the_printed_chapter_or_a_textbook_that_00_does_not_int
 
 @each_chapter
 def test_a_given_package_installs_only_executables_that_exist_in_the_chapter(chapter: Chapter) -> None:
-    written = {cell.source.split()[1] for cell in chapter.read().cells if cell.source.startswith("%%writefile")}
-    modules = {str(path.relative_to(chapter.folder)) for path in chapter.folder.glob("ws/src/**/*.py")} | written
+    written_files = {cell.source.split()[1] for cell in chapter.read().cells if cell.source.startswith("%%writefile")}
+    modules = {str(path.relative_to(chapter.folder)) for path in chapter.folder.glob("ws/src/**/*.py")} | written_files
     for setup in chapter.folder.glob("ws/src/*/setup.py"):
         scripts = re.findall(r"'\w+ = ([\w.]+):main'", setup.read_text())
         assert scripts
@@ -140,13 +140,13 @@ def undeclared_files(chapter: Chapter, packages: Path) -> set[str]:
     assert exercises is not None
     graded = [name for name in suites.graded_assignments() if name == chapter.assignment]
     sources = suites.hidden(chapter.assignment).sources if graded else ()
-    written = {file[0] for cell in chapter.read().cells if (file := written_file(cell.source)) is not None}
+    written_files = {file[0] for cell in chapter.read().cells if (file := written_file(cell.source)) is not None}
     undeclared = set()
     for path in (path for source in sources for path in (packages / source).rglob("*") if path.is_file()):
         name = PurePosixPath(path.relative_to(packages))
-        given = exercises.given.get(name)
-        if name not in exercises.makes and SOURCE / name not in written:
-            undeclared |= {str(name)} if given is None or given.data != path.read_bytes() else set()
+        given_files = exercises.given.get(name)
+        if name not in exercises.makes and SOURCE / name not in written_files:
+            undeclared |= {str(name)} if given_files is None or given_files.data != path.read_bytes() else set()
     return undeclared
 
 
@@ -158,11 +158,11 @@ def drawing(figure: Path) -> str:
 @pytest.mark.parametrize("script", sorted(ROOT.glob("assets/figures/*/make.py")), ids=lambda path: path.parent.name)
 def test_a_chapters_figures_are_up_to_date_with_their_script(script: Path, tmp_path: Path) -> None:
     runpy.run_path(str(script))["main"](tmp_path)
-    committed = ROOT / "chapters" / script.parent.name / "figures"
-    names = {path.name for path in committed.iterdir()}
+    figures = ROOT / "chapters" / script.parent.name / "figures"
+    names = {path.name for path in figures.iterdir()}
     assert names == {path.name for path in tmp_path.iterdir()}
     for name in names:
-        assert drawing(committed / name) == drawing(tmp_path / name), f"{name} is stale: run {script.relative_to(ROOT)}"
+        assert drawing(figures / name) == drawing(tmp_path / name), f"{name} is stale: run {script.relative_to(ROOT)}"
 
 
 @each_chapter

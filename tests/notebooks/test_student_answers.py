@@ -138,14 +138,16 @@ def test_a_typical_mistake_fails_with_a_hint_and_its_correction_passes(chapter: 
     cells = [cell for exercise in student.exercises for cell in exercise]
     with_mistake = [filled_cell(cell, {**correct, **mistake}.get(cell.id, cell.source), 1) for cell in cells]
     corrected = [filled_cell(cell, correct[cell.id], 2) for cell in cells if cell.id in mistake]
-    first, second = (filled_cell(student.check, student.check.source, round) for round in (1, 2))
-    ran = {cell.id: cell for cell in student.run([*student.first, *with_mistake, first, *corrected, second])}
-    count, total = passed(ran[first.id])
+    first_check, second_check = (filled_cell(student.check, student.check.source, round) for round in (1, 2))
+    executed = {
+        cell.id: cell for cell in student.run([*student.first, *with_mistake, first_check, *corrected, second_check])
+    }
+    count, total = passed(executed[first_check.id])
     assert count < total
-    reasons = FAILED.findall(text_of([ran[first.id]]))
+    reasons = FAILED.findall(text_of([executed[first_check.id]]))
     assert reasons
     assert all("    hint 1: " in reason and not reason.startswith("    hint") for reason in reasons), reasons
-    assert passed(ran[second.id]) == (total, total), text_of([ran[second.id]])
+    assert passed(executed[second_check.id]) == (total, total), text_of([executed[second_check.id]])
 
 
 @pytest.mark.parametrize("chapter", each_chapter())

@@ -161,9 +161,9 @@ def test_nodes_parameters_messages_and_programs_are_seen_and_ctrl_c_ends_them(wo
 
 def test_a_wrong_node_or_parameter_is_reported_with_the_actual_one(workspace: Workspace) -> None:
     with LaunchHarness(workspace, "fleet", "single.launch.py", {"name": "lamp"}) as harness:
-        with pytest.raises(CheckFailed) as caught:
+        with pytest.raises(CheckFailed) as excinfo:
             launch_probe.expect_nodes(harness, ["/robot1/lamp"])
-        assert caught.value.message == "The graph holds /lamp: /lamp runs instead of /robot1/lamp."
+        assert excinfo.value.message == "The graph holds /lamp: /lamp runs instead of /robot1/lamp."
         with pytest.raises(CheckFailed, match=r"/lamp has rate = 4\.0, instead of 5\.0"):
             launch_probe.expect_parameters(harness, "/lamp", {"rate": 5.0})
         with pytest.raises(CheckFailed, match="/lamp has label = '42', instead of 42"):
@@ -287,6 +287,6 @@ def test_the_arguments_of_a_launch_file_are_shown(workspace: Workspace) -> None:
 
 def test_a_launch_that_prints_without_end_raises_a_student_error(workspace: Workspace) -> None:
     installed = launch_probe.with_files(workspace, "floods", "fleet", {"launch/floods.launch.py": FLOODS})
-    with LaunchHarness(installed, "fleet", "floods.launch.py") as harness, pytest.raises(StudentError) as caught:
+    with LaunchHarness(installed, "fleet", "floods.launch.py") as harness, pytest.raises(StudentError) as excinfo:
         harness.wait_for(lambda: False, PATIENCE)
-    assert caught.value.diagnosis.kind is Kind.FLOODED_OUTPUT
+    assert excinfo.value.diagnosis.kind is Kind.FLOODED_OUTPUT

@@ -94,26 +94,26 @@ def test_a_launch_can_run_within_a_loop_that_runs_already() -> None:
 
 
 def test_a_launch_outside_of_the_main_thread_is_refused() -> None:
-    caught: list[Exception] = []
+    errors: list[Exception] = []
 
     def work() -> None:
         try:
             launch.LaunchService().run()
         except RuntimeError as error:
-            caught.append(error)
+            errors.append(error)
 
     thread = threading.Thread(target=work)
     thread.start()
     thread.join()
-    assert [str(error) for error in caught] == ["LaunchService can only be run in the main thread."]
+    assert [str(error) for error in errors] == ["LaunchService can only be run in the main thread."]
 
 
 def test_a_service_runs_once_at_a_time() -> None:
-    async def again(context: launch.LaunchContext) -> None:
+    async def run_again(context: launch.LaunchContext) -> None:
         with pytest.raises(RuntimeError, match="called from multiple threads concurrently"):
             await service.run_async()
 
-    service = service_with(OpaqueCoroutine(coroutine=again))
+    service = service_with(OpaqueCoroutine(coroutine=run_again))
     assert service.run() == 0
 
 
@@ -165,19 +165,19 @@ def test_an_error_in_a_coroutine_ends_the_launch_with_it(capsys: pytest.CaptureF
 
 
 def test_the_end_of_the_launch_cancels_coroutines_and_timers() -> None:
-    done: list[str] = []
+    messages: list[str] = []
 
     async def wait_long(context: launch.LaunchContext) -> None:
         try:
             await asyncio.sleep(3600)
         except asyncio.CancelledError:
-            done.append("cancelled")
+            messages.append("cancelled")
             raise
 
-    never = TimerAction(period=3600.0, actions=[OpaqueFunction(function=lambda context: done.append("never"))])
-    soon = TimerAction(period=0.05, actions=[Shutdown()])
-    assert service_with(never, OpaqueCoroutine(coroutine=wait_long), soon).run() == 0
-    assert done == ["cancelled"]
+    timer = TimerAction(period=3600.0, actions=[OpaqueFunction(function=lambda context: messages.append("never"))])
+    stop = TimerAction(period=0.05, actions=[Shutdown()])
+    assert service_with(timer, OpaqueCoroutine(coroutine=wait_long), stop).run() == 0
+    assert messages == ["cancelled"]
 
 
 def test_a_launch_restores_the_signal_handlers() -> None:
@@ -196,7 +196,7 @@ def test_a_service_without_shutdown_when_idle_waits_for_its_shutdown() -> None:
 
 
 def test_a_signal_goes_to_the_processes_that_match() -> None:
-    ended: list[int] = []
+    exit_codes: list[int] = []
     actions = [sleeper(), sleeper(), sleeper(name="third")]
 
     def send() -> Any:
@@ -208,12 +208,12 @@ def test_a_signal_goes_to_the_processes_that_match() -> None:
         ]
 
     exits = [
-        RegisterEventHandler(OnProcessExit(target_action=action, on_exit=lambda e, c: ended.append(e.returncode)))
+        RegisterEventHandler(OnProcessExit(target_action=action, on_exit=lambda e, c: exit_codes.append(e.returncode)))
         for action in actions
     ]
     service = service_with(*exits, *actions, when_started(actions[2], send))
     assert service.run() == 0
-    assert sorted(ended) == [-15, -12, -10]
+    assert sorted(exit_codes) == [-15, -12, -10]
     assert matches_executable("sleep")(actions[0])
     assert not matches_executable("sheep")(actions[0])
 
@@ -226,21 +226,21 @@ def test_an_action_is_executed_once(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_no_process_is_started_once_the_launch_ends() -> None:
-    late = ExecuteProcess(cmd=["true"])
-    handler = RegisterEventHandler(OnShutdown(on_shutdown=lambda event, context: late))
+    process = ExecuteProcess(cmd=["true"])
+    handler = RegisterEventHandler(OnShutdown(on_shutdown=lambda event, context: process))
     assert service_with(handler, Shutdown()).run() == 0
-    assert late.return_code is None
+    assert process.return_code is None
 
 
 def test_a_timer_that_begins_during_shutdown_does_not_delay_it() -> None:
-    late = TimerAction(period=3600.0, actions=[LogInfo(msg="never")])
-    assert service_with(RegisterEventHandler(OnShutdown(on_shutdown=[late])), Shutdown()).run() == 0
+    timer = TimerAction(period=3600.0, actions=[LogInfo(msg="never")])
+    assert service_with(RegisterEventHandler(OnShutdown(on_shutdown=[timer])), Shutdown()).run() == 0
 
 
 def test_a_handler_can_be_removed_or_run_only_once(capsys: pytest.CaptureFixture[str]) -> None:
     removed = OnProcessStart(on_start=[LogInfo(msg="removed")])
-    once = OnProcessStart(on_start=lambda event, context: LogInfo(msg="once"), handle_once=True)
-    actions = [RegisterEventHandler(removed), RegisterEventHandler(once), UnregisterEventHandler(removed)]
+    handler = OnProcessStart(on_start=lambda event, context: LogInfo(msg="once"), handle_once=True)
+    actions = [RegisterEventHandler(removed), RegisterEventHandler(handler), UnregisterEventHandler(removed)]
     service_with(*actions, ExecuteProcess(cmd=["true"]), ExecuteProcess(cmd=["true"])).run()
     out = capsys.readouterr().out
     assert (out.count("[launch.user]: once"), out.count("[launch.user]: removed")) == (1, 0)

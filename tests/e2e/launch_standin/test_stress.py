@@ -52,12 +52,12 @@ def test_many_launches_of_light_processes_leave_nothing(
     for number in range(starts):
         service = launch.LaunchService()
         light = ExecuteProcess(cmd=[str(fleet / "lib/fleet/light")], output="screen")
-        other = ExecuteProcess(cmd=["sleep", "3600"])
+        sleeper = ExecuteProcess(cmd=["sleep", "3600"])
         # A shell whose background child ignores SIGINT. Stopped before it waits, dash misses the signal, too.
         shell = ExecuteProcess(cmd=["sleep 3600 & echo up; wait"], shell=True)
         moments = (
-            (other, OnProcessStart(target_action=light, on_start=_interrupt)),
-            (other, OnProcessIO(target_action=light, on_stdout=_interrupt)),
+            (sleeper, OnProcessStart(target_action=light, on_start=_interrupt)),
+            (sleeper, OnProcessIO(target_action=light, on_stdout=_interrupt)),
             (shell, OnProcessIO(target_action=shell, on_stdout=_interrupt)),
         )
         second, handler = moments[number % len(moments)]
@@ -71,10 +71,10 @@ def test_many_launches_of_light_processes_leave_nothing(
 
 def test_launches_of_nodes_that_are_stopped_early_or_late_leave_nothing(start: Callable[..., Any]) -> None:
     for number in range(NODE_STARTS):
-        running = start("two_robots")
-        early = number % 2 == 1
-        running.wait_for("process started with pid" if early else r"(?s)(ready: /robot.*){3}")
-        assert running.interrupt() == 0
-        assert running.members() == {}
+        launched = start("two_robots")
+        stops_early = number % 2 == 1
+        launched.wait_for("process started with pid" if stops_early else r"(?s)(ready: /robot.*){3}")
+        assert launched.interrupt() == 0
+        assert launched.members() == {}
         # Python may miss an interrupt while it starts, and is then ended by SIGTERM.
-        assert early or "escalating" not in running.text
+        assert stops_early or "escalating" not in launched.text

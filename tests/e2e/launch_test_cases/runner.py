@@ -133,7 +133,9 @@ _Readable.add_representer(
 
 def main() -> None:
     """Print the records."""
-    version = {each.name.replace("-", "_"): each.version for each in distributions()}.get("launch_testing", "stand-in")
+    version = {distribution.name.replace("-", "_"): distribution.version for distribution in distributions()}.get(
+        "launch_testing", "stand-in"
+    )
     print(f"# Recorded with launch_testing {version}, Python {sys.version_info[0]}.{sys.version_info[1]}.")
     yaml.dump(list(records()), sys.stdout, Dumper=_Readable, sort_keys=False, width=160, allow_unicode=True)
 

@@ -122,10 +122,10 @@ class Running:
             record["output"] = "".join(sorted(record["output"].splitlines(keepends=True)))
         if error := self._text("err"):
             record["error"] = error
-        here = self.folder / "here"
-        files = {str(path.relative_to(here)) for path in here.rglob("*") if path.is_file()}
-        if made := files - set(self.call.get("files", ())):
-            record["made"] = sorted(made)
+        working_folder = self.folder / "here"
+        files = {str(path.relative_to(working_folder)) for path in working_folder.rglob("*") if path.is_file()}
+        if created := files - set(self.call.get("files", ())):
+            record["made"] = sorted(created)
         return record
 
     def _text(self, stream: str) -> str:
@@ -180,16 +180,16 @@ def _spin_time(call: Mapping[str, Any]) -> list[str]:
 def records(groups: Mapping[str, list[Mapping[str, Any]]], scratch: Path) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     """Run the commands of each group; yield the group's name and records."""
     for group, calls in groups.items():
-        waiting, running = list(enumerate(calls)), dict[int, Running]()
+        waiting, running_by_number = list(enumerate(calls)), dict[int, Running]()
         finished: dict[int, dict[str, Any]] = {}
-        while waiting or running:
-            while waiting and len(running) < (1 if group in IN_ORDER else MAX_PARALLEL):
+        while waiting or running_by_number:
+            while waiting and len(running_by_number) < (1 if group in IN_ORDER else MAX_PARALLEL):
                 number, call = waiting.pop(0)
-                running[number] = Running.start(call, scratch / group / str(number))
-            for number, command in list(running.items()):
+                running_by_number[number] = Running.start(call, scratch / group / str(number))
+            for number, command in list(running_by_number.items()):
                 if (record := command.poll()) is not None:
                     finished[number] = record
-                    del running[number]
+                    del running_by_number[number]
             time.sleep(0.01)
         yield group, [finished[number] for number in range(len(calls))]
 
@@ -222,7 +222,7 @@ def run(out: TextIO, *names: str) -> None:
                     recorded = dict(records(groups, Path(scratch)))
             finally:
                 nodes.terminate()
-    version = {each.name: each.version for each in distributions()}.get("ros2cli", "stand-in")
+    version = {distribution.name: distribution.version for distribution in distributions()}.get("ros2cli", "stand-in")
     print(f"# Recorded with ros2cli {version}, Python {sys.version_info[0]}.{sys.version_info[1]}.", file=out)
     yaml.dump(recorded, out, Dumper=_Readable, sort_keys=False, width=160, allow_unicode=True)
 

@@ -31,8 +31,8 @@ class Talker(Node):
         self.count = 0
         self.chatter = self.create_publisher(String, "chatter", 10)
         self.scan = self.create_publisher(LaserScan, "scan", 10)
-        late = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self.create_publisher(String, "robot_description", late).publish(String(data="a robot"))
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.create_publisher(String, "robot_description", latched).publish(String(data="a robot"))
         self.create_publisher(String, "_hidden", 10)
         self.create_timer(0.05, self.talk)
 
@@ -54,7 +54,7 @@ class Helper(Node):
         self.declare_parameter("filter.window", 5)
         self.declare_parameter("frozen", "yes", ParameterDescriptor(read_only=True))
         self.declare_parameter("anything", "old", ParameterDescriptor(dynamic_typing=True))
-        self.add_on_set_parameters_callback(self.judge)
+        self.add_on_set_parameters_callback(self.validate)
         self.create_subscription(Twist, "cmd_vel", lambda _: None, 10)
         self.create_service(SetBool, "switch", self.switch)
         self.server = ActionServer(
@@ -67,9 +67,9 @@ class Helper(Node):
             callback_group=ReentrantCallbackGroup(),
         )
 
-    def judge(self, parameters: list[Parameter]) -> SetParametersResult:
-        bad = [p.name for p in parameters if p.name == "filter.window" and p.value % 2 == 0]
-        return SetParametersResult(successful=not bad, reason="the window must be odd" if bad else "")
+    def validate(self, parameters: list[Parameter]) -> SetParametersResult:
+        invalid = [p.name for p in parameters if p.name == "filter.window" and p.value % 2 == 0]
+        return SetParametersResult(successful=not invalid, reason="the window must be odd" if invalid else "")
 
     def switch(self, request: Any, response: Any) -> Any:
         response.success, response.message = True, f"switched {'on' if request.data else 'off'}"

@@ -62,13 +62,13 @@ def test_without_a_sourced_ros_the_wheels_are_used() -> None:
 
 
 def test_this_projects_own_environment_does_not_count_as_sourced() -> None:
-    own = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": str(VENV), "PYTHONPATH": str(VENV / "lib/site-packages")}
-    assert bootstrap.sourced_ros(own, VENV, PY312) is None
+    environment = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": str(VENV), "PYTHONPATH": str(VENV / "lib/site-packages")}
+    assert bootstrap.sourced_ros(environment, VENV, PY312) is None
 
 
 def test_a_students_workspace_over_the_wheels_does_not_count_as_sourced() -> None:
-    overlaid = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": f"/ws/install/robot:{VENV}", "PYTHONPATH": "/ws/install"}
-    assert bootstrap.sourced_ros(overlaid, VENV, PY312) is None
+    environment = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": f"/ws/install/robot:{VENV}", "PYTHONPATH": "/ws/install"}
+    assert bootstrap.sourced_ros(environment, VENV, PY312) is None
 
 
 @pytest.mark.promise("If a ROS 2 Jazzy installation is sourced, the course uses it.")
@@ -103,15 +103,15 @@ def test_a_jazzy_for_another_python_is_refused_with_the_python_that_fits(ros: Pa
 
 
 def test_only_ros_itself_is_removed_from_the_lock() -> None:
-    kept = bootstrap.without_ros(LOCK)
-    assert [line.split("==")[0] for line in kept.splitlines() if "==" in line] == ["numpy", "rosbags"]
-    assert "--hash=sha256:00" in kept
-    assert "--hash=sha256:01" not in kept
-    assert "--hash=sha256:04" in kept
+    remaining = bootstrap.without_ros(LOCK)
+    assert [line.split("==")[0] for line in remaining.splitlines() if "==" in line] == ["numpy", "rosbags"]
+    assert "--hash=sha256:00" in remaining
+    assert "--hash=sha256:01" not in remaining
+    assert "--hash=sha256:04" in remaining
 
 
 def test_children_see_the_proxy_but_neither_foreign_modules_nor_the_wheels_libraries() -> None:
-    given = {
+    environment = {
         "HTTPS_PROXY": "proxy:3128",
         "PIP_CERT": "/cert.pem",
         "PYTHONPATH": "/opt/ros/jazzy/lib",
@@ -119,7 +119,7 @@ def test_children_see_the_proxy_but_neither_foreign_modules_nor_the_wheels_libra
         "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1",
         "LD_LIBRARY_PATH": "/other/.venv/lib",
     }
-    assert bootstrap.child_environment(given) == {
+    assert bootstrap.child_environment(environment) == {
         "HTTPS_PROXY": "proxy:3128",
         "PIP_CERT": "/cert.pem",
         "PIP_DISABLE_PIP_VERSION_CHECK": "1",

@@ -73,8 +73,8 @@ def test_an_extra_with_a_lock_of_its_own_has_the_packages_of_the_lock(name: str)
 def test_the_lock_of_the_hubs_proxy_has_a_hash_for_each_package_and_no_address() -> None:
     folder = ROOT / "assets" / "hub"
     lock, manifest = (json.loads((folder / name).read_text()) for name in ("package-lock.json", "package.json"))
-    own = lock["packages"].pop("")
-    assert own["dependencies"] == manifest["dependencies"]
+    root_package = lock["packages"].pop("")
+    assert root_package["dependencies"] == manifest["dependencies"]
     assert len(lock["packages"]) > 10
     assert [name for name, package in lock["packages"].items() if "integrity" not in package] == []
     assert [name for name, package in lock["packages"].items() if "resolved" in package] == []
@@ -95,6 +95,6 @@ def test_every_dependency_of_the_project_is_pinned() -> None:
 
 
 def test_without_ros_the_lock_keeps_what_the_course_itself_needs() -> None:
-    kept = set(re.findall(r"(?m)^([a-z0-9-]+)==", bootstrap.without_ros((ROOT / BASE).read_text())))
-    assert {"numpy", "jupyterlab", "nbgrader", "colcon-core", "empy", "lark", "catkin-pkg"} <= kept
-    assert kept == {name for name in names(BASE) if not name.startswith("ros-")} != names(BASE)
+    remaining = set(re.findall(r"(?m)^([a-z0-9-]+)==", bootstrap.without_ros((ROOT / BASE).read_text())))
+    assert {"numpy", "jupyterlab", "nbgrader", "colcon-core", "empy", "lark", "catkin-pkg"} <= remaining
+    assert remaining == {name for name in names(BASE) if not name.startswith("ros-")} != names(BASE)

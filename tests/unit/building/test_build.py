@@ -33,9 +33,9 @@ def _write_package(source: Path, *, without: str = "", **files: str) -> Path:
 
 
 def _fault(source: Path) -> tuple[Kind, str]:
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         build.require_packages(source, (NAME,))
-    return caught.value.diagnosis.kind, caught.value.diagnosis.sentence
+    return excinfo.value.diagnosis.kind, excinfo.value.diagnosis.sentence
 
 
 def test_a_whole_package_is_found_by_the_name_in_its_manifest(tmp_path: Path) -> None:
@@ -127,9 +127,9 @@ def test_links_inside_the_install_space_are_allowed(tmp_path: Path) -> None:
 def test_links_out_of_the_install_space_are_refused(tmp_path: Path, link: str, target: str) -> None:
     (tmp_path / link).parent.mkdir(parents=True, exist_ok=True)
     (tmp_path / link).symlink_to((tmp_path / link).name if target == "loop" else target)
-    with pytest.raises(StudentError, match="which leads out of the install space") as caught:
+    with pytest.raises(StudentError, match="which leads out of the install space") as excinfo:
         colcon.require_contained(tmp_path / "install")
-    assert caught.value.diagnosis.kind is Kind.BUILD_FAILED
+    assert excinfo.value.diagnosis.kind is Kind.BUILD_FAILED
 
 
 def test_packages_are_found_where_colcon_finds_them(tmp_path: Path) -> None:

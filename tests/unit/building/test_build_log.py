@@ -74,7 +74,7 @@ Call Stack (most recent call first):
 
 
 @pytest.mark.parametrize(
-    ("log", "shown", "error"),
+    ("log", "expected", "error"),
     [
         (
             SETUP + SYNTAX + COLCON,
@@ -111,8 +111,8 @@ Call Stack (most recent call first):
         ("Traceback (most recent call last):", "", ""),
     ],
 )
-def test_only_files_and_lines_of_the_student_are_shown(log: str, shown: str, error: str) -> None:
-    assert readable(log) == shown
+def test_only_files_and_lines_of_the_student_are_shown(log: str, expected: str, error: str) -> None:
+    assert readable(log) == expected
     assert first_error(log) == error
 
 

@@ -25,9 +25,9 @@ def test_a_build_that_a_limit_ended_is_not_tried_again_for_the_same_request(
     ours, theirs = Pipe()
     with ours, theirs:
         keeper.send_message(theirs, keeper.refused(error(Diagnosis(Kind.BUILD_FAILED, "It was stopped."))))
-        with pytest.raises(StudentError, match="It was stopped") as raised:
+        with pytest.raises(StudentError, match="It was stopped") as excinfo:
             keeper.ask(ours, {}, tmp_path / "made")
-    assert type(raised.value) is error
+    assert type(excinfo.value) is error
 
 
 def test_submissions_that_wait_for_the_same_build_share_its_failure(
@@ -35,15 +35,15 @@ def test_submissions_that_wait_for_the_same_build_share_its_failure(
 ) -> None:
     """Three requests bring the same sources at once, and a fourth later. The build lasts until all three have asked."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    asked, built = threading.Semaphore(0), list[str]()
+    requests, built = threading.Semaphore(0), list[str]()
 
     def now() -> float:
-        asked.release()
+        requests.release()
         return time.time()
 
     def build(sources: object, isolation: object, entry: Path) -> None:
         for _ in range(3 if not built else 0):
-            assert asked.acquire(timeout=30)
+            assert requests.acquire(timeout=30)
         built.append(entry.name)
         raise StoppedBuildError(Diagnosis(Kind.BUILD_FAILED, "It was stopped."))
 
@@ -54,9 +54,9 @@ def test_submissions_that_wait_for_the_same_build_share_its_failure(
         ours, theirs = Pipe()
         with ours, theirs:
             keeper._answer(ours, {}, Isolation.BUBBLEWRAP)
-            with pytest.raises(StoppedBuildError, match="It was stopped") as raised:
+            with pytest.raises(StoppedBuildError, match="It was stopped") as excinfo:
                 raise keeper._refusal(keeper.receive_message(theirs))
-        return str(raised.value)
+        return str(excinfo.value)
 
     with ThreadPoolExecutor(3) as threads:
         assert len(set(threads.map(ask, range(3)))) == 1

@@ -35,15 +35,16 @@ WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT  # flags of a file that is opened
 
 
 class Worker:
-    """Replaces the workers: fails the checks that `lost` names for the student, and passes all others."""
+    """Replaces the workers: fails the given checks of each student, and passes all others."""
 
-    def __init__(self, lost: Mapping[str, tuple[str, ...]]) -> None:
-        self._lost = lost
+    def __init__(self, failed_checks: Mapping[str, tuple[str, ...]]) -> None:
+        self._failed_checks = failed_checks
 
     def __call__(self, job: Job) -> WorkerReport:
-        suite, lost = job.suite, self._lost[job.student]
+        suite, failed_checks = job.suite, self._failed_checks[job.student]
         checks = tuple(
-            CheckResult.of(check, Outcome.FAILED if check.id in lost else Outcome.PASSED) for check in suite.checks
+            CheckResult.of(check, Outcome.FAILED if check.id in failed_checks else Outcome.PASSED)
+            for check in suite.checks
         )
         result = Result(
             assignment=job.assignment,
@@ -65,12 +66,14 @@ class Worker:
         return WorkerReport(ExitReason.EXITED, 0, "", {**files, "result.json": json.dumps(result.to_json()).encode()})
 
 
-def grade(folder: Path, lost: Mapping[str, tuple[str, ...]], version: str, *options: str, kill_at: int = -1) -> None:
+def grade(
+    folder: Path, failed_checks: Mapping[str, tuple[str, ...]], version: str, *options: str, kill_at: int = -1
+) -> None:
     """Grade the class in `folder`, and append what is printed to the file `printed` in it.
 
     Args:
         folder: holds the folder `class`, and gets the folder `results`.
-        lost: the checks that each student loses.
+        failed_checks: the checks that each student fails.
         version: the version of the suite.
         options: further options of the command.
         kill_at: the index of the change to the results before which the process kills itself, or -1 to let it
@@ -90,7 +93,7 @@ def grade(folder: Path, lost: Mapping[str, tuple[str, ...]], version: str, *opti
                 os.kill(os.getpid(), signal.SIGKILL)
             changes += 1
 
-    batch.grade_submission = partial(grade_submission, run_job=Worker(lost))  # type: ignore[assignment]
+    batch.grade_submission = partial(grade_submission, run_job=Worker(failed_checks))  # type: ignore[assignment]
     Suite.version = property(lambda suite: version)  # type: ignore[assignment, method-assign]
     os.dup2(printed, 1)
     words = ("grade", str(folder / "class"), "--assignment", CHAPTER, "--out", str(results), "-j", "1")

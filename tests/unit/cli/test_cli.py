@@ -47,8 +47,8 @@ def graded(monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, Any]]:
 
         def grade_all(entries: object, assignment: str, **options: Any) -> tuple[result.Result, ...]:
             options_used.update(options, entries=entries, assignment=assignment)
-            for each in results:
-                options["on_result"](each)
+            for stored in results:
+                options["on_result"](stored)
             return results
 
         monkeypatch.setattr(sys.modules["autograder.cli.grade"], "grade_all", grade_all)
@@ -62,9 +62,9 @@ def test_every_verb_has_help() -> None:
     assert listed.exit_code == 0
     for verb in cli.VERBS:
         assert f"\n  {verb} " in listed.output
-        shown = _run(verb, "--help")
-        assert shown.exit_code == 0
-        assert "Usage:" in shown.output
+        completed = _run(verb, "--help")
+        assert completed.exit_code == 0
+        assert "Usage:" in completed.output
 
 
 def test_a_module_that_only_helps_a_verb_is_not_listed_as_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -144,9 +144,9 @@ def test_a_dry_run_of_grading_says_which_stored_results_are_kept_or_replaced(
     for stored in (current, make_result("bob")):
         result.write_json(tmp_path / "out" / stored.student / "result.json", stored.to_json())
     before = {path: path.read_bytes() for path in (tmp_path / "out").rglob("*.json")}
-    for more, kept in (((), "replaces"), (("--resume",), "keeps")):
-        output = " ".join(_run(*command, *more).output.split())
-        assert f"alice {kept} 4/10 = 40 %" in output
+    for options, action in (((), "replaces"), (("--resume",), "keeps")):
+        output = " ".join(_run(*command, *options).output.split())
+        assert f"alice {action} 4/10 = 40 %" in output
         assert "bob replaces 4/10 = 40 %" in output
         assert "carol new" in output
         assert "Nothing was graded or written." in output

@@ -74,11 +74,11 @@ def test_course_check_names_all_findings_and_exits_with_1(course: Path) -> None:
 @pytest.mark.promise("`autograder course sync` writes the text of cells with a `source`")
 def test_course_check_finds_nothing_after_sync(course: Path) -> None:
     before = {path: path.read_bytes() for path in course.rglob("*") if path.is_file()}
-    dry = run("sync", "--dry-run")
-    assert dry.exit_code == 0
-    assert "cell 'node': differs from solutions/node.py" in dry.output
-    assert "cell 'g': has 1 points, but the checks of 'graph' have 2" in dry.output
-    assert dry.output.endswith("01_small: 2 to update\n")
+    dry_run = run("sync", "--dry-run")
+    assert dry_run.exit_code == 0
+    assert "cell 'node': differs from solutions/node.py" in dry_run.output
+    assert "cell 'g': has 1 points, but the checks of 'graph' have 2" in dry_run.output
+    assert dry_run.output.endswith("01_small: 2 to update\n")
     assert {path: path.read_bytes() for path in course.rglob("*") if path.is_file()} == before
     assert run("sync").output == "01_small: 2 updated\n"
     checked = run("check")
@@ -114,7 +114,10 @@ def test_a_student_whose_visible_checks_all_pass_gets_the_list_of_hidden_checks(
 ) -> None:
     visible_titles = {check.title for check in suites.visible(assignment).checks}
     hidden_titles = [check.title for check in suites.hidden(assignment).checks if check.title not in visible_titles]
-    passed = [dataclasses.asdict(CheckResult.of(each, Outcome.PASSED)) for each in suites.visible(assignment).checks]
+    passed = [
+        dataclasses.asdict(CheckResult.of(visible_check, Outcome.PASSED))
+        for visible_check in suites.visible(assignment).checks
+    ]
     reply = {"diagnosis": {"kind": "ok"}, "checks": passed, "sources": [], "reads": [], "lasting": True}
     monkeypatch.setattr(checking, "run_in_worker", lambda *_, **__: nullcontext((reply, None)))
     report = checking.check(assignment)

@@ -19,9 +19,9 @@ FORKS.set_forkserver_preload(
     ["tests.unit.cli.killed_grading", "autograder.cli.grade", "jsonschema.validators", "nbformat", "PIL.PngImagePlugin"]
 )
 OLD, NEW = "1-0123456789ab", "2-0123456789ab"
-LostChecks = Mapping[str, tuple[str, ...]]
-BEFORE: LostChecks = {"alice": ("nan",), "bob": (), "carol": ("starts",), "dave": ("room",)}
-AFTER: LostChecks = {"alice": (), "bob": (), "carol": ("node_name",), "dave": ("room",)}
+FailedChecks = Mapping[str, tuple[str, ...]]
+BEFORE: FailedChecks = {"alice": ("nan",), "bob": (), "carol": ("starts",), "dave": ("room",)}
+AFTER: FailedChecks = {"alice": (), "bob": (), "carol": ("node_name",), "dave": ("room",)}
 INSTANTS = 20
 LIST = """
 Marks that changed because of the suite or the submission:
@@ -35,9 +35,9 @@ erin (02_nodes): 51 -> 53
 """
 
 
-def run(folder: Path, lost: LostChecks, version: str, *options: str, kill_at: int = -1) -> int | None:
+def run(folder: Path, failed_checks: FailedChecks, version: str, *options: str, kill_at: int = -1) -> int | None:
     """Grade the class in a separate process; return its exit status."""
-    process = FORKS.Process(target=grade, args=(folder, lost, version, *options), kwargs={"kill_at": kill_at})
+    process = FORKS.Process(target=grade, args=(folder, failed_checks, version, *options), kwargs={"kill_at": kill_at})
     process.start()
     process.join()
     return process.exitcode
@@ -88,8 +88,8 @@ def test_the_list_of_changes_is_whole_after_a_kill_at_any_instant(
     graded: Path, changes: int, instant: int, tmp_path: Path
 ) -> None:
     folder, kill_at = copy(graded, tmp_path), instant * changes // INSTANTS
-    first = ("--resume",) if instant % 4 else ()
-    assert run(folder, AFTER, NEW, *first, kill_at=kill_at) == -signal.SIGKILL
+    options = ("--resume",) if instant % 4 else ()
+    assert run(folder, AFTER, NEW, *options, kill_at=kill_at) == -signal.SIGKILL
     marks = {result.student: result.score for result in load(folder / "results")}
     assert marks.keys() == {*BEFORE, "erin"}
     run(folder, AFTER, NEW, "--resume", kill_at=kill_at // 2)

@@ -177,10 +177,10 @@ def test_a_submission_that_is_given_up_is_not_graded_instead_of_zero(job: Job) -
 
 def test_a_submission_that_intake_rejects_is_unclear_and_needs_no_worker(tmp_path: Path) -> None:
     (tmp_path / "bob.zip").write_bytes(b"none")
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         read_submission(tmp_path / "bob.zip", CHAPTER)
-    result = refused(Job(tmp_path / "bob.zip", CHAPTER, "bob", 7, tmp_path), caught.value.diagnosis)
-    assert (result.status, result.score, result.diagnosis) == (Status.UNCLEAR, 0.0, caught.value.diagnosis)
+    result = refused(Job(tmp_path / "bob.zip", CHAPTER, "bob", 7, tmp_path), excinfo.value.diagnosis)
+    assert (result.status, result.score, result.diagnosis) == (Status.UNCLEAR, 0.0, excinfo.value.diagnosis)
 
 
 @pytest.mark.promise("A reply is at most 64 MiB")

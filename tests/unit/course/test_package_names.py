@@ -60,6 +60,6 @@ def test_a_name_that_ros_or_python_does_not_allow_is_refused(name: str) -> None:
     ],
 )
 def test_a_package_or_node_whose_name_is_taken_is_rejected(options: dict[str, str], message: str) -> None:
-    with pytest.raises(UsageError) as raised:
+    with pytest.raises(UsageError) as excinfo:
         write_chapter("40_reading", **options)
-    assert message in str(raised.value)
+    assert message in str(excinfo.value)

@@ -229,12 +229,12 @@ def test_a_slip_is_reported_with_its_file_and_line(
 
 def test_slips_in_several_files_are_all_reported_at_once(course: Path, check: CheckCourse) -> None:
     chosen = [SLIPS[index] for index in (0, 10, 17, 26, 27, 30)]
-    undo = [slip(course, *each[:3]) for each in chosen]
+    reverts = [slip(course, *case[:3]) for case in chosen]
     try:
         output = check()
     finally:
-        for each in undo:
-            each()
+        for revert in reverts:
+            revert()
     unreported = [sentence for *_, sentence in chosen if sentence not in output]
     assert unreported == [
         SLIPS[17][4]

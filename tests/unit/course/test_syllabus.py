@@ -30,10 +30,10 @@ def messages(*chapters: object) -> list[str]:
 
 
 def test_a_location_is_named_by_the_heading_above_it() -> None:
-    covered = find_coverage(SYLLABUS, [("02_nodes", chapter_notebook(objectives=[OBJECTIVE]), [CHECK])])
-    assert covered.items == {"basic_node.py": [Location("02_nodes", "Write it")], "Q1": []}
-    assert covered.errata == {7: [Location("02_nodes", "Write it")]}
-    assert [(row.exercise, row.checks) for row in covered.rows] == [("Write it", (CHECK,))]
+    coverage = find_coverage(SYLLABUS, [("02_nodes", chapter_notebook(objectives=[OBJECTIVE]), [CHECK])])
+    assert coverage.items == {"basic_node.py": [Location("02_nodes", "Write it")], "Q1": []}
+    assert coverage.errata == {7: [Location("02_nodes", "Write it")]}
+    assert [(row.exercise, row.checks) for row in coverage.rows] == [("Write it", (CHECK,))]
 
 
 def test_a_syllabus_item_that_no_notebook_covers_is_named() -> None:
@@ -62,8 +62,8 @@ def test_a_key_that_the_syllabus_does_not_have_is_named() -> None:
 
 
 def test_the_page_has_a_row_for_each_item_and_escapes_markdown() -> None:
-    covered = find_coverage(SYLLABUS, [("02_nodes", chapter_notebook(objectives=[OBJECTIVE]), [CHECK])])
-    text = page(SYLLABUS, covered, {"02_nodes": "A | B"}, {"02_nodes": Effort(words=240, cells=10, lines=100)})
+    coverage = find_coverage(SYLLABUS, [("02_nodes", chapter_notebook(objectives=[OBJECTIVE]), [CHECK])])
+    text = page(SYLLABUS, coverage, {"02_nodes": "A | B"}, {"02_nodes": Effort(words=240, cells=10, lines=100)})
     assert "| [02_nodes](02_nodes/02_nodes.ipynb) | A \\| B | 2 | 240 | 10 | 100 | 2 hours |" in text
     assert "| Write nodes | 02_nodes | Write it | `named` |" in text
     assert "| 7 | no | yes | 02_nodes: Write it |" in text

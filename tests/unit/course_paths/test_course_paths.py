@@ -52,9 +52,9 @@ def test_a_course_file_names_the_folders_and_the_files_that_students_get(tmp_pat
     ],
 )
 def test_a_wrong_line_of_a_course_file_is_named(tmp_path: Path, lines: str, message: str) -> None:
-    with pytest.raises(UsageError, match=r"course\.yaml") as raised:
+    with pytest.raises(UsageError, match=r"course\.yaml") as excinfo:
         course(tmp_path, lines)
-    assert message in str(raised.value)
+    assert message in str(excinfo.value)
 
 
 def test_a_folder_without_the_file_is_not_a_course(tmp_path: Path) -> None:
@@ -66,15 +66,15 @@ def test_an_installed_autograder_uses_the_course_that_contains_the_working_folde
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     course(tmp_path, LINES)
-    inside = tmp_path / "chapters" / "01_first"
-    inside.mkdir(parents=True)
-    monkeypatch.chdir(inside)
+    chapter = tmp_path / "chapters" / "01_first"
+    chapter.mkdir(parents=True)
+    monkeypatch.chdir(chapter)
     monkeypatch.delenv(course_paths.COURSE_VARIABLE, raising=False)
     assert course_paths._chosen() == course_paths.ROOT  # the one around the autograder comes first
     monkeypatch.setattr(course_paths, "ROOT", tmp_path / "site-packages")
     assert course_paths._chosen() == tmp_path
-    monkeypatch.setenv(course_paths.COURSE_VARIABLE, str(inside))
-    assert course_paths._chosen() == inside
+    monkeypatch.setenv(course_paths.COURSE_VARIABLE, str(chapter))
+    assert course_paths._chosen() == chapter
 
 
 @pytest.mark.slow  # it imports all of them
@@ -119,8 +119,10 @@ def test_the_autograder_names_no_chapter_and_no_package_of_the_course() -> None:
         for path in (course_paths.ROOT / "autograder").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     }
-    own = [path for path in texts if any(path.is_relative_to(folder) for folder in course_paths.check_folders())]
+    course_files = [
+        path for path in texts if any(path.is_relative_to(folder) for folder in course_paths.check_folders())
+    ]
     assert len(names) > 20
-    assert len(own) > 100
-    for path in set(texts) - set(own):
+    assert len(course_files) > 100
+    for path in set(texts) - set(course_files):
         assert [name for name in names if name in texts[path]] == [], path

@@ -30,8 +30,10 @@ def test_a_lock_is_read_for_each_python() -> None:
 def test_the_platform_page_lists_what_the_lock_installs_and_which_tutorials_run() -> None:
     page = SCRIPT["current"]()
     installed = locked(LOCK.read_text(encoding="utf-8"), DISTRIBUTION.pythons[0])
-    assert all(f"| {each.name} | {each.debian} | {each.version} |" in page for each in DISTRIBUTION.packages)
-    assert all(installed[each.name] in page for each in DISTRIBUTION.packages)
+    assert all(
+        f"| {package.name} | {package.debian} | {package.version} |" in page for package in DISTRIBUTION.packages
+    )
+    assert all(installed[package.name] in page for package in DISTRIBUTION.packages)
     assert "| yes | `publisher_and_subscriber` |" in page
 
 

@@ -28,9 +28,9 @@ def test_the_examples_run_and_draw_the_pictures_that_the_guide_shows(tmp_path: P
 
 
 def test_the_guide_names_exactly_the_parameters_of_the_node() -> None:
-    known = {setting.name for setting in SETTINGS}
-    assert known - set(re.findall(r"[`\s](\w+)(?:`|:=)", TEXT)) == set()
-    assert set(re.findall(r"-p (\w+):=", TEXT)) <= known
+    parameters = {setting.name for setting in SETTINGS}
+    assert parameters - set(re.findall(r"[`\s](\w+)(?:`|:=)", TEXT)) == set()
+    assert set(re.findall(r"-p (\w+):=", TEXT)) <= parameters
 
 
 def test_the_commands_of_the_guide_use_existing_verbs_and_options() -> None:
@@ -38,7 +38,7 @@ def test_the_commands_of_the_guide_use_existing_verbs_and_options() -> None:
     assert len(commands) > 8
     verbs: dict[str, click.Command] = main.commands
     for command in commands:
-        first, *rest = command.split()
-        verb = verbs.get(first, verbs["run"])
+        name, *words = command.split()
+        verb = verbs.get(name, verbs["run"])
         options = {option for parameter in verb.params for option in parameter.opts}
-        assert {word for word in rest if word.startswith("--")} <= options, command
+        assert {word for word in words if word.startswith("--")} <= options, command

@@ -70,9 +70,9 @@ def test_only_a_result_with_a_program_in_real_time_has_the_note_on_real_time(
 def test_the_page_suggests_starting_with_the_failed_check_that_costs_most(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
-    cheap, dear = (make_check(id, f"It is {id}.", points, "graph") for id, points in (("cheap", 1.0), ("dear", 4.0)))
-    lost = tuple(CheckResult.of(check, Outcome.FAILED, fraction=0.25) for check in (cheap, dear))
-    page = Page(feedback.write(make_result(checks=lost), tmp_path))
+    cheap, costly = (make_check(id, f"It is {id}.", points, "graph") for id, points in (("cheap", 1.0), ("dear", 4.0)))
+    failed = tuple(CheckResult.of(check, Outcome.FAILED, fraction=0.25) for check in (cheap, costly))
+    page = Page(feedback.write(make_result(checks=failed), tmp_path))
     assert "Start here It is dear." in page.text
 
 
@@ -86,15 +86,15 @@ def test_the_page_links_the_check_to_start_with(make_result: MakeResult, tmp_pat
 def test_consequences_are_folded_under_their_cause_and_named_once_in_their_own_group(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
-    first = make_check("first", "It drives.", 1.0, "graph")
-    same = make_check("same", "It turns.", 2.0, "graph", after=("first",), hints=("Look.",), covers=("stale",))
-    other = make_check("other", "It stops.", 3.0, "safety", after=("first",))
-    blind = make_check("blind", "It sees.", 4.0, "safety", needs=("other",))
+    cause = make_check("first", "It drives.", 1.0, "graph")
+    in_same_group = make_check("same", "It turns.", 2.0, "graph", after=("first",), hints=("Look.",), covers=("stale",))
+    in_other_group = make_check("other", "It stops.", 3.0, "safety", after=("first",))
+    unchecked = make_check("blind", "It sees.", 4.0, "safety", needs=("other",))
     checks = (
-        CheckResult.of(first, Outcome.FAILED, "it stood"),
-        CheckResult.of(same, Outcome.FAILED, "it turned right"),
-        CheckResult.of(other, Outcome.FAILED, "it went on"),
-        CheckResult.of(blind, Outcome.NOT_CHECKED, 'not checked: first "It stops." has to pass'),
+        CheckResult.of(cause, Outcome.FAILED, "it stood"),
+        CheckResult.of(in_same_group, Outcome.FAILED, "it turned right"),
+        CheckResult.of(in_other_group, Outcome.FAILED, "it went on"),
+        CheckResult.of(unchecked, Outcome.NOT_CHECKED, 'not checked: first "It stops." has to pass'),
     )
     page = Page(feedback.write(make_result(checks=checks), tmp_path))
     assert page.all("aria-label") == ["failed", "failed", "failed", "not checked"]
@@ -109,9 +109,12 @@ def test_consequences_are_folded_under_their_cause_and_named_once_in_their_own_g
 def test_many_checks_that_could_not_run_are_a_line_that_unfolds(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
-    first = make_check("first", "It starts.", 1.0, "graph")
-    rest = [make_check(f"c{number}", f"It does {number}.", 1.0, "graph", needs=("first",)) for number in range(9)]
-    checks = (CheckResult.of(first, Outcome.FAILED), *(CheckResult.of(check, Outcome.NOT_CHECKED) for check in rest))
+    cause = make_check("first", "It starts.", 1.0, "graph")
+    dependents = [make_check(f"c{number}", f"It does {number}.", 1.0, "graph", needs=("first",)) for number in range(9)]
+    checks = (
+        CheckResult.of(cause, Outcome.FAILED),
+        *(CheckResult.of(check, Outcome.NOT_CHECKED) for check in dependents),
+    )
     page = Page(feedback.write(make_result(checks=checks), tmp_path))
     assert page.all("aria-label") == ["failed", "not checked"]
     assert "Not checked: 9 more checks. It does 0. It does 1." in page.text
@@ -139,16 +142,16 @@ def test_a_failed_check_quotes_its_sentence_of_the_contract(
     passed = make_result(checks=(CheckResult.of(stops, Outcome.PASSED),))
     crash = Diagnosis(Kind.CRASHED_LATER, "It crashed.")
     crashed = make_result(checks=(CheckResult.of(stops, Outcome.FAILED, "It crashed."),), diagnosis=crash)
-    for other in (passed, crashed):
-        assert "The contract:" not in Page(feedback.write(other, tmp_path)).text
+    for result in (passed, crashed):
+        assert "The contract:" not in Page(feedback.write(result, tmp_path)).text
 
 
 def test_a_sentence_of_the_contract_is_quoted_once_for_failures_with_one_cause(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
-    first = make_check("first", "It stops.", 1, "graph", covers=("stale",))
-    others = [make_check(id, "It turns.", 1, "graph", covers=("stale", "near"), after=("first",)) for id in "ab"]
-    checks = tuple(CheckResult.of(check, Outcome.FAILED, "it drove") for check in (first, *others))
+    cause = make_check("first", "It stops.", 1, "graph", covers=("stale",))
+    consequences = [make_check(id, "It turns.", 1, "graph", covers=("stale", "near"), after=("first",)) for id in "ab"]
+    checks = tuple(CheckResult.of(check, Outcome.FAILED, "it drove") for check in (cause, *consequences))
     text = Page(feedback.write(make_result(checks=checks), tmp_path)).text
     assert [text.count(f"The contract: {contract('02_nodes')[name].text}") for name in ("stale", "near")] == [1, 1]
 
@@ -179,8 +182,8 @@ def test_a_picture_without_a_check_is_also_shown(
 
 
 def test_a_missing_picture_is_reported_as_missing(make_result: MakeResult, tmp_path: Path) -> None:
-    lost = Artifact("lost.png", "track", "0" * 64, "turns", "The robot's track.")
-    page = Page(feedback.write(make_result(artifacts=(lost,)), tmp_path))
+    artifact = Artifact("lost.png", "track", "0" * 64, "turns", "The robot's track.")
+    page = Page(feedback.write(make_result(artifacts=(artifact,)), tmp_path))
     assert "img" not in page.tags
     assert "The robot's track. (The picture was not kept.)" in page.text
 
@@ -262,8 +265,8 @@ def test_no_text_of_a_student_becomes_markup(
 
 
 def test_control_characters_and_lone_surrogates_do_not_reach_the_page(make_result: MakeResult, tmp_path: Path) -> None:
-    wild = "\x1b[31mred\x1b[0m \x00 \udcff \u202eevil"
-    result = make_result(diagnosis=Diagnosis(Kind.CRASHED_LATER, "It crashed.", wild))
+    text_with_controls = "\x1b[31mred\x1b[0m \x00 \udcff \u202eevil"
+    result = make_result(diagnosis=Diagnosis(Kind.CRASHED_LATER, "It crashed.", text_with_controls))
     text = Page(feedback.write(result, tmp_path)).text
     assert "red \ufffd \ufffd \ufffdevil" in text
 
@@ -312,9 +315,9 @@ def test_requests_to_a_node_and_its_responses_are_shown_as_text_in_a_table(
     make_result: MakeResult, tmp_path: Path
 ) -> None:
     attack = "message: '</td><script>alert(1)</script>\u202e'"
-    talk = (Exchange(1.25, "asked", "/<b>/enable", "data: True"), Exchange(1.3, "answered", "/enable", attack))
+    exchanges = (Exchange(1.25, "asked", "/<b>/enable", "data: True"), Exchange(1.3, "answered", "/enable", attack))
     result = make_result()
-    result = replace(result, checks=(replace(result.checks[0], talk=talk), *result.checks[1:]))
+    result = replace(result, checks=(replace(result.checks[0], talk=exchanges), *result.checks[1:]))
     page = Page(feedback.write(from_json(result.to_json()), tmp_path))
     assert "1.25 asked /<b>/enable data: True" in page.text
     assert "1.30 answered /enable message: '</td><script>alert(1)</script>\ufffd'" in page.text

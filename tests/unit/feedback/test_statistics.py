@@ -16,7 +16,7 @@ MakeResult = Callable[..., Result]
 
 def with_passes(result: Result, *passed: bool) -> Result:
     """Return a result of checks worth 1 point each, passed or failed."""
-    outcomes = [(Outcome.PASSED, 1.0) if each else (Outcome.FAILED, 0.0) for each in passed]
+    outcomes = [(Outcome.PASSED, 1.0) if is_passed else (Outcome.FAILED, 0.0) for is_passed in passed]
     checks = tuple(
         replace(check, outcome=outcome, points=points, max_points=1.0)
         for check, (outcome, points) in zip(result.checks, outcomes, strict=False)
@@ -36,8 +36,8 @@ def test_a_check_that_only_good_submissions_pass_has_a_high_discrimination(make_
     by_id = {c.id: c for c in class_statistics([with_passes(make_result(), *row) for row in rows]).checks}
     assert by_id["starts"].difficulty == 0.5
     assert by_id["turns"].discrimination == pytest.approx(-1.0)
-    first = by_id["starts"].discrimination
-    assert first is None or first > by_id["turns"].discrimination  # type: ignore[operator]
+    discrimination = by_id["starts"].discrimination
+    assert discrimination is None or discrimination > by_id["turns"].discrimination  # type: ignore[operator]
 
 
 def test_a_check_with_equal_results_has_no_discrimination_and_one_that_all_passed_is_omitted(

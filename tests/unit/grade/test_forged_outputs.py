@@ -31,14 +31,14 @@ def stream(text: str) -> dict[str, str]:
     ids=["values", "outputs", "cells", "lines"],
 )
 def test_an_endless_answer_is_read_quickly_and_the_part_before_it_counts(flood: bytes) -> None:
-    began = time.process_time()
+    started_at = time.process_time()
     answer = read_answer(cell(0, [stream("mine")]) + flood)
-    assert time.process_time() - began < 10  # an answer of the maximum size once took up to nine minutes
+    assert time.process_time() - started_at < 10  # an answer of the maximum size once took up to nine minutes
     assert answer.cells[0].outputs[0].text == "mine"
 
 
 def test_metadata_of_a_students_own_cells_are_removed() -> None:
     source = new_notebook(cells=[new_code_cell("1", metadata={"nbgrader": {"grade_id": "wall", "locked": True}})])
-    own = [new_code_cell("2", metadata={"more": [{"a": 1}]}), new_markdown_cell("3", metadata={"nbgrader": {"x": 1}})]
-    restored = submitted_notebook.restore(new_notebook(cells=own), source)
+    cells = [new_code_cell("2", metadata={"more": [{"a": 1}]}), new_markdown_cell("3", metadata={"nbgrader": {"x": 1}})]
+    restored = submitted_notebook.restore(new_notebook(cells=cells), source)
     assert [cell.metadata for cell in restored.cells] == [{}, {}, source.cells[0].metadata]

@@ -14,24 +14,24 @@ SECONDS = 60.0  # deadline for events that must happen
 
 
 def test_several_gradings_share_the_machine() -> None:
-    machine, all_in = MachineLock(), threading.Barrier(3)
+    machine, all_entered = MachineLock(), threading.Barrier(3)
 
-    def use() -> int:
+    def share_machine() -> int:
         with machine.shared():
-            return all_in.wait(SECONDS)
+            return all_entered.wait(SECONDS)
 
     with ThreadPoolExecutor(3) as pool:
-        assert sorted(future.result() for future in [pool.submit(use) for _ in range(3)]) == [0, 1, 2]
+        assert sorted(future.result() for future in [pool.submit(share_machine) for _ in range(3)]) == [0, 1, 2]
 
 
 @pytest.mark.promise("a program in real time that lost a point while the machine was busy is graded once more, alone")
 def test_an_exclusive_grading_waits_for_the_others_and_later_ones_wait_for_it() -> None:
     machine, order = MachineLock(), list[str]()
-    begun, ended = threading.Event(), threading.Event()
+    started, release = threading.Event(), threading.Event()
 
     def grade_beside(name: str, wait: threading.Event | None = None) -> None:
         with machine.shared():
-            begun.set()
+            started.set()
             if wait is not None:
                 wait.wait(SECONDS)
             order.append(name)
@@ -42,15 +42,15 @@ def test_an_exclusive_grading_waits_for_the_others_and_later_ones_wait_for_it() 
             order.append(f"{name} ends")
 
     with ThreadPoolExecutor(4) as pool:
-        futures = [pool.submit(grade_beside, "first", ended)]
-        assert begun.wait(SECONDS)
+        futures = [pool.submit(grade_beside, "first", release)]
+        assert started.wait(SECONDS)
         futures.append(pool.submit(grade_alone, "a"))
         deadline = time.monotonic() + SECONDS
         while not machine._turn.locked():
             assert time.monotonic() < deadline
             threading.Event().wait(0.01)
         futures.append(pool.submit(grade_beside, "late"))
-        ended.set()
+        release.set()
         for future in futures:
             future.result(SECONDS)
     assert order == ["first", "a begins", "a ends", "late"]

@@ -45,8 +45,11 @@ class Worker:
 def doubtful_result(make_result: MakeResult) -> Result:
     """A result with a point lost in real time, while the machine was busy."""
     suite = suites.hidden(CHAPTER)
-    first, *others = suite.checks
-    checks = (CheckResult.of(first, Outcome.FAILED), *(CheckResult.of(check, Outcome.PASSED) for check in others))
+    first_check, *other_checks = suite.checks
+    checks = (
+        CheckResult.of(first_check, Outcome.FAILED),
+        *(CheckResult.of(check, Outcome.PASSED) for check in other_checks),
+    )
     versions = {"suite_version": suite.version, "files_digest": suite.files_digest, "max_score": suite.max_score}
     return make_result("s", checks=checks, time="real", held_up=0.6, isolation="process", seed=1, **versions)
 
@@ -107,8 +110,8 @@ def test_a_grader_that_fails_in_the_second_grading_gives_no_mark_and_keeps_its_l
 def test_a_log_contains_no_control_characters_for_a_terminal(tmp_path: Path, doubtful_result: Result) -> None:
     job = Job(tmp_path, doubtful_result.assignment, "alice", 1, tmp_path / "out")
     write_result(job, doubtful_result, {LOG: b"Traceback:\n\tin \x1b]0;title\x07 \xe2\x80\xae \x9b2J \xff\n"})
-    written = (tmp_path / "out" / LOG).read_text(encoding="utf-8")
-    assert written == "Traceback:\n\tin \\x1b]0;title\\x07 \\u202e \ufffd2J \ufffd\n"
+    log = (tmp_path / "out" / LOG).read_text(encoding="utf-8")
+    assert log == "Traceback:\n\tin \\x1b]0;title\\x07 \\u202e \ufffd2J \ufffd\n"
 
 
 class SlowWorker(Worker):

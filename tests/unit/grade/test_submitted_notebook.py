@@ -165,10 +165,10 @@ def test_a_notebook_is_read_with_any_line_ends() -> None:
     ],
 )
 def test_a_file_that_is_not_a_notebook_is_named_with_the_remedy(data: bytes) -> None:
-    with pytest.raises(StudentError, match=r"02_nodes.ipynb cannot be read as a notebook") as caught:
+    with pytest.raises(StudentError, match=r"02_nodes.ipynb cannot be read as a notebook") as excinfo:
         submitted_notebook.read(data, "02_nodes.ipynb")
-    assert caught.value.diagnosis.kind is Kind.UNREADABLE
-    assert "save it and hand it in again" in caught.value.diagnosis.sentence
+    assert excinfo.value.diagnosis.kind is Kind.UNREADABLE
+    assert "save it and hand it in again" in excinfo.value.diagnosis.sentence
 
 
 def test_a_notebook_of_thousands_of_cells_is_refused() -> None:

@@ -34,24 +34,24 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
 
 
 @pytest.mark.parametrize(
-    ("elapsed", "seconds", "late"),
+    ("elapsed", "seconds", "stall"),
     [(0.1, 0.1, 0.0), (0.05, 0.1, 0.0), (0.7, 0.1, 0.6), (0.3, -0.5, 0.3)],
     ids=["in time", "early", "late", "nothing to wait for"],
 )
 def test_a_late_return_counts_as_a_stall(
-    clock: list[float], stalls: list[float], elapsed: float, seconds: float, late: float
+    clock: list[float], stalls: list[float], elapsed: float, seconds: float, stall: float
 ) -> None:
     clock += [5.0, 5.0 + elapsed]
     with cpu_starvation.watch([], seconds, stalls.append):
         pass
-    assert stalls == [pytest.approx(late, abs=5 * procfs.TICK)]  # less what this process used meanwhile
+    assert stalls == [pytest.approx(stall, abs=5 * procfs.TICK)]  # less what this process used meanwhile
 
 
 def test_an_ended_process_does_not_count_as_stalled(clock: list[float], stalls: list[float]) -> None:
-    with subprocess.Popen([sys.executable, "-c", ""]) as ended:
+    with subprocess.Popen([sys.executable, "-c", ""]) as process:
         pass
     clock += [0.0, 0.0]
-    with cpu_starvation.watch([ended.pid], 0.0, stalls.append):
+    with cpu_starvation.watch([process.pid], 0.0, stalls.append):
         pass
     assert stalls == [0.0]
 
@@ -84,15 +84,15 @@ def test_a_process_without_a_free_processor_counts_as_stalled(stalls: list[float
 
 def test_a_processor_that_the_submission_s_own_process_has_does_not_count(stalls: list[float]) -> None:
     deadline = time.monotonic() + SECONDS
-    waited = ran = 0.0
-    with busy_process(19) as pid, busy_process(0) as other:
-        began_waiting = procfs.thread_times([pid])[pid].waited
+    wait_time = run_time = 0.0
+    with busy_process(19) as pid, busy_process(0) as other_pid:
+        wait_before = procfs.thread_times([pid])[pid].waited
         with cpu_starvation.watch([pid], SECONDS, stalls.append):
-            began_running = procfs.thread_times([other])[other].ran
-            while min(waited, ran) < 0.3:
+            run_before = procfs.thread_times([other_pid])[other_pid].ran
+            while min(wait_time, run_time) < 0.3:
                 assert time.monotonic() < deadline
                 time.sleep(0.05)
-                ran = procfs.thread_times([other])[other].ran - began_running
-                waited = procfs.thread_times([pid])[pid].waited - began_waiting
-        waited = procfs.thread_times([pid])[pid].waited - began_waiting
-    assert stalls[0] <= max(0.0, waited - ran) + 10 * procfs.TICK
+                run_time = procfs.thread_times([other_pid])[other_pid].ran - run_before
+                wait_time = procfs.thread_times([pid])[pid].waited - wait_before
+        wait_time = procfs.thread_times([pid])[pid].waited - wait_before
+    assert stalls[0] <= max(0.0, wait_time - run_time) + 10 * procfs.TICK

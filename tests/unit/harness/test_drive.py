@@ -67,7 +67,7 @@ def test_output_written_before_the_drive_is_ignored() -> None:
 
 
 @pytest.mark.parametrize(
-    ("written", "shown"),
+    ("output", "text"),
     [
         (b"[WARN] [1764044043.123456789] [follower]: near", "[WARN] [follower]: near"),
         (b"\x1b[33m[WARN] [1764044043.1] [follower]: near\x1b[0m", "[WARN] [follower]: near"),
@@ -75,5 +75,5 @@ def test_output_written_before_the_drive_is_ignored() -> None:
         ("‮evil\x00".encode(), "\ufffdevil\ufffd"),
     ],
 )
-def test_a_line_is_shown_without_the_machines_time_and_without_terminal_codes(written: bytes, shown: str) -> None:
-    assert recorded_lines(Talking(0.0, [written + b"\n"])) == ((0.1, shown),)
+def test_a_line_is_shown_without_the_machines_time_and_without_terminal_codes(output: bytes, text: str) -> None:
+    assert recorded_lines(Talking(0.0, [output + b"\n"])) == ((0.1, text),)

@@ -24,10 +24,10 @@ SECONDS = 30.0  # of real time, as a deadline for events that must happen
 
 def exceed_limit(inflow: Inflow, topic: str, size: int) -> str:
     """Count one message more than allowed; return the sentence of the error."""
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         inflow.add(topic, size)
-    assert caught.value.diagnosis.kind is Kind.FLOODED_OUTPUT
-    return caught.value.diagnosis.sentence
+    assert excinfo.value.diagnosis.kind is Kind.FLOODED_OUTPUT
+    return excinfo.value.diagnosis.sentence
 
 
 def test_one_message_too_many_names_the_topic_with_the_most_messages() -> None:
@@ -71,8 +71,8 @@ def test_the_grader_stops_receiving_from_a_program_that_publishes_without_end(
 ) -> None:
     monkeypatch.setattr(grader, "_inflow", Inflow(Received(messages=50)))
     monkeypatch.setattr(grader_node, "DEPTH", 20)
-    kept: list[String] = []
-    grader.subscribe("/flood", String, lambda message, _: kept.append(message), requested_qos([]))
+    received: list[String] = []
+    grader.subscribe("/flood", String, lambda message, _: received.append(message), requested_qos([]))
     publisher = programs_node.create_publisher(String, "/flood", 100)
 
     def flood() -> None:
@@ -83,16 +83,16 @@ def test_the_grader_stops_receiving_from_a_program_that_publishes_without_end(
 
     with pytest.raises(StudentError, match=r"sent 51 messages .* on /flood"):
         flood()
-    assert len(kept) == 50
+    assert len(received) == 50
 
 
 def test_bytes_that_are_not_a_message_of_the_type_are_ignored(programs_node: Node, grader: GraderNode) -> None:
-    kept: list[str] = []
-    grader.subscribe("/said", String, lambda message, _: kept.append(message.data), requested_qos([]))
+    received: list[str] = []
+    grader.subscribe("/said", String, lambda message, _: received.append(message.data), requested_qos([]))
     publisher = programs_node.create_publisher(String, "/said", 100)
     deadline = time.monotonic() + SECONDS
-    while not kept and time.monotonic() < deadline:
+    while not received and time.monotonic() < deadline:
         publisher.publish(b"\0\1\0\0")
         publisher.publish(String(data="good"))
         grader.spin(0.05)
-    assert set(kept) == {"good"}
+    assert set(received) == {"good"}

@@ -67,9 +67,12 @@ def test_messages_sent_at_the_end_of_a_step_are_taken_in_that_step() -> None:
 
 def test_a_program_runs_at_once_for_turns_with_messages_of_different_topics() -> None:
     best_effort = SCAN.replace("reliable", "best-effort")
-    given = [{SCAN: 1}, {WORD: 1}, {}, {best_effort: 1}, {}]
-    turns = [Turn(Place(0, round_), 199, messages) for round_, messages in enumerate(given)]
-    assert [[turn.messages for turn in batch] for batch in batches(turns)] == [given[:3], given[3:]]
+    messages_per_turn = [{SCAN: 1}, {WORD: 1}, {}, {best_effort: 1}, {}]
+    turns = [Turn(Place(0, round_), 199, messages) for round_, messages in enumerate(messages_per_turn)]
+    assert [[turn.messages for turn in batch] for batch in batches(turns)] == [
+        messages_per_turn[:3],
+        messages_per_turn[3:],
+    ]
     assert batches([]) == []
 
 
@@ -81,7 +84,7 @@ def test_programs_are_in_an_order_in_which_each_gets_its_messages_from_earlier_o
 
 
 @pytest.mark.parametrize(
-    ("one", "other"),
+    ("first", "second"),
     [
         ({"writers": ((WORD, 1),), "readers": (((SCAN,), 1),)}, {"writers": ((SCAN, 1),), "readers": (((WORD,), 1),)}),
         ({"clients": ((ASK, True),), "prefix": "0a"}, {"servers": (ASK,)}),
@@ -89,8 +92,10 @@ def test_programs_are_in_an_order_in_which_each_gets_its_messages_from_earlier_o
     ],
     ids=["they answer each other", "one serves the other", "both publish on one topic"],
 )
-def test_programs_have_no_such_order_if_messages_come_back_or_meet(one: dict[str, Any], other: dict[str, Any]) -> None:
-    assert flow([_program(**one), _program(number=1, **other)]) is None
+def test_programs_have_no_such_order_if_messages_come_back_or_meet(
+    first: dict[str, Any], second: dict[str, Any]
+) -> None:
+    assert flow([_program(**first), _program(number=1, **second)]) is None
 
 
 def test_a_program_that_reads_parameter_events_comes_after_the_others() -> None:

@@ -19,8 +19,8 @@ from types import SimpleNamespace
 from autograder.lms.hub.spawner import CourseSpawner, NoServerError
 try:
     CourseSpawner(user=SimpleNamespace(name="root")).claim_domain()
-except NoServerError as refused:
-    print(refused.jupyterhub_message)  # the hub shows it
+except NoServerError as error:
+    print(error.jupyterhub_message)  # the hub shows it
 """
 
 

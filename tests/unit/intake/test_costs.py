@@ -82,9 +82,9 @@ def test_thousands_of_nested_packages_are_found_quickly() -> None:
     paths = [f"{'x/' * depth}q{depth}/package.xml" for depth in range(13)]
     paths += [f"{'x/' * 13}p{number}/package.xml" for number in range(1900)]
     files = [SubmittedFile(PurePosixPath(path), b"<name>a</name>") for path in paths]
-    began = time.process_time()
+    started_at = time.process_time()
     assert detect_layout(files, CHAPTER).source
-    assert time.process_time() - began < 10  # it took 90 s when each file was compared with each package
+    assert time.process_time() - started_at < 10  # it took 90 s when each file was compared with each package
 
 
 def test_a_submission_that_crashes_its_reader_does_not_end_the_grading_of_a_class(
@@ -103,17 +103,17 @@ def steps_of(work: Callable[[], object]) -> int:
     """Count the lines of Python that `work` executes."""
     count = 0
 
-    def trace(frame: FrameType, event: str, argument: object) -> Callable[..., object]:
+    def count_line(frame: FrameType, event: str, argument: object) -> Callable[..., object]:
         nonlocal count
         count += event == "line"
-        return trace
+        return count_line
 
-    before = sys.gettrace()
-    sys.settrace(trace)
+    previous = sys.gettrace()
+    sys.settrace(count_line)
     try:
         work()
     finally:
-        sys.settrace(before)
+        sys.settrace(previous)
     return count
 
 

@@ -394,9 +394,9 @@ UNCLEAR: dict[str, tuple[Callable[[Answer], Files], str]] = {
 @pytest.mark.parametrize("envelope", UNCLEAR)
 def test_an_unclear_file_that_may_contain_an_answer_has_a_remedy(envelope: str, answer: Answer, tmp_path: Path) -> None:
     files, message = UNCLEAR[envelope]
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         read_submission(write(tmp_path / "ada", files(answer)), CHAPTER)
-    diagnosis = caught.value.diagnosis
+    diagnosis = excinfo.value.diagnosis
     assert message in diagnosis.sentence
     assert diagnosis.kind in (Kind.UNCLEAR, Kind.UNREADABLE, Kind.NOTHING_SUBMITTED)
     assert any(word in diagnosis.sentence.casefold() for word in ("hand in", "hand it in", "cannot be opened"))

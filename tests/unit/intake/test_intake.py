@@ -61,9 +61,9 @@ def _names(entries: tuple[SubmittedFile, ...]) -> set[str]:
 
 
 def _refusal(path: Path) -> tuple[Kind, str]:
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         read_submission(path, CHAPTER)
-    return caught.value.diagnosis.kind, caught.value.diagnosis.sentence
+    return excinfo.value.diagnosis.kind, excinfo.value.diagnosis.sentence
 
 
 # Every layout.
@@ -451,9 +451,9 @@ def test_a_link_that_a_notebook_left_is_never_followed(tmp_path: Path, link: str
     if (root / link).exists():
         (root / link).rename(root / "moved")
     (root / link).symlink_to("/etc")
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         read_packages(root / "ws")
-    assert caught.value.diagnosis.kind in (Kind.UNSAFE_ARCHIVE, Kind.NOTHING_SUBMITTED)
+    assert excinfo.value.diagnosis.kind in (Kind.UNSAFE_ARCHIVE, Kind.NOTHING_SUBMITTED)
 
 
 def test_a_notebook_that_writes_no_workspace_is_reported(tmp_path: Path) -> None:

@@ -75,12 +75,12 @@ WRONG = {
 
 @pytest.mark.parametrize(("path", "text", "line", "problem"), WRONG.values(), ids=WRONG.keys())
 def test_a_mistake_is_named_with_its_file_and_line(path: str, text: str, line: str, problem: str) -> None:
-    with pytest.raises(DefinitionError) as caught:
+    with pytest.raises(DefinitionError) as excinfo:
         read("my_msgs", {path: text})
-    assert caught.value.file == path
-    assert caught.value.line.startswith(line)
-    assert bool(caught.value.line) == bool(line)
-    assert problem in str(caught.value)
+    assert excinfo.value.file == path
+    assert excinfo.value.line.startswith(line)
+    assert bool(excinfo.value.line) == bool(line)
+    assert problem in str(excinfo.value)
 
 
 def test_arrays_are_counted_through_nested_messages() -> None:
@@ -151,11 +151,11 @@ LONG = {
 
 @pytest.mark.parametrize("line", LONG.values(), ids=LONG)
 def test_a_long_line_is_read_in_a_moment(line: str) -> None:
-    began = time.process_time()
+    started_at = time.process_time()
     for parse in (lambda: read("my_msgs", {"msg/A.msg": line}), lambda: interfaces.parse("my_msgs", "msg/A.msg", line)):
         with contextlib.suppress(DefinitionError, interfaces.Unreadable):
             parse()
-    assert time.process_time() - began < 5.0
+    assert time.process_time() - started_at < 5.0
 
 
 @pytest.mark.parametrize("name", ["A", "AB", "A_B", "A1_2", "A_", "A__B", "aB", "_A", "Ab", "", "A_B_"])

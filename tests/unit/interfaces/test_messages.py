@@ -68,9 +68,9 @@ def test_the_same_texts_give_the_same_classes_and_others_do_not_interfere() -> N
     ],
 )
 def test_a_missing_part_of_a_definition_is_the_students_error(make: Any, sentence: str) -> None:
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         make()
-    assert sentence in caught.value.diagnosis.sentence
+    assert sentence in excinfo.value.diagnosis.sentence
     assert not hasattr(package().msg.Inner(), "header")
 
 

@@ -403,8 +403,8 @@ def test_the_list_of_a_gradescope_download_names_student_and_time_of_each_folder
         "---\n"
         + "".join(
             f"submission_{n}:\n  :submitters:\n  - :name: Somebody\n    :sid: {sid}\n    :email: {sid}@x.edu\n"
-            f"  :created_at: {when or '2026-01-01 08:00:00'} Z\n"
-            for n, sid, when in rows
+            f"  :created_at: {created or '2026-01-01 08:00:00'} Z\n"
+            for n, sid, created in rows
         )
     )
     collected, entries = collect_entries(folder, "Name,SID,Email\nJane,S1,j@x.edu\nZoÃ«,S2,z@x.edu\n")
@@ -434,7 +434,7 @@ GITHUB = "identifier,github_username,github_id,name\nbob,bob,1,\neve,eve,2,\nzoÃ
     "If the account is ambiguous, the clone is listed as unclear.",
 )
 @pytest.mark.parametrize(
-    ("folder", "names", "entries", "strangers"),
+    ("folder", "names", "entries", "unmatched"),
     [
         pytest.param(
             "hw-submissions",
@@ -478,14 +478,14 @@ GITHUB = "identifier,github_username,github_id,name\nbob,bob,1,\neve,eve,2,\nzoÃ
     ],
 )
 def test_a_clone_is_not_assigned_by_the_end_of_an_account_alone(
-    tmp_path: Path, folder: str, names: list[str], entries: dict[str, str], strangers: dict[str, str]
+    tmp_path: Path, folder: str, names: list[str], entries: dict[str, str], unmatched: dict[str, str]
 ) -> None:
     collected, assigned = collect_entries(
         write_download(tmp_path / folder, *(f"{name}/ws/src/p/x" for name in names)), GITHUB
     )
     assert assigned == entries
-    assert dict(collected.unmatched).keys() == strangers.keys()
-    assert all(reason in dict(collected.unmatched)[name] for name, reason in strangers.items())
+    assert dict(collected.unmatched).keys() == unmatched.keys()
+    assert all(reason in dict(collected.unmatched)[name] for name, reason in unmatched.items())
 
 
 def test_the_layout_of_nbgrader_and_plain_names_are_assigned_to_students(tmp_path: Path) -> None:

@@ -29,7 +29,7 @@ def delivered(after: timedelta) -> Delivery:
 
 
 @pytest.mark.parametrize(
-    ("after", "days", "kept"),
+    ("after", "days", "share"),
     [
         (-DAY, 0, 1.0),
         (timedelta(), 0, 1.0),
@@ -43,9 +43,9 @@ def delivered(after: timedelta) -> Delivery:
     ],
 )
 def test_a_day_that_has_begun_counts_from_the_deadline_and_the_floor_stays(
-    after: timedelta, days: int, kept: float
+    after: timedelta, days: int, share: float
 ) -> None:
-    assert DAILY.judge("ada", delivered(after)) == Lateness(pytest.approx(kept), days)
+    assert DAILY.judge("ada", delivered(after)) == Lateness(pytest.approx(share), days)
 
 
 def test_a_flat_penalty_is_the_same_for_each_delay_and_no_penalty_exceeds_the_mark() -> None:

@@ -89,7 +89,7 @@ def test_students_are_named_by_anything_in_the_roster(assessed: Path) -> None:
     assert column(assessed / "out.csv", "Grade") == ["52.00", "46.00", ""]
 
 
-@pytest.mark.promise("A student whom nobody has marked yet has no mark, is listed, and the exit status is 1.")
+@pytest.mark.promise("A student who has not been marked yet has no mark, is listed, and the exit status is 1.")
 def test_a_student_whom_no_person_has_marked_yet_gets_no_mark_and_is_listed(assessed: Path) -> None:
     for text in ("student,q2-answer\nzoe@x.edu,6\n", "student,q2-answer\nzoe@x.edu,6\njane@x.edu,\n"):
         completed = with_points(assessed, text)

@@ -252,12 +252,12 @@ def test_lexing_and_comparing_take_time_proportional_to_the_text(part: str) -> N
 
     def steps(length: int) -> tuple[int, int]:
         text = similar._dense(part * (length // len(part)))
-        tried = sum(len(match) + 1 for match in re.findall(r"(?m)^(?=(\s*))", text))  # the lexer's first rules
+        positions = sum(len(match) + 1 for match in re.findall(r"(?m)^(?=(\s*))", text))  # the lexer's first rules
         fingerprint = similar._fingerprint(text)
-        return tried, sum(map(len, fingerprint.hash_idx.values()))
+        return positions, sum(map(len, fingerprint.hash_idx.values()))
 
     short, long = steps(1000), steps(4000)
-    assert all(more <= 5 * few + 100 for few, more in zip(short, long, strict=True))
+    assert all(long_count <= 5 * short_count + 100 for short_count, long_count in zip(short, long, strict=True))
     assert max(long) <= 10_000
 
 

@@ -42,29 +42,32 @@ def test_a_subscription_is_joined_to_a_publisher_if_their_quality_of_service_fit
     offered: QoSProfile, requested: QoSProfile
 ) -> None:
     compatible = qos_check_compatible(offered, requested)[0].name != "ERROR"  # a warning names liveliness
-    written, read = (
+    published_channel, subscribed_channels = (
         channels.publisher_channel("/scan", LaserScan, offered),
         channels.subscription_channels("/scan", LaserScan, requested),
     )
-    assert (written in read) is compatible
+    assert (published_channel in subscribed_channels) is compatible
 
 
 def test_another_type_or_topic_is_another_channel() -> None:
-    written = channels.publisher_channel("/scan", LaserScan, PROFILES[0])
-    assert written == "/scan sensor_msgs/msg/LaserScan reliable transient_local"
-    assert written not in channels.subscription_channels("/scan", String, PROFILES[3])
-    assert written not in channels.subscription_channels("/scans", LaserScan, PROFILES[3])
-    assert channels.topic_of(written) == "/scan"
-    assert channels.is_transient_local(written)
-    assert channels.is_topic(written)
+    channel = channels.publisher_channel("/scan", LaserScan, PROFILES[0])
+    assert channel == "/scan sensor_msgs/msg/LaserScan reliable transient_local"
+    assert channel not in channels.subscription_channels("/scan", String, PROFILES[3])
+    assert channel not in channels.subscription_channels("/scans", LaserScan, PROFILES[3])
+    assert channels.topic_of(channel) == "/scan"
+    assert channels.is_transient_local(channel)
+    assert channels.is_topic(channel)
 
 
 def test_requests_and_responses_are_named_alike_by_host_and_grader() -> None:
     request = channels.request("/ask", Trigger)
     assert not channels.is_topic(request)
     assert answers(request, "0a") == channels.response("/ask", Trigger, "0a")
-    own = channels.response("/ask", Trigger, channels.OWN)
-    assert channels.with_process_prefix((own, request), "0a") == (channels.response("/ask", Trigger, "0a"), request)
+    own_response = channels.response("/ask", Trigger, channels.OWN)
+    assert channels.with_process_prefix((own_response, request), "0a") == (
+        channels.response("/ask", Trigger, "0a"),
+        request,
+    )
 
 
 def test_the_client_of_a_request_is_identified_by_its_process(node: Any) -> None:

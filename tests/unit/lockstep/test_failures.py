@@ -50,8 +50,8 @@ def test_a_syntax_error_has_its_own_diagnosis(kind: str) -> None:
 
 
 def test_a_module_that_rosidl_made_is_not_called_the_student_s_file() -> None:
-    trace = '  File "/ws/install/msgs/lib/python3/site-packages/msgs/msg/_status.py", line 72\n    x = []\n'
-    diagnosis = diagnose_crash(Crash("import", "SyntaxError", "invalid syntax (_status.py, line 72)", trace))
+    traceback = '  File "/ws/install/msgs/lib/python3/site-packages/msgs/msg/_status.py", line 72\n    x = []\n'
+    diagnosis = diagnose_crash(Crash("import", "SyntaxError", "invalid syntax (_status.py, line 72)", traceback))
     assert diagnosis.kind is Kind.CRASHED_AT_IMPORT
     assert "what rosidl made of one of your definitions: invalid syntax (_status.py, line 72)" in diagnosis.sentence
 
@@ -61,8 +61,8 @@ def test_an_exception_without_a_message_is_shown_by_its_type() -> None:
 
 
 def test_a_service_callback_without_a_response_is_reported() -> None:
-    trace = '  File "rclpy/service.py", line 83, in send_response\n    raise TypeError()\nTypeError\n'
-    sentence = diagnose_crash(Crash("spin", "TypeError", "", trace)).sentence
+    traceback = '  File "rclpy/service.py", line 83, in send_response\n    raise TypeError()\nTypeError\n'
+    sentence = diagnose_crash(Crash("spin", "TypeError", "", traceback)).sentence
     assert sentence.startswith("A service's callback has not returned the response")
 
 
@@ -119,10 +119,13 @@ def test_a_program_that_runs_but_no_longer_answers_is_not_reported_as_ended() ->
 
 
 def test_a_node_that_never_spins_and_a_node_that_hangs_have_different_diagnoses() -> None:
-    never, hangs = diagnose_no_answer(Kind.NEVER_STARTED, "60 s", "a\nb"), diagnose_no_answer(Kind.STUCK, "30 s", "")
-    assert "did not start to spin within 60 s" in never.sentence
-    assert never.detail == "a\nb"
-    assert "did not come back from a callback within 30 s" in hangs.sentence
+    never_started, stuck = (
+        diagnose_no_answer(Kind.NEVER_STARTED, "60 s", "a\nb"),
+        diagnose_no_answer(Kind.STUCK, "30 s", ""),
+    )
+    assert "did not start to spin within 60 s" in never_started.sentence
+    assert never_started.detail == "a\nb"
+    assert "did not come back from a callback within 30 s" in stuck.sentence
 
 
 def test_a_printed_traceback_names_the_crash() -> None:

@@ -41,9 +41,9 @@ def host(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Open]:
 
 
 def _kind(action: Callable[[], object]) -> Kind:
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         action()
-    return caught.value.diagnosis.kind
+    return excinfo.value.diagnosis.kind
 
 
 def test_a_host_that_answers_is_stepped(host: Open) -> None:
@@ -142,9 +142,9 @@ def test_a_crash_event_becomes_the_diagnosis_of_a_crash(host: Open) -> None:
 
 
 def test_a_program_that_cannot_be_stepped_raises_its_own_error(host: Open) -> None:
-    with pytest.raises(UnsteppableError) as caught:
+    with pytest.raises(UnsteppableError) as excinfo:
         host(r"""os.write(write, b'{"event": "unsteppable", "reason": "clock"}\n')""").wait_ready()
-    assert caught.value.reason == "clock"
+    assert excinfo.value.reason == "clock"
 
 
 def test_a_deadlock_event_becomes_the_diagnosis_stuck(host: Open) -> None:

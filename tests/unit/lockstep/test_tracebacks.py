@@ -46,9 +46,9 @@ def test_a_diagnosis_shows_the_students_frames() -> None:
 
 
 def test_a_traceback_of_a_syntax_error_keeps_the_wrong_line() -> None:
-    last = f'  File "{MODULES}/my_robot/driver.py", line 7\n    def f()\n           ^\n'
-    trace = f"{LOADER}{last}SyntaxError: expected ':'\n"
-    diagnosis = diagnose_crash(Crash("import", "SyntaxError", "expected ':' (driver.py, line 7)", trace))
+    last_frame = f'  File "{MODULES}/my_robot/driver.py", line 7\n    def f()\n           ^\n'
+    traceback = f"{LOADER}{last_frame}SyntaxError: expected ':'\n"
+    diagnosis = diagnose_crash(Crash("import", "SyntaxError", "expected ':' (driver.py, line 7)", traceback))
     assert diagnosis.kind is Kind.SYNTAX_ERROR
     assert diagnosis.detail.splitlines()[1:] == [
         '  File "ws/src/my_robot/my_robot/driver.py", line 7',
@@ -69,10 +69,10 @@ def test_files_that_rosidl_generated_are_not_shown_as_the_students() -> None:
 
 
 def test_each_part_of_a_chain_of_exceptions_keeps_its_error() -> None:
-    chained = own_frames(f"{CRASH}\nDuring handling of the above exception, another exception occurred:\n\n{CRASH}")
-    assert chained.count("ZeroDivisionError") == 2
-    assert "During handling" in chained
-    assert "frozen" not in chained
+    lines = own_frames(f"{CRASH}\nDuring handling of the above exception, another exception occurred:\n\n{CRASH}")
+    assert lines.count("ZeroDivisionError") == 2
+    assert "During handling" in lines
+    assert "frozen" not in lines
 
 
 def test_a_message_of_several_lines_is_kept() -> None:
@@ -81,12 +81,12 @@ def test_a_message_of_several_lines_is_kept() -> None:
 
 
 @pytest.mark.parametrize(
-    ("path", "shown"),
+    ("path", "expected"),
     [
         (f"{INSTALL}/share/my_robot/launch/robot.launch.py", "ws/src/my_robot/launch/robot.launch.py"),
         ("/home/a/02_nodes/ws/src/my_robot/my_robot/driver.py", "ws/src/my_robot/my_robot/driver.py"),
         ("/usr/lib/python3.12/runpy.py", "/usr/lib/python3.12/runpy.py"),
     ],
 )
-def test_the_path_of_a_built_file_is_shown_as_that_of_its_source(path: str, shown: str) -> None:
-    assert with_source_paths(f'File "{path}", line 1') == f'File "{shown}", line 1'
+def test_the_path_of_a_built_file_is_shown_as_that_of_its_source(path: str, expected: str) -> None:
+    assert with_source_paths(f'File "{path}", line 1') == f'File "{expected}", line 1'

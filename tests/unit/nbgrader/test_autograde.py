@@ -55,13 +55,13 @@ def test_the_score_of_each_group_is_recorded(course: Any, verdict: Callable[...,
 
 
 def test_the_submitted_notebook_is_not_executed(course: Any, verdict: Callable[..., Any], tmp_path: Path) -> None:
-    trace = tmp_path / "executed"
+    marker = tmp_path / "executed"
     notebook = course.released
-    cell(notebook, "free").source = f"open({str(trace)!r}, 'w')"
+    cell(notebook, "free").source = f"open({str(marker)!r}, 'w')"
     course.grade = lambda job: verdict()
     course.submit("alice", notebook)
     assert course.autograde("alice")["success"]
-    assert not trace.exists()
+    assert not marker.exists()
     assert cell(course.autograded("alice"), "free").outputs == []
 
 
@@ -106,15 +106,15 @@ def test_forged_outputs_and_metadata_earn_no_points(course: Any, verdict: Callab
     assert course.grades("mallory") == RECORDED
 
 
-def drop(notebook: NotebookNode) -> None:
+def remove_grade_cells(notebook: NotebookNode) -> None:
     notebook.cells = [cell for cell in notebook.cells if not cell.id.startswith("g-")]
 
 
-def drop_everything(notebook: NotebookNode) -> None:
+def remove_all_cells(notebook: NotebookNode) -> None:
     notebook.cells = []
 
 
-def double(notebook: NotebookNode) -> None:
+def copy_grade_cells(notebook: NotebookNode) -> None:
     notebook.cells += copy.deepcopy([cell for cell in notebook.cells if cell.id.startswith("g-")])
 
 
@@ -125,14 +125,14 @@ def retype(notebook: NotebookNode) -> None:
 
 
 def unmark(notebook: NotebookNode) -> None:
-    for each in notebook.cells:
-        each.metadata.pop("nbgrader", None)
+    for cell in notebook.cells:
+        cell.metadata.pop("nbgrader", None)
 
 
 def claim_solution(notebook: NotebookNode) -> None:
-    for each in notebook.cells:
-        if "nbgrader" in each.metadata:
-            each.metadata.nbgrader.update(solution=True, locked=False, points=100)
+    for cell in notebook.cells:
+        if "nbgrader" in cell.metadata:
+            cell.metadata.nbgrader.update(solution=True, locked=False, points=100)
 
 
 def strange_marks(notebook: NotebookNode) -> None:
@@ -147,14 +147,24 @@ def extra_grade(notebook: NotebookNode) -> None:
 
 
 def old_schema(notebook: NotebookNode) -> None:
-    for each in notebook.cells:
-        if "nbgrader" in each.metadata:
-            each.metadata.nbgrader["schema_version"] = 99
+    for cell in notebook.cells:
+        if "nbgrader" in cell.metadata:
+            cell.metadata.nbgrader["schema_version"] = 99
 
 
 @pytest.mark.parametrize(
     "tamper",
-    [drop, drop_everything, double, retype, unmark, claim_solution, strange_marks, extra_grade, old_schema],
+    [
+        remove_grade_cells,
+        remove_all_cells,
+        copy_grade_cells,
+        retype,
+        unmark,
+        claim_solution,
+        strange_marks,
+        extra_grade,
+        old_schema,
+    ],
 )
 def test_a_tampered_notebook_neither_gains_points_nor_shrinks_the_maximum(
     tamper: Callable[[NotebookNode], None], course: Any, verdict: Callable[..., Any]

@@ -55,7 +55,7 @@ def answered(course: Any, text: str) -> NotebookNode:
 
 
 def test_the_release_contains_neither_the_mark_scheme_nor_the_model_answer(course: Any) -> None:
-    text = "\n".join(each.source for each in course.released.cells)
+    text = "\n".join(cell.source for cell in course.released.cells)
     assert "Why?" in text
     assert not [word for word in ("BECAUSE", "MARK SCHEME", "SECRET") if word in text]
 

@@ -49,9 +49,9 @@ OUTPUT = st.fixed_dictionaries(
 @pytest.mark.slow
 @given(st.lists(OUTPUT, max_size=4))
 def test_any_outputs_of_a_kernel_become_valid_and_harmless(outputs: list[dict[str, Any]]) -> None:
-    kept = sanitized_outputs(outputs)
-    nbformat.validate(new_notebook(cells=[new_code_cell("", outputs=kept)]))
-    for output in kept:
+    sanitized = sanitized_outputs(outputs)
+    nbformat.validate(new_notebook(cells=[new_code_cell("", outputs=sanitized)]))
+    for output in sanitized:
         assert set(output.get("data", {})) <= {"text/plain", "image/png", "image/jpeg"}
         assert output.get("metadata", {}) == {}
         str(output).encode("utf-8")
@@ -130,7 +130,7 @@ def test_the_first_verdict_also_shows_the_diagnosis(broken_result: Result) -> No
 
 
 @pytest.mark.parametrize(
-    ("markdown", "kept", "removed"),
+    ("markdown", "expected", "removed"),
     [
         ("# Head\n\n**bold** `code`", "<strong>bold</strong> <code>code</code>", "&lt;"),
         ("|a|\n|-|\n|1|", "<td>1</td>", "&lt;"),
@@ -160,9 +160,9 @@ def test_the_first_verdict_also_shows_the_diagnosis(broken_result: Result) -> No
         ("<svg onload=y()></svg>", "&lt;svg", "<svg"),
     ],
 )
-def test_markdown_keeps_its_structure_and_loses_active_content(markdown: str, kept: str, removed: str) -> None:
+def test_markdown_keeps_its_structure_and_loses_active_content(markdown: str, expected: str, removed: str) -> None:
     html = sanitized_markdown(None, markdown)  # type: ignore[arg-type]
-    assert kept in html
+    assert expected in html
     assert removed not in html
 
 

@@ -49,9 +49,9 @@ def test_the_checks_of_an_exercise_are_those_of_its_sentences(
 
 
 def test_an_unknown_exercise_number_is_answered_with_the_known_ones() -> None:
-    with pytest.raises(UsageError) as raised:
+    with pytest.raises(UsageError) as excinfo:
         part_of("03_interfaces", exercise=4, step=None, question=None)
-    assert str(raised.value) == (
+    assert str(excinfo.value) == (
         "03_interfaces has no exercise 4; it has: exercise 1 (a package of interfaces), "
         "exercise 2 (a node that publishes and serves), exercise 3 (drive a distance)"
     )
@@ -62,8 +62,10 @@ def test_an_unknown_exercise_number_is_answered_with_the_known_ones() -> None:
     assert part_of("08_capstone", None, None, None) == Part("08_capstone")
 
 
-def _contract_cell(source: str, *sentences: str, **more: str) -> NotebookNode:
-    return new_markdown_cell(source, metadata={"course": {"contract": dict.fromkeys(sentences, "a text")}}, **more)
+def _contract_cell(source: str, *sentences: str, **other_sentences: str) -> NotebookNode:
+    return new_markdown_cell(
+        source, metadata={"course": {"contract": dict.fromkeys(sentences, "a text")}}, **other_sentences
+    )
 
 
 @pytest.fixture
@@ -100,7 +102,7 @@ def test_files_that_only_later_cells_write_belong_to_later_parts(chapter: Path) 
     ]
     write(new_notebook(cells=cells), chapter)
     parts = exercises("x")
-    assert [each.later for each in parts] == [("ws/between.py", "ws/two.py"), ()]
+    assert [part.later for part in parts] == [("ws/between.py", "ws/two.py"), ()]
     assert Part("x", "exercise 1", parts).later == ("ws/between.py", "ws/two.py")
     assert Part("x", "", parts).later == ()
 

@@ -26,25 +26,25 @@ def test_the_graph_shows_the_running_nodes_and_topics() -> None:
     reporter.create_subscription(Twist, "/robot1/cmd_vel", print, 10)
     reporter.create_publisher(String, "status", 10)
     try:
-        shown = graph(30.0)
+        live_graph = graph(30.0)
     finally:
         rclpy.try_shutdown(context=context)
-    assert isinstance(shown, Graph)
-    assert shown.nodes == ("/reporter", "/robot1/driver")
-    assert shown.topics == {"/robot1/cmd_vel": "geometry_msgs/msg/Twist", "/status": "std_msgs/msg/String"}
-    assert shown.published == {("/robot1/driver", "/robot1/cmd_vel"), ("/reporter", "/status")}
-    assert shown.subscribed == {("/robot1/cmd_vel", "/reporter")}
-    assert repr(shown).splitlines()[0] == "2 nodes: /reporter, /robot1/driver"
+    assert isinstance(live_graph, Graph)
+    assert live_graph.nodes == ("/reporter", "/robot1/driver")
+    assert live_graph.topics == {"/robot1/cmd_vel": "geometry_msgs/msg/Twist", "/status": "std_msgs/msg/String"}
+    assert live_graph.published == {("/robot1/driver", "/robot1/cmd_vel"), ("/reporter", "/status")}
+    assert live_graph.subscribed == {("/robot1/cmd_vel", "/reporter")}
+    assert repr(live_graph).splitlines()[0] == "2 nodes: /reporter, /robot1/driver"
 
 
 def test_the_drawing_has_a_box_for_each_node_and_topic_and_an_arrow_for_each_pair() -> None:
-    drawn = Graph(
+    html = Graph(
         ("/a", "/alone", "/b"),
         {"/t": "std_msgs/msg/String"},
         frozenset({("/a", "/t")}),
         frozenset({("/t", "/a"), ("/t", "/b")}),
     )._repr_html_()
-    root = ElementTree.fromstring(drawn)
+    root = ElementTree.fromstring(html)
     svg = "{http://www.w3.org/2000/svg}"
     assert sorted(text.text or "" for text in root.iter(f"{svg}text")) == [
         "/a", "/a", "/alone", "/b", "/t", "std_msgs/msg/String",

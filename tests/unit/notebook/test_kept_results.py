@@ -70,7 +70,7 @@ class Machine:
         self.runs.append(arguments["part"])
         self.meanwhile()
         suite = suites.visible(CHAPTER)
-        lines = [asdict(CheckResult.of(each, Outcome.PASSED)) for each in suite.checks]
+        lines = [asdict(CheckResult.of(check, Outcome.PASSED)) for check in suite.checks]
         yield (
             {
                 "diagnosis": {"kind": "ok"},
@@ -109,11 +109,11 @@ def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def machine(copied: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Machine:
     copy = Machine(copied)
-    own = copy.root / "autograder/notebook/kept_results.py"
+    module = copy.root / "autograder/notebook/kept_results.py"
     course = Course(copy.root, "a-copy", "A copy", checks="autograder/checks", worlds="assets/worlds")
     monkeypatch.setattr(course_paths, "ROOT", copy.root)
     monkeypatch.setattr(course_paths, "course", lambda: course)
-    monkeypatch.setattr(kept_results, "__file__", str(own))
+    monkeypatch.setattr(kept_results, "__file__", str(module))
     monkeypatch.setattr(checking, "run_in_worker", copy.run)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     return copy
@@ -216,8 +216,8 @@ def test_no_result_is_kept_for_a_workspace_with_a_link(machine: Machine, tmp_pat
 @pytest.mark.parametrize("text", ["", "[]", '{"": 1}', '{"": {"digest": "a"}}'])
 def test_a_damaged_kept_result_is_ignored(text: str, machine: Machine, tmp_path: Path) -> None:
     assert machine.has_run()
-    (kept,) = (tmp_path / "cache").rglob("*.json")
-    kept.write_text(text)
+    (result_file,) = (tmp_path / "cache").rglob("*.json")
+    result_file.write_text(text)
     assert machine.has_run()
     assert not machine.has_run()
 

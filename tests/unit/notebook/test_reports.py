@@ -32,14 +32,14 @@ LINES = (
 
 
 def test_a_notice_of_trouble_is_shown_unless_the_requested_part_passed() -> None:
-    trouble = Notice("There is no package lab.")
+    notice = Notice("There is no package lab.")
 
-    def shown(lines: tuple[CheckResult, ...], part: str) -> set[bool]:
-        report = CheckReport("09_assessment", lines, trouble, part=part)
-        return {trouble.sentence in text for text in (repr(report), report._repr_html_())}
+    def shows_notice(lines: tuple[CheckResult, ...], part: str) -> set[bool]:
+        report = CheckReport("09_assessment", lines, notice, part=part)
+        return {notice.sentence in text for text in (repr(report), report._repr_html_())}
 
-    assert shown(LINES[:1], "question 1") == {False}
-    assert shown(LINES, "question 1") == shown(LINES[:1], "") == {True}
+    assert shows_notice(LINES[:1], "question 1") == {False}
+    assert shows_notice(LINES, "question 1") == shows_notice(LINES[:1], "") == {True}
 
 
 def test_a_report_counts_and_explains_on_a_terminal() -> None:
@@ -52,11 +52,11 @@ def test_a_report_counts_and_explains_on_a_terminal() -> None:
 
 
 def test_output_of_a_program_is_escaped_in_a_notebook() -> None:
-    shown = CheckReport("02_nodes", LINES, Notice("<script>", "a < b"))._repr_html_()
-    assert "&lt;script&gt;" in shown
-    assert "<script>" not in shown
-    assert "it drove &amp; drove" in shown
-    assert shown.count("look &lt;here&gt;") == 1
+    html = CheckReport("02_nodes", LINES, Notice("<script>", "a < b"))._repr_html_()
+    assert "&lt;script&gt;" in html
+    assert "<script>" not in html
+    assert "it drove &amp; drove" in html
+    assert html.count("look &lt;here&gt;") == 1
 
 
 def test_consequences_are_lines_below_their_cause() -> None:
@@ -80,10 +80,10 @@ def test_consequences_are_lines_below_their_cause() -> None:
 
 02_nodes: 1 of 5 visible checks passed."""
     )
-    shown = report._repr_html_()
-    assert "<summary>These failed as well; mend the first and run again: 1</summary>" in shown
-    assert "Not checked: It is &lt;c&gt;. It is &lt;d&gt;.</div>" in shown
-    assert shown.count("not checked") == 0
+    html = report._repr_html_()
+    assert "<summary>These failed as well; mend the first and run again: 1</summary>" in html
+    assert "Not checked: It is &lt;c&gt;. It is &lt;d&gt;.</div>" in html
+    assert html.count("not checked") == 0
 
 
 def test_a_report_passes_when_every_check_does() -> None:

@@ -58,14 +58,14 @@ def test_the_table_of_a_world_is_kept_and_the_best_run_comes_first() -> None:
     for speed, name in ((0.1, "slow"), (0.3, ""), (0.5, "fast")):
         table = score(drive(speed), name)
     assert isinstance(table, ScoreTable)
-    assert [each.run for each in table.scores] == ["fast", "run 2", "slow"]
+    assert [entry.run for entry in table.scores] == ["fast", "run 2", "slow"]
     assert repr(table).splitlines()[1].startswith("1. ← this run  fast   after")
     assert "<td>fast</td>" in table._repr_html_()
 
 
 def test_arrival_counts_more_than_no_collision_and_no_collision_more_than_time() -> None:
-    def rank(arrived: float | None, margin: float, left: float = 0.0) -> tuple[bool, bool, float]:
-        return Score("maze", "", arrived, left, 1.0, margin).rank
+    def rank(arrived_at: float | None, margin: float, remaining: float = 0.0) -> tuple[bool, bool, float]:
+        return Score("maze", "", arrived_at, remaining, 1.0, margin).rank
 
     ranks = [rank(50.0, 0.1), rank(60.0, 0.1), rank(40.0, 0.0), rank(None, 0.1, 1.0), rank(None, 0.0, 0.5)]
     assert ranks == sorted(ranks)

@@ -50,7 +50,7 @@ def run(
 
 
 @pytest.mark.parametrize(
-    ("cell", "on_disk", "written", "notice"),
+    ("cell", "on_disk", "recorded", "notice"),
     [
         (UNSOLVED, None, None, "Writing"),
         (UNSOLVED, UNSOLVED, None, "Overwriting"),
@@ -67,10 +67,10 @@ def run(
     ],
 )
 def test_a_file_is_written_kept_or_copied_first(
-    run: Run, cell: str, on_disk: str | None, written: str | None, notice: str
+    run: Run, cell: str, on_disk: str | None, recorded: str | None, notice: str
 ) -> None:
-    if written is not None:
-        run(written)
+    if recorded is not None:
+        run(recorded)
     if on_disk is not None:
         Path(FILE).write_text(on_disk)
     output = run(cell)

@@ -31,9 +31,9 @@ def test_waits_are_limited_to_the_rest_of_the_budget(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(time, "monotonic", lambda: later)
     assert patience.is_late()
     assert patience.bounded(30.0) == 0.0
-    with pytest.raises(StudentError, match="2 minutes in all") as caught:
+    with pytest.raises(StudentError, match="2 minutes in all") as excinfo:
         patience.require()
-    assert caught.value.diagnosis.kind is Kind.TIMED_OUT
+    assert excinfo.value.diagnosis.kind is Kind.TIMED_OUT
 
 
 def test_programs_that_stall_the_grading_use_up_its_budget() -> None:

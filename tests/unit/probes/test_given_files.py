@@ -13,15 +13,15 @@ def test_missing_and_changed_files_below_the_folders_are_named() -> None:
 
 
 def test_changes_of_white_space_further_files_and_files_elsewhere_are_allowed() -> None:
-    kept = {"lamp/lamp.py": b"a  =  1", "launch/lamp.py": b"b = 2\n", "lamp/more.py": b"", "setup.py": b"d = 4\n"}
-    assert changed_files(kept, GIVEN, FOLDERS) == []
+    allowed = {"lamp/lamp.py": b"a  =  1", "launch/lamp.py": b"b = 2\n", "lamp/more.py": b"", "setup.py": b"d = 4\n"}
+    assert changed_files(allowed, GIVEN, FOLDERS) == []
 
 
 def test_a_file_may_lack_the_copyright_comment_as_in_the_notebook() -> None:
     licence = b"# Copyright 2026 Somebody\n#\n# Licensed under ...\n\n"
-    given = {"lamp/lamp.py": licence + b"a = 1\n"}
-    assert changed_files({"lamp/lamp.py": b"a = 1\n"}, given, FOLDERS) == []
-    assert changed_files({"lamp/lamp.py": b"# coding: utf-7\na = 1\n"}, given, FOLDERS) == ["lamp/lamp.py"]
+    originals = {"lamp/lamp.py": licence + b"a = 1\n"}
+    assert changed_files({"lamp/lamp.py": b"a = 1\n"}, originals, FOLDERS) == []
+    assert changed_files({"lamp/lamp.py": b"# coding: utf-7\na = 1\n"}, originals, FOLDERS) == ["lamp/lamp.py"]
 
 
 def test_a_comment_that_is_not_a_licence_is_kept() -> None:

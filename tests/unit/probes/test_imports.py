@@ -34,7 +34,7 @@ def package(tmp_path: Path) -> Path:
 
 
 def _names(found_imports: tuple[imports.Import, ...]) -> list[str]:
-    return [each.module for each in found_imports]
+    return [found.module for found in found_imports]
 
 
 def test_only_imports_from_outside_the_package_count(package: Path) -> None:
@@ -57,10 +57,10 @@ def test_an_import_has_its_files_and_the_dependency_that_declares_it(package: Pa
 
 
 @pytest.mark.parametrize(
-    ("module", "declared"), [("numpy", "python3-numpy"), ("tf2_ros", "tf2_ros"), ("lark_x", "python3-lark-x")]
+    ("module", "dependency"), [("numpy", "python3-numpy"), ("tf2_ros", "tf2_ros"), ("lark_x", "python3-lark-x")]
 )
-def test_a_module_is_declared_by_its_rosdep_key_or_as_a_ros_package(module: str, declared: str) -> None:
-    assert not imports.undeclared([imports.Import(module, ())], {declared})
+def test_a_module_is_declared_by_its_rosdep_key_or_as_a_ros_package(module: str, dependency: str) -> None:
+    assert not imports.undeclared([imports.Import(module, ())], {dependency})
 
 
 def test_the_pip_name_of_a_module_is_not_a_rosdep_key(package: Path) -> None:

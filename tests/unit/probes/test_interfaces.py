@@ -125,10 +125,10 @@ def test_the_correct_share_counts_fields_and_constants() -> None:
     ],
 )
 def test_a_definition_that_the_build_would_reject_is_rejected_with_the_reason(text: str, reason: str) -> None:
-    with pytest.raises(Unreadable) as caught:
+    with pytest.raises(Unreadable) as excinfo:
         parse("pkg", PATH, text)
-    assert PATH in str(caught.value)
-    assert reason in str(caught.value)
+    assert PATH in str(excinfo.value)
+    assert reason in str(excinfo.value)
 
 
 def test_an_action_without_its_parts_is_refused() -> None:

@@ -65,15 +65,15 @@ launch.exceptions.InvalidLaunchFileError: Caught multiple exceptions when trying
 
 def test_a_launch_file_that_cannot_be_read_is_reported_with_error_and_line() -> None:
     assert launch_probe.unreadable(NOT_READ) == "SyntaxError: expected ':' (robot.launch.py, line 28)"
-    raised = NOT_READ.replace("expected ':' (robot.launch.py, line 28)", "no such thing")
-    assert launch_probe.unreadable(raised) == "SyntaxError: no such thing (ws/src/pkg/launch/robot.launch.py, line 28)"
+    log = NOT_READ.replace("expected ':' (robot.launch.py, line 28)", "no such thing")
+    assert launch_probe.unreadable(log) == "SyntaxError: no such thing (ws/src/pkg/launch/robot.launch.py, line 28)"
     assert launch_probe.unreadable("Package 'pkg' not found\n") == "Package 'pkg' not found"
     assert launch_probe.unreadable("") == "it says nothing"
 
 
 def test_choices_may_be_a_tuple() -> None:
-    shown = SHOWN.replace("['drive', 'park']", "('drive', 'park')")
-    assert parse_arguments(shown) == parse_arguments(SHOWN)
+    output = SHOWN.replace("['drive', 'park']", "('drive', 'park')")
+    assert parse_arguments(output) == parse_arguments(SHOWN)
 
 
 def test_a_launch_file_without_arguments_shows_none() -> None:
@@ -89,14 +89,14 @@ def test_a_launch_file_without_arguments_shows_none() -> None:
     ],
 )
 def test_a_wrong_argument_is_named(name: str, default: str, sentence: str) -> None:
-    with pytest.raises(CheckFailed) as caught:
+    with pytest.raises(CheckFailed) as excinfo:
         launch_probe.expect_argument(parse_arguments(SHOWN), name, default)
-    assert caught.value.message == sentence
+    assert excinfo.value.message == sentence
 
 
-@pytest.mark.parametrize("shown", ["'rob' + 'ot1'", "'robot' + LaunchConfig('number')", "'' + 'robot1'"])
-def test_a_default_of_several_substitutions_in_a_row_is_a_default(shown: str) -> None:
-    arguments = parse_arguments(SHOWN.replace("'robot1'", shown))
+@pytest.mark.parametrize("output", ["'rob' + 'ot1'", "'robot' + LaunchConfig('number')", "'' + 'robot1'"])
+def test_a_default_of_several_substitutions_in_a_row_is_a_default(output: str) -> None:
+    arguments = parse_arguments(SHOWN.replace("'robot1'", output))
     launch_probe.expect_argument(arguments, "robot_name", "robot1")
 
 
@@ -107,9 +107,9 @@ def test_a_default_of_several_texts_in_a_row_is_compared_as_one() -> None:
 
 
 def test_an_argument_without_a_description_earns_half_the_points() -> None:
-    with pytest.raises(CheckFailed, match="has no description") as caught:
+    with pytest.raises(CheckFailed, match="has no description") as excinfo:
         launch_probe.expect_argument({"speed": Argument("speed", "", "0.2", ())}, "speed", "0.2")
-    assert caught.value.fraction == 0.5
+    assert excinfo.value.fraction == 0.5
 
 
 def test_started_and_ended_programs_are_listed_in_order() -> None:
@@ -118,8 +118,10 @@ def test_started_and_ended_programs_are_listed_in_order() -> None:
 
 
 def test_node_names_are_read_from_the_commands_of_ended_processes() -> None:
-    died = "[ERROR] [{}-{}]: process has died [pid 7, exit code -9, cmd 'lib/{} --ros-args -r __node:={}']."
-    output = "\n".join((died.format("self_test", 1, "self_test", "check"), died.format("driver", 2, "driver", "wheel")))
+    message = "[ERROR] [{}-{}]: process has died [pid 7, exit code -9, cmd 'lib/{} --ros-args -r __node:={}']."
+    output = "\n".join(
+        (message.format("self_test", 1, "self_test", "check"), message.format("driver", 2, "driver", "wheel"))
+    )
     assert launch_probe.node_names(output, "self_test") == {"check"}
     assert launch_probe.node_names(STARTED, "self_test") == set()
 
@@ -151,10 +153,10 @@ def test_the_failure_is_the_error_that_ended_the_launch(output: str, cause: str)
 
 
 def test_an_unwritten_part_is_reported_as_unwritten() -> None:
-    with pytest.raises(StudentError) as caught:
+    with pytest.raises(StudentError) as excinfo:
         launch_probe.require_written(f"{CAUGHT}\n - NotImplementedError: still to be written\n")
-    assert caught.value.diagnosis.kind.value == "unfinished"
-    assert "still to be written" in caught.value.diagnosis.sentence
+    assert excinfo.value.diagnosis.kind.value == "unfinished"
+    assert "still to be written" in excinfo.value.diagnosis.sentence
 
 
 @pytest.mark.parametrize(
@@ -166,9 +168,9 @@ def test_an_unwritten_part_is_reported_as_unwritten() -> None:
     ],
 )
 def test_a_stop_that_is_not_clean_is_described(stop: Stop, sentence: str) -> None:
-    with pytest.raises(CheckFailed) as caught:
+    with pytest.raises(CheckFailed) as excinfo:
         launch_probe.expect_stopped(stop)
-    assert caught.value.message == sentence
+    assert excinfo.value.message == sentence
 
 
 def test_a_clean_stop_passes() -> None:

@@ -54,9 +54,9 @@ def test_each_linter_names_its_first_finding_even_if_the_students_tests_report_n
     assert findings["test_pep257"].startswith("half.py:5 in public function `half`: D400: ")
     with pytest.raises(
         CheckFailed, match=r"test_flake8 passes, but its linter finds .*: half\.py:6:13: E225"
-    ) as caught:
+    ) as excinfo:
         expect_tidy(workspace, take(workspace, "half"), TESTS, fraction=0.5)
-    assert caught.value.fraction == 0.5
+    assert excinfo.value.fraction == 0.5
 
 
 def test_the_tests_of_ros2_pkg_create_find_an_inserted_fault_and_empty_tests_do_not(

@@ -107,11 +107,11 @@ def test_a_run_on_a_hidden_version_returns_no_text_of_its_own(workspace: Workspa
     assert not hidden.claims.messages
     for text in ("return", "x // 2", "def half"):
         assert text not in repr(hidden)
-    (shown,) = run_all(workspace, order)
-    assert "x // 2" in repr(shown)
+    (visible,) = run_all(workspace, order)
+    assert "x // 2" in repr(visible)
     # The same test has the same name in each run, so that verdicts can be compared.
     assert hidden.claims.verdicts == repeated.claims.verdicts
-    assert len(hidden.claims.verdicts) == len(shown.claims.verdicts)
+    assert len(hidden.claims.verdicts) == len(visible.claims.verdicts)
 
 
 def test_a_run_can_stop_at_the_first_failure_and_run_in_reverse_order(workspace: Workspace) -> None:
@@ -129,9 +129,9 @@ def test_tests_that_cannot_be_imported_find_no_fault(workspace: Workspace) -> No
     write(workspace, GOOD)
     (right,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     write(workspace, "import no_such_module\n" + GOOD)
-    (unread,) = run_all(workspace, TestRun(("test_half.py",), WRONG))
-    assert unread.status == 2
-    assert not unread.detects_fault(right)
+    (report,) = run_all(workspace, TestRun(("test_half.py",), WRONG))
+    assert report.status == 2
+    assert not report.detects_fault(right)
 
 
 def test_a_run_without_tests_does_not_pass(workspace: Workspace) -> None:
@@ -146,7 +146,7 @@ def test_a_run_without_tests_does_not_pass(workspace: Workspace) -> None:
 
 
 @pytest.mark.parametrize(
-    "trick",
+    "code",
     [
         "import os\nos._exit(0)",
         "import sys\nprint('2 passed', '<testsuite tests=\"2\"/>')\nsys.exit(0)",
@@ -154,8 +154,8 @@ def test_a_run_without_tests_does_not_pass(workspace: Workspace) -> None:
     ],
     ids=["_exit", "exit", "kill"],
 )
-def test_a_run_that_exits_early_reports_no_test(workspace: Workspace, trick: str) -> None:
-    write(workspace, trick + "\n" + GOOD)
+def test_a_run_that_exits_early_reports_no_test(workspace: Workspace, code: str) -> None:
+    write(workspace, code + "\n" + GOOD)
     (report,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     assert not report.passed
     assert "test_half::test_odd" not in report.executed
@@ -168,16 +168,16 @@ def test_a_run_that_exits_early_reports_no_test(workspace: Workspace, trick: str
 )
 def test_an_invalid_reply_of_a_run_reports_no_test(workspace: Workspace, reply: str) -> None:
     # Written to each descriptor of the host: that of the report, of the status, and the one that it waits for.
-    trick = f"import os, sys\nfor fd in range(3, 64):\n    try:\n        os.write(fd, b'{reply}')\n"
-    trick += "    except OSError:\n        pass\nos._exit(0)\n"
-    write(workspace, trick + GOOD)
+    code = f"import os, sys\nfor fd in range(3, 64):\n    try:\n        os.write(fd, b'{reply}')\n"
+    code += "    except OSError:\n        pass\nos._exit(0)\n"
+    write(workspace, code + GOOD)
     (report,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     assert not report.passed
     assert report.executed == ()
 
 
 def test_a_report_that_is_not_a_file_contains_no_tests(workspace: Workspace) -> None:
-    trick = """
+    code = """
 import pytest
 
 @pytest.fixture(autouse=True)
@@ -188,7 +188,7 @@ def folder(request):
     os.makedirs(path, exist_ok=True)
 
 """
-    write(workspace, trick + GOOD)
+    write(workspace, code + GOOD)
     (report,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     assert not report.passed
     assert report.executed == ()
@@ -204,14 +204,14 @@ def test_a_run_that_does_not_end_is_stopped(workspace: Workspace, monkeypatch: p
 
 
 @pytest.mark.parametrize(
-    ("hangs", "ends"),
+    ("hangs", "exit_reasons"),
     [
         pytest.param(1, (ExitReason.EXITED, ExitReason.EXITED), id="once, where rclpy missed the end of an executor"),
         pytest.param(2, (ExitReason.WALL_TIME, ExitReason.WALL_TIME), id="on every version, as tests that never end"),
     ],
 )
 def test_the_only_stopped_run_is_repeated_once(
-    workspace: Workspace, monkeypatch: pytest.MonkeyPatch, hangs: int, ends: tuple[ExitReason, ...]
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch, hangs: int, exit_reasons: tuple[ExitReason, ...]
 ) -> None:
     write(workspace, GOOD)
     original_run, stopped = student_test_runs._run, itertools.count()
@@ -222,7 +222,7 @@ def test_the_only_stopped_run_is_repeated_once(
 
     monkeypatch.setattr(student_test_runs, "_run", run_or_stop)
     reports = run_all(workspace, TestRun(("test_half.py",), RIGHT), TestRun(("test_half.py",), WRONG))
-    assert tuple(report.exit_reason for report in reports) == ends
+    assert tuple(report.exit_reason for report in reports) == exit_reasons
 
 
 def test_a_run_ends_no_sooner_than_the_threads_of_its_tests(
@@ -275,13 +275,13 @@ def test_a_context_that_a_test_does_not_shut_down_is_detected(workspace: Workspa
     write(workspace, setup + "    node.destroy_node()\n    rclpy.try_shutdown(context=context)\n")
     (clean,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     write(workspace, setup + "    node.destroy_node()\n")
-    (dropped,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
+    (report,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     assert unclosed.passed
     assert unclosed.left > 0
     assert clean.passed
     assert (clean.left, clean.is_logging) == (0, False)
-    assert dropped.passed
-    assert (dropped.left, dropped.is_logging) == (0, True)
+    assert report.passed
+    assert (report.left, report.is_logging) == (0, True)
 
 
 @pytest.mark.parametrize(

@@ -34,17 +34,17 @@ def test_generated_data_are_read_or_are_the_student_s_fault(
 
 
 @pytest.mark.parametrize(
-    ("reader", "known"),
+    ("reader", "value"),
     [
-        pytest.param(reader, known, id=f"{name}-{i}")
+        pytest.param(reader, value, id=f"{name}-{i}")
         for name, reader in READERS.items()
-        for i, known in enumerate(reader.known)
+        for i, value in enumerate(reader.known)
     ],
 )
 def test_data_that_once_went_wrong_are_read_or_are_the_student_s_fault(
-    reader: Reader, known: Any, tmp_path: Path
+    reader: Reader, value: Any, tmp_path: Path
 ) -> None:
-    _read(reader, known, tmp_path)
+    _read(reader, value, tmp_path)
 
 
 def _read(reader: Reader, value: Any, folder: Path) -> None:

@@ -28,13 +28,13 @@ from autograder.suite import CheckFailed
     ids=lambda error: type(error).__name__,
 )
 def test_an_error_while_data_are_read_is_the_student_s_and_names_them(error: Exception) -> None:
-    with pytest.raises(StudentError) as caught, reading("src/robot/package.xml", advice="Write it again."):
+    with pytest.raises(StudentError) as excinfo, reading("src/robot/package.xml", advice="Write it again."):
         raise error
-    diagnosis = caught.value.diagnosis
+    diagnosis = excinfo.value.diagnosis
     assert diagnosis.kind is Kind.UNREADABLE
     assert diagnosis.sentence.startswith("src/robot/package.xml cannot be read: ")
     assert diagnosis.sentence.endswith(". Write it again.")
-    assert caught.value.__cause__ is error
+    assert excinfo.value.__cause__ is error
 
 
 @pytest.mark.parametrize(
@@ -51,15 +51,15 @@ def test_an_error_while_data_are_read_is_the_student_s_and_names_them(error: Exc
     ids=lambda error: type(error).__name__,
 )
 def test_attributed_errors_and_errors_of_the_machine_pass_through(error: BaseException) -> None:
-    with pytest.raises(type(error)) as caught, reading("package.xml"):
+    with pytest.raises(type(error)) as excinfo, reading("package.xml"):
         raise error
-    assert caught.value is error
+    assert excinfo.value is error
 
 
 def test_the_reason_is_one_short_line_of_harmless_text() -> None:
-    with pytest.raises(StudentError) as caught, reading("config.yaml"):
+    with pytest.raises(StudentError) as excinfo, reading("config.yaml"):
         raise ValueError("a\n\x1b]0;title\x07b\u202e" + "x" * 1000)
-    sentence = caught.value.diagnosis.sentence
+    sentence = excinfo.value.diagnosis.sentence
     assert len(sentence) < 300
     assert sentence.startswith("config.yaml cannot be read: a b\ufffdxxx")
 

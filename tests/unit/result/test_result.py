@@ -148,9 +148,9 @@ def test_a_diagnosis_that_this_version_does_not_know_is_refused(make_result: Mak
 def test_an_invalid_result_is_refused_with_file_and_field(
     make_result: MakeResult, change: dict[str, object], message: str
 ) -> None:
-    with pytest.raises(UsageError) as caught:
+    with pytest.raises(UsageError) as excinfo:
         from_json({**make_result().to_json(), **change}, source="r.json")
-    assert message in str(caught.value)
+    assert message in str(excinfo.value)
 
 
 def test_json_that_is_not_an_object_is_rejected() -> None:

@@ -24,8 +24,8 @@ domains = []
 try:
     while len(domains) < 200:
         domains.append(Domain())
-except NoDomainLeftError as caught:
-    error = caught
+except NoDomainLeftError as exception:
+    error = exception
 """
 KERNEL = (
     "import os; from autograder.notebook import ros; ros(); print(os.environ['ROS_DOMAIN_ID'], flush=True); input()"

@@ -58,9 +58,9 @@ def test_a_stand_in_says_that_it_is_one_and_how_to_get_the_real_package(name: st
     ],
 )
 def test_an_uncovered_name_is_named_with_the_way_to_get_it(module: str, name: str, reason: str) -> None:
-    with pytest.raises(NotInStandInError) as caught:
+    with pytest.raises(NotInStandInError) as excinfo:
         exec(f"from {module} import {name}")
-    text = str(caught.value)
+    text = str(excinfo.value)
     package = module.partition(".")[0]
     assert text.startswith(f"'{module}.{name}' is not covered: this is the course's stand-in for {package}, ")
     assert reason in text
@@ -72,10 +72,10 @@ def test_an_uncovered_name_is_named_with_the_way_to_get_it(module: str, name: st
 )
 def test_an_uncovered_submodule_is_named_with_the_way_to_get_it(module: str) -> None:
     for statement in (f"import {module}", f"from {module} import Name"):
-        with pytest.raises(NotInStandInError) as caught:
+        with pytest.raises(NotInStandInError) as excinfo:
             exec(statement)
         package = module.partition(".")[0]
-        assert str(caught.value) == str(not_covered(module, standin=package))
+        assert str(excinfo.value) == str(not_covered(module, standin=package))
 
 
 def test_a_misspelt_name_is_reported_with_the_nearest_one() -> None:
@@ -96,7 +96,7 @@ def test_an_uncovered_element_of_a_launch_file_is_named_with_the_way_to_get_it(t
     file = tmp_path / "robot.launch.xml"
     file.write_text(f"<launch><{tag}/></launch>")
     source = launch.launch_description_sources.AnyLaunchDescriptionSource(str(file))
-    with pytest.raises(launch.InvalidLaunchFileError) as caught:
+    with pytest.raises(launch.InvalidLaunchFileError) as excinfo:
         source.get_launch_description(launch.LaunchContext())
-    assert f"'{tag}' is not covered: this is the course's stand-in for launch_ros" in str(caught.value)
-    assert f"To use '{tag}', {ADVICE}." in str(caught.value)
+    assert f"'{tag}' is not covered: this is the course's stand-in for launch_ros" in str(excinfo.value)
+    assert f"To use '{tag}', {ADVICE}." in str(excinfo.value)

@@ -46,11 +46,11 @@ def test_the_environment_is_cleared_before_it_is_set(tmp_path: Path) -> None:
 
 def test_no_accounts_and_no_home_folders_are_shown(tmp_path: Path) -> None:
     options = _options(_sandbox(Sandbox(tmp_path)))
-    shown = {Path(path) for flag in ("--bind", "--ro-bind", "--dev-bind") for path in _pairs(options, flag)}
+    mounted_paths = {Path(path) for flag in ("--bind", "--ro-bind", "--dev-bind") for path in _pairs(options, flag)}
     python = set(bubblewrap.python_mounts())
     for secret in ("/", "/root", "/home", "/etc", "/etc/shadow", "/etc/passwd", "/var", "/run", "/sys"):
-        assert Path(secret) not in shown - python
-    assert not any(course_paths.ROOT.is_relative_to(path) for path in shown)
+        assert Path(secret) not in mounted_paths - python
+    assert not any(course_paths.ROOT.is_relative_to(path) for path in mounted_paths)
 
 
 def test_suites_and_solutions_are_hidden_in_each_mount_that_contains_them(tmp_path: Path) -> None:
@@ -79,11 +79,11 @@ def test_every_file_system_in_memory_has_a_size_or_is_read_only(tmp_path: Path) 
 
 
 def test_the_kernels_limits_are_set_inside_the_sandbox(tmp_path: Path) -> None:
-    given = Limits(cpu_seconds=7, address_space=2**30, threads=10, file_size=99, open_files=33)
-    arguments = bubblewrap.sandbox(["node", "--flag"], Sandbox(tmp_path, limits=given), 9)
-    inside = arguments[arguments.index("--") + 1 :]
-    assert inside[0] == "prlimit"
-    assert inside[-2:] == ["node", "--flag"]
+    chosen = Limits(cpu_seconds=7, address_space=2**30, threads=10, file_size=99, open_files=33)
+    arguments = bubblewrap.sandbox(["node", "--flag"], Sandbox(tmp_path, limits=chosen), 9)
+    command = arguments[arguments.index("--") + 1 :]
+    assert command[0] == "prlimit"
+    assert command[-2:] == ["node", "--flag"]
     limits = (
         "--cpu=7:12",
         f"--as={2**30}:{2**30}",
@@ -93,7 +93,7 @@ def test_the_kernels_limits_are_set_inside_the_sandbox(tmp_path: Path) -> None:
         "--core=0:0",
         "--sigpending=1024:1024",
     )
-    assert set(limits) <= set(inside)
+    assert set(limits) <= set(command)
 
 
 def test_the_grader_s_own_python_is_shown_read_only(tmp_path: Path) -> None:
@@ -121,13 +121,13 @@ def test_a_sandbox_of_root_becomes_an_ordinary_user_before_it_creates_namespaces
 
 
 def test_a_worker_sandbox_shows_the_grader_s_code_and_only_the_declared_files_of_chapters(tmp_path: Path) -> None:
-    shown, out = course_paths.SOLUTIONS / "speed_guard", tmp_path / "out"
+    solution, out = course_paths.SOLUTIONS / "speed_guard", tmp_path / "out"
     options = _options(
-        bubblewrap.worker_sandbox(["worker"], View((shown,), (tmp_path,), (out,)), scratch=Path("/tmp/worker"))
+        bubblewrap.worker_sandbox(["worker"], View((solution,), (tmp_path,), (out,)), scratch=Path("/tmp/worker"))
     )
     read_only, writable = _pairs(options, "--ro-bind"), _pairs(options, "--bind")
     assert writable == [str(out)]
-    assert {str(course_paths.ROOT / "autograder"), str(shown), str(tmp_path)} <= set(read_only)
+    assert {str(course_paths.ROOT / "autograder"), str(solution), str(tmp_path)} <= set(read_only)
     for secret in (
         course_paths.ROOT,
         course_paths.CHAPTERS,

@@ -28,9 +28,9 @@ def test_version_1_offers_the_process_s_group_of_the_pids_controller_and_those_a
         f"33 31 0:30 / {tmp_path}/memory rw,relatime - cgroup cgroup rw,memory\n"
         f"39 31 0:36 / {tmp_path}/pids rw,relatime - cgroup cgroup rw,pids\n"
     )
-    own = "9:name=systemd:/\n8:pids:/user/session\n4:memory:/other\n0::/\n"
+    memberships = "9:name=systemd:/\n8:pids:/user/session\n4:memory:/other\n0::/\n"
     pids = tmp_path / "pids"
-    assert cgroup.homes("pids", mountinfo, own) == [pids / "user" / "session", pids / "user", pids]
+    assert cgroup.homes("pids", mountinfo, memberships) == [pids / "user" / "session", pids / "user", pids]
 
 
 def test_version_2_offers_the_groups_that_delegate_the_pids_controller(tmp_path: Path) -> None:
@@ -106,12 +106,12 @@ def test_a_worker_sandbox_with_version_2_has_a_group_beside_those_of_its_inner_s
 def test_memory_that_no_process_has_mapped_is_bounded(tmp_path: Path) -> None:
     code = "import os, time; f = os.memfd_create('m'); [os.write(f, bytes(1 << 20)) for _ in range(200)]; print('all')"
     limits = Limits(memory=30 * MIB, scratch=10 * MIB)
-    with Process([sys.executable, "-c", code], limits, group=(group := cgroup.make(limits))) as outside:
-        assert outside.wait(60)
-    assert "all" in outside.output  # nothing has entered the group
-    with Process((group := cgroup.make(limits)).enter([sys.executable, "-c", code]), limits, group=group) as inside:
-        assert inside.wait(60)
-    assert (inside.exit_reason, "all" in inside.output) == (ExitReason.MEMORY, False)
+    with Process([sys.executable, "-c", code], limits, group=(group := cgroup.make(limits))) as outer:
+        assert outer.wait(60)
+    assert "all" in outer.output  # nothing has entered the group
+    with Process((group := cgroup.make(limits)).enter([sys.executable, "-c", code]), limits, group=group) as inner:
+        assert inner.wait(60)
+    assert (inner.exit_reason, "all" in inner.output) == (ExitReason.MEMORY, False)
     assert not any(folder.exists() for folder in group.folders)
 
 
@@ -137,10 +137,10 @@ def _runs(pid: str) -> bool:
 
 @NEEDED
 def test_a_control_group_left_by_a_killed_grader_is_removed(monkeypatch: pytest.MonkeyPatch) -> None:
-    abandoned = cgroup.make(Limits())
+    left_group = cgroup.make(Limits())
     monkeypatch.setattr(cgroup, "_STALE", -1.0)
     group = cgroup.make(Limits())
-    assert not any(folder.exists() for folder in abandoned.folders)
+    assert not any(folder.exists() for folder in left_group.folders)
     group.close()
 
 

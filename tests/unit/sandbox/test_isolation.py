@@ -34,9 +34,9 @@ def _bwrap(folder: Path, script: str) -> None:
 
 
 def test_without_bubblewrap_the_strong_isolation_level_is_refused_with_the_remedy(tools: Path) -> None:
-    with pytest.raises(IsolationError) as caught:
+    with pytest.raises(IsolationError) as excinfo:
         require(Isolation.BUBBLEWRAP)
-    sentence = str(caught.value)
+    sentence = str(excinfo.value)
     assert "bubblewrap is not installed" in sentence
     assert "`autograder doctor` says how to fix it" in sentence
     assert "`--isolation process`" in sentence

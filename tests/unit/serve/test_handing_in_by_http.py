@@ -121,12 +121,12 @@ def test_an_answer_that_is_too_large_is_refused_before_all_of_it_is_read(
     classroom: Classroom, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     start_service(classroom)
-    sent = iter(bytes(2**20) for _ in range(100))  # without a length
+    chunks = iter(bytes(2**20) for _ in range(100))  # without a length
     url = f"{classroom.url}hand-ins/02_nodes/{KEY}"
     headers = {"Authorization": f"token {classroom.hub.token('ada')}"}
     with pytest.raises(OSError):  # noqa: PT011
-        urllib.request.urlopen(urllib.request.Request(url, sent, headers, method="PUT"))
-    assert len(list(sent)) > 50
+        urllib.request.urlopen(urllib.request.Request(url, chunks, headers, method="PUT"))
+    assert len(list(chunks)) > 50
     monkeypatch.setattr(handing_in, "PAUSES", ())
     with pytest.raises(HandInError):
         classroom.hand_in("ada", bytes(handing_in.MAX_ANSWER + 1))
@@ -204,7 +204,7 @@ def hand_in_at_once(classroom: Classroom, students: int) -> None:
     receipts = call_in_parallel([lambda name=name: classroom.hand_in(name, answer(name)) for name in names])  # type: ignore[misc]
     assert sorted(receipt.number for receipt in receipts) == list(range(1, students + 1))
     classroom.wait_for_marks(students)
-    assert {(each["student"], each["score"]) for each in classroom.results()} == {(name, 53.0) for name in names}
+    assert {(row["student"], row["score"]) for row in classroom.results()} == {(name, 53.0) for name in names}
 
 
 @pytest.mark.slow

@@ -63,7 +63,7 @@ def test_a_class_runs_more_lines_than_the_instants_are_spread_over(classroom: Cl
 
 
 @pytest.mark.parametrize(
-    "instant", [pytest.param(each, marks=() if each in QUICK else pytest.mark.nightly) for each in range(INSTANTS)]
+    "instant", [pytest.param(index, marks=() if index in QUICK else pytest.mark.nightly) for index in range(INSTANTS)]
 )
 def test_a_kill_at_any_instant_loses_nothing_and_grades_nothing_twice(classroom: Classroom, instant: int) -> None:
     for student in (*CLASS, "grace"):

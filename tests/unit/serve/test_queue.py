@@ -22,12 +22,12 @@ def waiting(number: int, student: str) -> HandIn:
     return HandIn(number, student, "02_nodes", AT)
 
 
-def arrived(students: str) -> list[HandIn]:
+def hand_ins_of(students: str) -> list[HandIn]:
     return [waiting(number, student) for number, student in enumerate(students, 1)]
 
 
 def order(students: str, turns: dict[str, int] | None = None, busy: str = "") -> str:
-    return "".join(each.student for each in in_order(arrived(students), turns or {}, busy))
+    return "".join(hand_in.student for hand_in in in_order(hand_ins_of(students), turns or {}, busy))
 
 
 @dataclass
@@ -74,24 +74,24 @@ def test_a_student_who_is_being_graded_comes_after_all_others() -> None:
 
 
 def test_a_student_has_one_answer_graded_at_a_time() -> None:
-    assert next_turn(arrived("aab"), {}, ("a",)) == waiting(3, "b")
-    assert next_turn(arrived("aa"), {}, ("a",)) is None
+    assert next_turn(hand_ins_of("aab"), {}, ("a",)) == waiting(3, "b")
+    assert next_turn(hand_ins_of("aa"), {}, ("a",)) is None
 
 
 def test_the_number_of_answers_ahead_is_the_position_in_the_order() -> None:
-    assert [ahead_of(number, arrived("aab"), {}, ()) for number in (1, 2, 3)] == [0, 2, 1]
+    assert [ahead_of(number, hand_ins_of("aab"), {}, ()) for number in (1, 2, 3)] == [0, 2, 1]
 
 
 @given(st.text("abcde", max_size=40), st.dictionaries(STUDENTS, st.integers(1, 99)), st.sets(STUDENTS))
 def test_each_answer_has_one_turn_and_those_of_a_student_keep_their_order(
     students: str, turns: dict[str, int], busy: set[str]
 ) -> None:
-    waiting = arrived(students)
+    waiting = hand_ins_of(students)
     served = list(in_order(reversed(waiting), turns, busy))
-    assert sorted(served, key=lambda each: each.number) == waiting
+    assert sorted(served, key=lambda hand_in: hand_in.number) == waiting
     for student in set(students):
-        own = [each.number for each in served if each.student == student]
-        assert own == sorted(own)
+        numbers = [hand_in.number for hand_in in served if hand_in.student == student]
+        assert numbers == sorted(numbers)
 
 
 @given(EVENTS)
@@ -107,9 +107,9 @@ def test_no_waiting_student_is_overtaken_twice_by_the_same_one(events: list[str 
         desk.serve()
         for turn in desk.served[before:]:
             del overtaken[turn.student]
-            for student in {each.student for each in desk.waiting}:
+            for student in {hand_in.student for hand_in in desk.waiting}:
                 overtaken.setdefault(student, Counter())[turn.student] += student != turn.student
-            assert max((count for each in overtaken.values() for count in each.values()), default=0) <= 1
+            assert max((count for counts in overtaken.values() for count in counts.values()), default=0) <= 1
 
 
 @given(EVENTS)
@@ -118,14 +118,14 @@ def test_each_answer_is_served_once_whenever_it_arrives(events: list[str | None]
     desk.follow(events)
     while desk.waiting:
         desk.serve()
-    assert sorted(each.number for each in desk.served) == list(range(1, desk.count + 1))
+    assert sorted(hand_in.number for hand_in in desk.served) == list(range(1, desk.count + 1))
 
 
 @given(EVENTS)
 def test_the_announced_order_is_kept_if_no_answer_arrives(events: list[str | None]) -> None:
     desk = Desk()
     desk.follow(events)
-    announced, before = list(in_order(desk.waiting, desk.turns)), len(desk.served)
+    announced, served = list(in_order(desk.waiting, desk.turns)), len(desk.served)
     while desk.waiting:
         desk.serve()
-    assert desk.served[before:] == announced
+    assert desk.served[served:] == announced

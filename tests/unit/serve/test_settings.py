@@ -80,10 +80,10 @@ def test_every_setting_is_read(tmp_path: Path) -> None:
 def test_a_mistake_is_named_with_its_line(tmp_path: Path, line: str, replacement: str, message: str) -> None:
     text = WHOLE.lstrip()
     assert line in text
-    with pytest.raises(UsageError) as refused:
+    with pytest.raises(UsageError) as excinfo:
         read(tmp_path, text.replace(line, replacement))
-    assert f"{tmp_path / 'serve.yaml'}:" in str(refused.value)
-    assert message in str(refused.value)
+    assert f"{tmp_path / 'serve.yaml'}:" in str(excinfo.value)
+    assert message in str(excinfo.value)
 
 
 @pytest.mark.parametrize(
@@ -101,9 +101,9 @@ def test_a_mistake_is_named_with_its_line(tmp_path: Path, line: str, replacement
 def test_a_file_that_is_not_a_settings_file_is_named(tmp_path: Path, data: bytes, message: str) -> None:
     path = tmp_path / "serve.yaml"
     path.write_bytes(data)
-    with pytest.raises(UsageError, match=message) as refused:
+    with pytest.raises(UsageError, match=message) as excinfo:
         read_settings(path)
-    assert str(path) in str(refused.value)
+    assert str(path) in str(excinfo.value)
 
 
 def test_a_missing_settings_file_is_named(tmp_path: Path) -> None:

@@ -108,15 +108,15 @@ def test_a_file_that_is_not_a_store_is_named(tmp_path: Path, content: bytes) -> 
 
 
 def test_the_last_or_the_best_answer_counts() -> None:
-    own = [hand_in(1, HALF), hand_in(2, FULL), hand_in(3, HALF), hand_in(4, None)]
-    assert counting(own, best=False) == own[2]
-    assert counting(own, best=True) == own[1]
-    assert counting(own[3:], best=True) is None
+    hand_ins = [hand_in(1, HALF), hand_in(2, FULL), hand_in(3, HALF), hand_in(4, None)]
+    assert counting(hand_ins, best=False) == hand_ins[2]
+    assert counting(hand_ins, best=True) == hand_ins[1]
+    assert counting(hand_ins[3:], best=True) is None
 
 
 def test_of_two_equal_answers_the_later_counts() -> None:
-    own = [hand_in(1, HALF), hand_in(2, HALF)]
-    assert counting(own, best=True) == own[1]
+    hand_ins = [hand_in(1, HALF), hand_in(2, HALF)]
+    assert counting(hand_ins, best=True) == hand_ins[1]
 
 
 def test_an_ungraded_answer_does_not_count_and_costs_no_try_if_the_grader_failed() -> None:

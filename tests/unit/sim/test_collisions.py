@@ -59,9 +59,9 @@ def test_a_robot_can_turn_away_and_back_off_from_a_wall(engine: str) -> None:
     blocked = drive(subject, Command(0.5, 0.0), 1.0)[-1]
     turned = step(subject, blocked, Command(0.0, 1.0), 0.5)
     assert turned.robots[0].pose.theta == pytest.approx(0.5, abs=0.1)
-    back = step(subject, blocked, Command(-0.5, 0.0), 0.4)
-    assert back.robots[0].pose.x < 1.8
-    assert not back.robots[0].collided
+    retreat = step(subject, blocked, Command(-0.5, 0.0), 0.4)
+    assert retreat.robots[0].pose.x < 1.8
+    assert not retreat.robots[0].collided
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -115,8 +115,8 @@ def crosses(a: Pose, b: Pose, wall: list[float]) -> bool:
         return (qx - px) * (y - py) - (qy - py) * (x - px) > 0
 
     x1, y1, x2, y2 = wall
-    apart = is_left(x1, y1, x2, y2, a.x, a.y) != is_left(x1, y1, x2, y2, b.x, b.y)
-    return apart and is_left(a.x, a.y, b.x, b.y, x1, y1) != is_left(a.x, a.y, b.x, b.y, x2, y2)
+    is_on_both_sides = is_left(x1, y1, x2, y2, a.x, a.y) != is_left(x1, y1, x2, y2, b.x, b.y)
+    return is_on_both_sides and is_left(a.x, a.y, b.x, b.y, x1, y1) != is_left(a.x, a.y, b.x, b.y, x2, y2)
 
 
 def test_a_thin_wall_is_not_jumped_at_20_metres_a_second() -> None:
@@ -133,9 +133,9 @@ def test_robots_collide_with_each_other() -> None:
     for _ in range(20):
         state = step(subject, state, {"a": Command(0.5, 0.0), "b": Command(0.5, 0.0)}, 0.1)
         events += state.events
-    apart = state.robots[1].pose.x - state.robots[0].pose.x
-    assert apart == pytest.approx(0.21, abs=1e-4)
-    assert apart > 0.21
+    distance = state.robots[1].pose.x - state.robots[0].pose.x
+    assert distance == pytest.approx(0.21, abs=1e-4)
+    assert distance > 0.21
     assert {event.what.split(" at ")[0] for event in events} == {"a met robot b", "b met robot a"}
 
 
@@ -148,9 +148,9 @@ def test_a_mover_that_runs_into_a_robot_is_a_collision_and_the_robot_can_drive_a
     assert [event.what for state in states for event in state.events] == ["robot met cart at 0.00 m/s"]
     assert clearance(subject, states[-1]).distance < 0.0
     assert clearance(subject, states[-1]).what == "cart"
-    hit = next(state for state in states if state.robots[0].collided)
-    away = step(subject, hit, Command(-0.5, 0.0), 1.0)
-    assert away.robots[0].pose.x < -0.2
+    collided = next(state for state in states if state.robots[0].collided)
+    state_after = step(subject, collided, Command(-0.5, 0.0), 1.0)
+    assert state_after.robots[0].pose.x < -0.2
 
 
 def test_a_robot_that_starts_inside_a_wall_can_get_out() -> None:
@@ -164,14 +164,14 @@ def test_clearance_names_the_nearest_thing_and_where_it_is() -> None:
     world = World.from_segments(
         box(4.0, 3.0), circles=[[-1.0, 1.0, 0.25]], segment_names=BOX_NAMES, circle_names=("post",)
     )
-    for pose, what, distance, point in (
+    for pose, name, distance, point in (
         (Pose(0.0, 1.0), "north wall", 0.395, (0.0, 1.5)),
         (Pose(1.5, 0.0), "east wall", 0.395, (2.0, 0.0)),
         (Pose(-1.0, 0.5), "post", 0.145, (-1.0, 0.75)),
     ):
         subject = simulation_at(pose, world)
         nearest = clearance(subject, start(subject))
-        assert (nearest.what, nearest.distance) == (what, pytest.approx(distance))
+        assert (nearest.what, nearest.distance) == (name, pytest.approx(distance))
         assert (nearest.x, nearest.y) == pytest.approx(point)
     unnamed = simulation_at(Pose(0.0, 1.0), World.from_segments(box(4.0, 3.0)))
     assert clearance(unnamed, start(unnamed)).what == "wall 2"

@@ -88,9 +88,9 @@ def test_ranges_follow_rep_117(engine: str) -> None:
 
 def test_a_lost_beam_is_nan_and_returns_nothing() -> None:
     scan = scan_of(simulation_at(Pose(), ROOM, lidar=replace(LDS_01, dropout=0.3)))
-    lost = np.isnan(scan.ranges)
-    assert 60 < lost.sum() < 160
-    assert (scan.intensities[lost] == 0.0).all()
+    is_lost = np.isnan(scan.ranges)
+    assert 60 < is_lost.sum() < 160
+    assert (scan.intensities[is_lost] == 0.0).all()
 
 
 def test_intensities_fall_with_the_distance_and_are_empty_where_the_lidar_has_none() -> None:
@@ -125,8 +125,8 @@ def test_noise_depends_on_seed_and_robot() -> None:
         for name, pose in (("a", Pose()),)
     ]
     assert not np.array_equal(noise[0], noise[1])
-    alone = Simulation(ROOM, (replace(robots[1], start=Pose()),), seed=1)
-    assert not np.array_equal(scan_of(alone).ranges, scan_of(Simulation(ROOM, robots[:1], seed=1)).ranges)
+    single = Simulation(ROOM, (replace(robots[1], start=Pose()),), seed=1)
+    assert not np.array_equal(scan_of(single).ranges, scan_of(Simulation(ROOM, robots[:1], seed=1)).ranges)
 
 
 def test_a_lidar_is_mounted_at_its_own_frame() -> None:
@@ -155,11 +155,11 @@ def test_lidars_see_the_other_robots_and_the_movers() -> None:
 def test_a_failed_lidar_sends_no_scan() -> None:
     subject = simulation_at(Pose(), ROOM, faults=Faults(dead=(Window(0.1, 0.2),)))
     state = start(subject)
-    sent = []
+    scans_sent = []
     for _ in range(5):
-        sent.append(observe(subject, state) is not None)
+        scans_sent.append(observe(subject, state) is not None)
         state = step(subject, state, dt=0.06)
-    assert sent == [True, True, False, False, True]
+    assert scans_sent == [True, True, False, False, True]
 
 
 def test_a_frozen_lidar_repeats_one_scan_with_new_stamps() -> None:
@@ -179,12 +179,12 @@ def test_a_frozen_lidar_repeats_one_scan_with_new_stamps() -> None:
 def test_a_failed_sector_gives_nan_also_across_angle_zero() -> None:
     sector = DeadSector(math.radians(-10.5), math.radians(20.5), Window(0.0, 1.0))
     subject = simulation_at(Pose(), ROOM, lidar=LDS_01, faults=Faults(sectors=(sector,)))
-    lost = np.flatnonzero(np.isnan(scan_of(subject).ranges)).tolist()
-    assert lost == [*range(21), *range(350, 360)]
+    lost_beams = np.flatnonzero(np.isnan(scan_of(subject).ranges)).tolist()
+    assert lost_beams == [*range(21), *range(350, 360)]
     later = step(subject, start(subject), dt=1.0)
     assert not np.isnan(scan_of(subject, later).ranges).any()
-    everything = DeadSector(0.0, math.tau)
-    assert np.isnan(scan_of(simulation_at(Pose(), ROOM, faults=Faults(sectors=(everything,)))).ranges).all()
+    all_round = DeadSector(0.0, math.tau)
+    assert np.isnan(scan_of(simulation_at(Pose(), ROOM, faults=Faults(sectors=(all_round,)))).ranges).all()
 
 
 @pytest.mark.parametrize("engine", ENGINES)

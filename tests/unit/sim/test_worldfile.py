@@ -167,12 +167,12 @@ def test_a_malformed_world_is_reported_with_file_line_and_error(
     tmp_path: Path, text: str | bytes, line: int | None, message: str
 ) -> None:
     path = write(tmp_path, text)
-    with pytest.raises(WorldError, match=re.escape(message)) as caught:
+    with pytest.raises(WorldError, match=re.escape(message)) as excinfo:
         load_world(path)
-    assert caught.value.path == str(path)
-    assert caught.value.line == line
-    assert str(caught.value).startswith(f"{path}:{line}: " if line else f"{path}: ")
-    assert caught.value.remedy
+    assert excinfo.value.path == str(path)
+    assert excinfo.value.line == line
+    assert str(excinfo.value).startswith(f"{path}:{line}: " if line else f"{path}: ")
+    assert excinfo.value.remedy
 
 
 def test_a_missing_or_too_large_file_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

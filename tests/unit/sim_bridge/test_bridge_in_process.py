@@ -26,10 +26,10 @@ PATIENCE = 60.0
 def test_scans_and_odometry_have_their_mean_rates_for_any_tick() -> None:
     simulation = Simulation(World(), robots=(RobotSpec(lidar=LidarSpec(rate=5.5)),), tick=0.03)
     driver = Driver(simulation, odometry_rate=20.0)
-    sent = list(driver.run(driver.ticks(60.0)))
-    assert sum(len(output.scans) for output in sent) == 330
-    assert sum(len(output.odometry) for output in sent) == 1200
-    assert [output.state.tick for output in sent] == list(range(1, 2001))
+    outputs = list(driver.run(driver.ticks(60.0)))
+    assert sum(len(output.scans) for output in outputs) == 330
+    assert sum(len(output.odometry) for output in outputs) == 1200
+    assert [output.state.tick for output in outputs] == list(range(1, 2001))
 
 
 def test_a_command_is_obeyed_once_and_the_watchdog_counts_from_there() -> None:
@@ -47,31 +47,31 @@ def test_reset_discards_pending_commands() -> None:
     driver = Driver(Simulation(World()))
     driver.command("robot", Command(0.2, 0.0))
     driver.reset()
-    (sent,) = driver.run(1)
-    assert sent.state.robots[0].command == Command()
+    (output,) = driver.run(1)
+    assert output.state.robots[0].command == Command()
 
 
 def test_the_same_commands_give_the_same_run_in_steps_of_any_length() -> None:
     simulation = Simulation(World(), seed=3)
-    whole, pieces = Driver(simulation), Driver(simulation)
-    for driver in (whole, pieces):
+    at_once, in_pieces = Driver(simulation), Driver(simulation)
+    for driver in (at_once, in_pieces):
         driver.command("robot", Command(0.2, 0.3))
-    states = [sent.state for sent in whole.run(40)]
-    assert [sent.state for count in (1, 19, 20) for sent in pieces.run(count)] == states
+    states = [output.state for output in at_once.run(40)]
+    assert [output.state for count in (1, 19, 20) for output in in_pieces.run(count)] == states
 
 
 def test_due_is_true_once_in_each_period() -> None:
     instants = list(range(0, 2_000_000_001, 30_000_000))
-    happened = [due(before, now, 10.0) for before, now in pairwise(instants)]
-    assert sum(happened) == 19
+    due_steps = [due(before, now, 10.0) for before, now in pairwise(instants)]
+    assert sum(due_steps) == 19
     assert not due(0, 99_999_999, 10.0)
     assert due(0, 100_000_000, 10.0)
 
 
 @pytest.fixture
 def bridge(ros_domain: int) -> Iterator[Bridge]:
-    with Bridge(LAB, domain_id=ros_domain, engine="numpy", speed=5.0) as running:
-        yield running
+    with Bridge(LAB, domain_id=ros_domain, engine="numpy", speed=5.0) as bridge:
+        yield bridge
 
 
 def wait_until(condition: Callable[[], bool], bridge: Bridge) -> None:

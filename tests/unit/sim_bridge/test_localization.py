@@ -49,7 +49,7 @@ class Listener:
         self._node.create_subscription(kind, topic, messages.append, qos)
         return messages
 
-    def until(self, condition: Callable[[], bool]) -> None:
+    def wait_until(self, condition: Callable[[], bool]) -> None:
         deadline = time.monotonic() + PATIENCE
         while not condition():
             assert time.monotonic() < deadline, "the condition never held"
@@ -93,7 +93,7 @@ def test_a_reliable_scan_serves_reliable_and_best_effort_subscriptions(ros_domai
     reliable = listener.collect(LaserScan, "/scan", RELIABLE)
     best_effort = listener.collect(LaserScan, "/scan", qos_profile_sensor_data)
     with driving_bridge(ros_domain, scan_qos="reliable"):
-        listener.until(lambda: bool(reliable) and bool(best_effort))
+        listener.wait_until(lambda: bool(reliable) and bool(best_effort))
     assert len(reliable[0].ranges) == 360
 
 
@@ -103,7 +103,7 @@ def test_each_scan_can_be_transformed_to_the_map_at_its_own_time(ros_domain: int
     truth = listener.collect(Odometry, "/ground_truth", RELIABLE)
     settings = {"tf": "map", "ground_truth": True, "lidar_x": 0.1, "lidar_yaw": 0.5, "drift_linear": 0.1}
     with driving_bridge(ros_domain, **settings):
-        listener.until(lambda: len(scans) > 3 and len(moving) > 20 and bool(standing) and len(truth) > 20)
+        listener.wait_until(lambda: len(scans) > 3 and len(moving) > 20 and bool(standing) and len(truth) > 20)
     parents: dict[str, set[str]] = {}
     transforms_at: dict[tuple[int, int], dict[str, Any]] = {}
     for message in (*moving, *standing):
@@ -111,12 +111,12 @@ def test_each_scan_can_be_transformed_to_the_map_at_its_own_time(ros_domain: int
             parents.setdefault(transform.child_frame_id, set()).add(transform.header.frame_id)
             transforms_at.setdefault(stamp(transform.header), {})[transform.child_frame_id] = transform
     assert parents == {"laser": {"base_link"}, "base_link": {"odom"}, "odom": {"map"}}  # one parent each: a tree
-    known = [scan for scan in scans if stamp(scan.header) in transforms_at]
-    assert known
+    transformed = [scan for scan in scans if stamp(scan.header) in transforms_at]
+    assert transformed
     true_poses = {stamp(odometry.header): odometry for odometry in truth}
     laser = standing[0].transforms[0]
     assert planar_matrix(laser)[:2, 2] == pytest.approx([0.1, 0.0])
-    for scan in known:
+    for scan in transformed:
         frames = transforms_at[stamp(scan.header)]
         assert scan.header.frame_id == "laser"
         base = planar_matrix(frames["odom"]) @ planar_matrix(frames["base_link"])
@@ -128,7 +128,7 @@ def test_each_scan_can_be_transformed_to_the_map_at_its_own_time(ros_domain: int
 def test_a_late_subscription_gets_the_map(ros_domain: int, listener: Listener) -> None:
     with driving_bridge(ros_domain, publish_map=True, map_resolution=0.1):
         maps = listener.collect(OccupancyGrid, "/map", LATCHED)
-        listener.until(lambda: bool(maps))
+        listener.wait_until(lambda: bool(maps))
     grid, (received,) = grid_of(load_world(WORLD), 0.1), maps
     assert (received.info.height, received.info.width) == grid.cells.shape
     assert received.header.frame_id == "map"

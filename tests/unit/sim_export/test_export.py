@@ -66,8 +66,8 @@ def test_a_video_has_a_frame_for_each_of_its_instants(recording: Recording, tmp_
     decoded = subprocess.run(command, capture_output=True, check=True).stdout
     frames = 1 + int((recording.times[-1] - recording.times[0]) / 2.0 * 10.0)
     assert len(decoded) % frames == 0
-    first, last = decoded[: len(decoded) // frames], decoded[-len(decoded) // frames :]
-    assert sum(abs(one - other) > 60 for one, other in zip(first, last, strict=True)) > 100
+    first_frame, last_frame = decoded[: len(decoded) // frames], decoded[-len(decoded) // frames :]
+    assert sum(abs(before - after) > 60 for before, after in zip(first_frame, last_frame, strict=True)) > 100
     with pytest.raises(ExportError, match="ffmpeg ended with status"):
         to_mp4(recording, tmp_path / "an-ending.nobody-knows")
 
@@ -96,8 +96,8 @@ def test_a_page_contains_the_run_and_loads_nothing(recording: Recording, tmp_pat
 
 
 def test_a_name_cannot_break_out_of_the_page(tmp_path: Path) -> None:
-    evil = '</script><script>alert(1)</script>"&'
-    recording = run(Simulation(World(name=evil)), lambda state, scans: None, 0.5)
+    markup = '</script><script>alert(1)</script>"&'
+    recording = run(Simulation(World(name=markup)), lambda state, scans: None, 0.5)
     text = to_html(recording, tmp_path / "run.html").read_text(encoding="utf-8")
     assert "alert(1)</script>" not in text
     assert len([tag for tag, _ in _Page(text).tags if tag == "script"]) == 2
@@ -160,11 +160,11 @@ def test_the_ending_of_the_file_name_selects_the_format(recording: Recording, tm
     assert issubclass(ExportError, SimError)
 
 
-@pytest.mark.parametrize("ending", ["gif", "html", "mcap"])
-def test_the_same_run_gives_the_same_bytes(recording: Recording, tmp_path: Path, ending: str) -> None:
+@pytest.mark.parametrize("suffix", ["gif", "html", "mcap"])
+def test_the_same_run_gives_the_same_bytes(recording: Recording, tmp_path: Path, suffix: str) -> None:
     hashes = set()
     for folder in ("first", "second"):
-        written = export(recording, tmp_path / folder / f"run.{ending}")
-        file = written if written.is_file() else written / f"{written.name}.mcap"
+        path = export(recording, tmp_path / folder / f"run.{suffix}")
+        file = path if path.is_file() else path / f"{path.name}.mcap"
         hashes.add(hashlib.sha256(file.read_bytes()).hexdigest())
     assert len(hashes) == 1

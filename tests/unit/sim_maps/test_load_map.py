@@ -179,9 +179,9 @@ BAD_FIELDS: list[tuple[dict[str, str | None], str]] = [
 
 @pytest.mark.parametrize(("fields", "message"), BAD_FIELDS)
 def test_a_broken_yaml_is_refused_with_its_line(tmp_path: Path, fields: dict[str, str | None], message: str) -> None:
-    with pytest.raises(WorldError) as caught:
+    with pytest.raises(WorldError) as excinfo:
         load_map(write(tmp_path, **fields))
-    assert message in str(caught.value)
+    assert message in str(excinfo.value)
 
 
 BAD_PICTURES = [
@@ -215,10 +215,10 @@ BAD_PICTURES = [
 
 @pytest.mark.parametrize(("picture", "message"), BAD_PICTURES)
 def test_a_broken_picture_is_refused_by_name(tmp_path: Path, picture: bytes, message: str) -> None:
-    with pytest.raises(WorldError) as caught:
+    with pytest.raises(WorldError) as excinfo:
         load_map(write(tmp_path, picture))
-    assert message in str(caught.value)
-    assert str(tmp_path / "map.pgm") in str(caught.value)
+    assert message in str(excinfo.value)
+    assert str(tmp_path / "map.pgm") in str(excinfo.value)
 
 
 def test_a_picture_of_noise_is_rejected(tmp_path: Path) -> None:
@@ -245,9 +245,9 @@ def test_a_picture_of_noise_is_rejected(tmp_path: Path) -> None:
 )
 def test_a_file_that_is_not_a_yaml_mapping_is_rejected(tmp_path: Path, content: bytes, message: str) -> None:
     (tmp_path / "map.yaml").write_bytes(content)
-    with pytest.raises(WorldError) as caught:
+    with pytest.raises(WorldError) as excinfo:
         load_map(tmp_path / "map.yaml")
-    assert message in str(caught.value)
+    assert message in str(excinfo.value)
 
 
 def test_a_map_path_that_is_missing_or_a_folder_is_refused(tmp_path: Path) -> None:

@@ -148,11 +148,11 @@ def test_an_exception_of_the_callback_stops_time_and_is_shown_without_internal_f
 
     view = paused_view(world, broken)
     view.step(1.0)
-    (shown,) = widgets_of(view)["Output"].outputs
-    assert shown["name"] == "stderr"
-    assert "LookupError: no such wall" in shown["text"]
-    assert "in broken" in shown["text"]
-    assert "session.py" not in shown["text"]
+    (output,) = widgets_of(view)["Output"].outputs
+    assert output["name"] == "stderr"
+    assert "LookupError: no such wall" in output["text"]
+    assert "in broken" in output["text"]
+    assert "session.py" not in output["text"]
     assert view.time == 0.0
     view.reset()
     assert widgets_of(view)["Output"].outputs == ()
@@ -175,10 +175,10 @@ def test_a_callback_gets_each_scan_once(world: World) -> None:
 def test_a_recording_is_played_without_other_files(recording: Recording) -> None:
     view = live(recording, speed=2.0, theme="dark")
     assert isinstance(view, Player)
-    shown = view._repr_mimebundle_()[0]
-    assert 'data-theme="dark" data-speed="2" data-play="yes"' in shown["text/html"]
-    assert shown["text/plain"] == repr(view) == plot(recording).alt
-    assert shown["image/png"]
+    bundle = view._repr_mimebundle_()[0]
+    assert 'data-theme="dark" data-speed="2" data-play="yes"' in bundle["text/html"]
+    assert bundle["text/plain"] == repr(view) == plot(recording).alt
+    assert bundle["image/png"]
 
 
 def test_the_slider_seeks_while_time_is_paused(world: World) -> None:

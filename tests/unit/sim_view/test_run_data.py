@@ -25,9 +25,9 @@ ROOT = Path(__file__).resolve().parents[3]
 
 def unpack(packed: dict[str, Any]) -> npt.NDArray[np.float64]:
     planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["data"])), dtype=np.uint8)
-    coded = np.ascontiguousarray(planes.reshape(4, -1).T).view("<u4").astype(np.int64).reshape(-1, packed["columns"])
+    codes = np.ascontiguousarray(planes.reshape(4, -1).T).view("<u4").astype(np.int64).reshape(-1, packed["columns"])
     decoded: npt.NDArray[np.float64] = (
-        np.where(coded % 2, -(coded + 1) // 2, coded // 2).cumsum(axis=0) * packed["step"]
+        np.where(codes % 2, -(codes + 1) // 2, codes // 2).cumsum(axis=0) * packed["step"]
     )
     return decoded
 
@@ -47,14 +47,14 @@ def test_a_run_keeps_its_poses_scans_commands_and_collisions(recording: Recordin
     assert unpack(data["times"])[:, 0] == pytest.approx(recording.times, abs=0.00051)
     assert unpack(robot["poses"])[:, :2] == pytest.approx(recording.poses[:, 0, :2], abs=0.00051)
     assert unpack(robot["commands"])[-1].tolist() == pytest.approx([0.4, 0.3])
-    ranges, kept = recording.scans[0].ranges, unpack(robot["scans"]["ranges"])
-    assert kept[np.isfinite(ranges)] == pytest.approx(ranges[np.isfinite(ranges)], abs=0.0051)
-    assert (kept[ranges == math.inf] == NO_RETURN).all()
-    assert [when for when, *_ in data["collisions"]] == [
+    ranges, decoded = recording.scans[0].ranges, unpack(robot["scans"]["ranges"])
+    assert decoded[np.isfinite(ranges)] == pytest.approx(ranges[np.isfinite(ranges)], abs=0.0051)
+    assert (decoded[ranges == math.inf] == NO_RETURN).all()
+    assert [time for time, *_ in data["collisions"]] == [
         pytest.approx(event.time_ns / 1e9, abs=0.001) for event in recording.events if event.kind == "collision"
     ]
-    (shown,) = data["margins"]
-    assert (shown["broken"], unpack(shown["values"])[:, 0].tolist()) == (1.0, [0.5, -1000.0])
+    (encoded,) = data["margins"]
+    assert (encoded["broken"], unpack(encoded["values"])[:, 0].tolist()) == (1.0, [0.5, -1000.0])
 
 
 def test_a_run_opens_at_its_mark_or_else_where_a_rule_broke(recording: Recording) -> None:
@@ -92,10 +92,10 @@ def test_the_data_of_a_minute_are_small_and_those_of_a_fleet_are_thinned_out() -
 
 
 def test_a_name_cannot_end_the_script() -> None:
-    evil = "</script><script>alert(1)</script>"
-    text = encode(run(Simulation(World(name=evil)), lambda state, scans: None, 0.5), evil)
+    markup = "</script><script>alert(1)</script>"
+    text = encode(run(Simulation(World(name=markup)), lambda state, scans: None, 0.5), markup)
     assert "<" not in text
-    assert json.loads(text)["world"]["name"] == json.loads(text)["alt"] == evil
+    assert json.loads(text)["world"]["name"] == json.loads(text)["alt"] == markup
 
 
 def decoded_output(text: str) -> list[tuple[float, str]]:
@@ -105,9 +105,9 @@ def decoded_output(text: str) -> list[tuple[float, str]]:
 
 
 def test_output_of_programs_is_decoded_with_its_times(recording: Recording) -> None:
-    evil = "</script><script>alert(1)</script>"
-    text = encode(replace(recording, said=((0.1, "near"), (1.5, evil))), "")
-    assert decoded_output(text) == [(pytest.approx(0.1), "near"), (pytest.approx(1.5), evil)]
+    markup = "</script><script>alert(1)</script>"
+    text = encode(replace(recording, said=((0.1, "near"), (1.5, markup))), "")
+    assert decoded_output(text) == [(pytest.approx(0.1), "near"), (pytest.approx(1.5), markup)]
     assert "<" not in text
     assert json.loads(encode(recording, ""))["said"] is None
 

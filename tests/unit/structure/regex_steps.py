@@ -47,13 +47,13 @@ class Steps:
             self._count()
             end: list[int] = []
 
-            def done(at: int, end: list[int] = end) -> bool:
+            def accept_end(at: int, end: list[int] = end) -> bool:
                 if full and at < len(self.text):
                     return False
                 end.append(at)
                 return True
 
-            self._all(list(self.tree), 0, start, done)
+            self._all(list(self.tree), 0, start, accept_end)
             self.matches += [(start, end[0])] if end else []
             if anchored:
                 break
@@ -65,78 +65,83 @@ class Steps:
         if self.count > self.limit:
             raise Budget
 
-    def _all(self, nodes: list[Any], index: int, at: int, then: Then) -> bool:
+    def _all(self, nodes: list[Any], index: int, start: int, continuation: Then) -> bool:
         if index == len(nodes):
-            return then(at)
-        return self._one(nodes[index], at, lambda after: self._all(nodes, index + 1, after, then))
+            return continuation(start)
+        return self._one(nodes[index], start, lambda after: self._all(nodes, index + 1, after, continuation))
 
-    def _one(self, node: Any, at: int, then: Then) -> bool:
+    def _one(self, node: Any, start: int, continuation: Then) -> bool:
         self._count()
         kind, value = str(node[0]), node[1]
         if kind in ("LITERAL", "NOT_LITERAL", "ANY", "IN"):
-            return at < len(self.text) and fits(node, self.text[at], self.flags) and then(at + 1)
+            return start < len(self.text) and fits(node, self.text[start], self.flags) and continuation(start + 1)
         if kind in ("MAX_REPEAT", "MIN_REPEAT"):
             low, high, item = value[0], int(value[1]), list(value[2])
             if high != int(sre.MAXREPEAT):
                 low, high = min(low, BOUND), min(high, BOUND)
-            return self._repeat(item, low, high, at, then, greedy=kind == "MAX_REPEAT")
+            return self._repeat(item, low, high, start, continuation, greedy=kind == "MAX_REPEAT")
         if kind == "SUBPATTERN":
 
-            def closed(after: int) -> bool:
+            def close_group(after: int) -> bool:
                 before = self.groups.get(value[0])
-                self.groups[value[0]] = (at, after)
-                if then(after):
+                self.groups[value[0]] = (start, after)
+                if continuation(after):
                     return True
                 self.groups[value[0]] = before or (0, 0)
                 return False
 
-            return self._all(list(value[3]), 0, at, closed)
+            return self._all(list(value[3]), 0, start, close_group)
         if kind == "BRANCH":
-            return any(self._all(list(branch), 0, at, then) for branch in value[1])
+            return any(self._all(list(branch), 0, start, continuation) for branch in value[1])
         if kind in ("ASSERT", "ASSERT_NOT"):
             ahead, inner = value[0] > 0, list(value[1])
             width = value[1].getwidth()[0]
-            matched = at >= width and self._all(inner, 0, at if ahead else at - width, lambda _: True)
-            return matched is (kind == "ASSERT") and then(at)
+            matched = start >= width and self._all(inner, 0, start if ahead else start - width, lambda _: True)
+            return matched is (kind == "ASSERT") and continuation(start)
         if kind == "AT":
-            return self._anchor(str(value), at) and then(at)
+            return self._anchor(str(value), start) and continuation(start)
         if kind == "GROUPREF":
             begin, end = self.groups.get(value, (0, 0))
             self.count += end - begin
-            return self.text.startswith(self.text[begin:end], at) and then(at + end - begin)
+            return self.text.startswith(self.text[begin:end], start) and continuation(start + end - begin)
         raise NotImplementedError(kind)
 
-    def _repeat(self, item: list[Any], low: int, high: int, at: int, then: Then, *, greedy: bool) -> bool:
+    def _repeat(self, item: list[Any], low: int, high: int, at: int, continuation: Then, *, greedy: bool) -> bool:
         if len(item) == 1 and str(item[0][0]) in ("LITERAL", "NOT_LITERAL", "ANY", "IN"):
-            return self._repeat_one(item[0], low, high, at, then, greedy=greedy)
+            return self._repeat_one(item[0], low, high, at, continuation, greedy=greedy)
 
-        def more(count: int, here: int) -> bool:
-            def repeat(after: int) -> bool:
-                return (after > here or count < low) and more(count + 1, after)
+        def match_more(count: int, position: int) -> bool:
+            def match_after(after: int) -> bool:
+                return (after > position or count < low) and match_more(count + 1, after)
 
             if count < low:
-                return self._all(item, 0, here, repeat)
+                return self._all(item, 0, position, match_after)
             if greedy:
-                return (count < high and self._all(item, 0, here, repeat)) or then(here)
-            return then(here) or (count < high and self._all(item, 0, here, repeat))
+                return (count < high and self._all(item, 0, position, match_after)) or continuation(position)
+            return continuation(position) or (count < high and self._all(item, 0, position, match_after))
 
-        return more(0, at)
+        return match_more(0, at)
 
-    def _repeat_one(self, item: Any, low: int, high: int, at: int, then: Then, *, greedy: bool) -> bool:
+    def _repeat_one(self, item: Any, low: int, high: int, at: int, continuation: Then, *, greedy: bool) -> bool:
         """Repeat a single character without a call for each repetition, as Python does."""
-        here = at
-        while greedy and here - at < high and here < len(self.text) and fits(item, self.text[here], self.flags):
+        position = at
+        while (
+            greedy
+            and position - at < high
+            and position < len(self.text)
+            and fits(item, self.text[position], self.flags)
+        ):
             self._count()
-            here += 1
+            position += 1
         if greedy:
-            return any(then(end) for end in range(here, at + low - 1, -1))
-        while here - at <= high:
+            return any(continuation(end) for end in range(position, at + low - 1, -1))
+        while position - at <= high:
             self._count()
-            if here - at >= low and then(here):
+            if position - at >= low and continuation(position):
                 return True
-            if here >= len(self.text) or not fits(item, self.text[here], self.flags):
+            if position >= len(self.text) or not fits(item, self.text[position], self.flags):
                 return False
-            here += 1
+            position += 1
         return False
 
     def _anchor(self, name: str, at: int) -> bool:
@@ -159,8 +164,8 @@ def fits(node: Any, char: str, flags: int) -> bool:
     if kind == "ANY":
         return char != "\n" or bool(flags & re.DOTALL)
     if kind in ("LITERAL", "NOT_LITERAL"):
-        same = chr(value) == char or bool(flags & re.IGNORECASE and chr(value).lower() == char.lower())
-        return same is (kind == "LITERAL")
+        is_equal = chr(value) == char or bool(flags & re.IGNORECASE and chr(value).lower() == char.lower())
+        return is_equal is (kind == "LITERAL")
     negated = any(str(part[0]) == "NEGATE" for part in value)
     return negated is not any(_in_class(part, char, flags) for part in value if str(part[0]) != "NEGATE")
 
@@ -169,7 +174,7 @@ def _in_class(part: Any, char: str, flags: int) -> bool:
     kind, value = str(part[0]), part[1]
     if kind == "RANGE":
         chars = (char, char.swapcase()) if flags & re.IGNORECASE else (char,)
-        return any(len(each) == 1 and value[0] <= ord(each) <= value[1] for each in chars)
+        return any(len(variant) == 1 and value[0] <= ord(variant) <= value[1] for variant in chars)
     if kind == "CATEGORY":
         name = str(value).removeprefix("CATEGORY_")
         members = {"SPACE": _SPACE, "WORD": _WORD, "DIGIT": set("0123456789")}[name.removeprefix("NOT_")]
@@ -184,9 +189,9 @@ def hard_texts(pattern: re.Pattern[Any], *, full: bool) -> Iterator[Callable[[in
     part is a character of the pattern, or a piece of a matching text.
     """
     maker = Steps(pattern, 0)
-    samples = [_sample(list(maker.tree), maker.flags, {}, least) for least in (0, 1)]
-    known = (_char(node, maker.flags) for node in _walk(list(maker.tree)))
-    chars = sorted({*known, *"".join(samples)} - {""})
+    samples = [_sample(list(maker.tree), maker.flags, {}, repetitions) for repetitions in (0, 1)]
+    literals = (_char(node, maker.flags) for node in _walk(list(maker.tree)))
+    chars = sorted({*literals, *"".join(samples)} - {""})
     heads, pairs = {""}, set[str]()
     for sample in samples:
         cut = [at for at in range(1, len(sample)) if not (sample[at - 1].isalnum() and sample[at].isalnum())]
@@ -222,20 +227,20 @@ def _char(node: Any, flags: int) -> str:
     return ""
 
 
-def _sample(nodes: list[Any], flags: int, groups: dict[int, str], least: int) -> str:
-    """Return a text that matches, or almost: each repeatable part occurs `least` times."""
+def _sample(nodes: list[Any], flags: int, groups: dict[int, str], repetitions: int) -> str:
+    """Return a text that matches, or almost: each part that may repeat occurs `repetitions` times."""
     text = ""
     for node in nodes:
         kind, value = str(node[0]), node[1]
         if kind in ("MAX_REPEAT", "MIN_REPEAT"):
-            text += _sample(list(value[2]), flags, groups, least) * min(max(least, value[0]), BOUND)
+            text += _sample(list(value[2]), flags, groups, repetitions) * min(max(repetitions, value[0]), BOUND)
         elif kind == "SUBPATTERN":
-            groups[value[0]] = _sample(list(value[3]), flags, groups, least)
+            groups[value[0]] = _sample(list(value[3]), flags, groups, repetitions)
             text += groups[value[0]]
         elif kind == "BRANCH":
-            text += _sample(list(value[1][0]), flags, groups, least)
+            text += _sample(list(value[1][0]), flags, groups, repetitions)
         elif kind == "ASSERT" and value[0] > 0:
-            text += _sample(list(value[1]), flags, groups, least)
+            text += _sample(list(value[1]), flags, groups, repetitions)
         elif kind == "GROUPREF":
             text += groups.get(value, "")
         else:

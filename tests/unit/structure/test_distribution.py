@@ -81,7 +81,7 @@ def test_the_project_asks_for_the_wheels_and_the_pythons_of_the_distribution() -
 @pytest.mark.parametrize("package", DISTRIBUTION.packages, ids=lambda package: package.name)
 def test_the_project_asks_for_the_version_of_the_platform(package: PlatformPackage) -> None:
     requirements = [Requirement(line) for line in PROJECT["dependencies"]]
-    pinned = [str(each.specifier) for each in requirements if each.name == package.name]
+    pinned = [str(requirement.specifier) for requirement in requirements if requirement.name == package.name]
     assert not pinned or f"=={package.version}" in pinned  # some come with another package, and the lock pins them
 
 

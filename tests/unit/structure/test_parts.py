@@ -33,8 +33,8 @@ def graph() -> grimp.ImportGraph:
 
 
 def test_the_picture_is_drawn_from_its_source() -> None:
-    drawn = runpy.run_path(str(FIGURES / "parts.py"))["svg"](SOURCE)
-    assert (FIGURES / "parts.svg").read_text() == drawn, "run `python assets/figures/parts.py`"
+    svg = runpy.run_path(str(FIGURES / "parts.py"))["svg"](SOURCE)
+    assert (FIGURES / "parts.svg").read_text() == svg, "run `python assets/figures/parts.py`"
 
 
 def test_the_picture_contains_exactly_the_parts() -> None:
@@ -51,9 +51,11 @@ def test_each_arrow_is_an_import(graph: grimp.ImportGraph, arrow: str) -> None:
 
 def test_modules_that_the_picture_puts_in_the_sandbox_may_not_be_imported_by_trusted_code() -> None:
     (contract,) = (contract for contract in CONTRACTS if contract["id"] == "sandboxed")
-    drawn = {f"{module(name)}.{host}" for name, part in SOURCE["packages"].items() for host in part.get("sandbox", ())}
-    assert drawn
-    assert drawn <= set(contract["protected_modules"])
+    sandboxed = {
+        f"{module(name)}.{host}" for name, part in SOURCE["packages"].items() for host in part.get("sandbox", ())
+    }
+    assert sandboxed
+    assert sandboxed <= set(contract["protected_modules"])
 
 
 def test_each_step_of_a_submission_is_drawn_at_a_part() -> None:
@@ -70,7 +72,7 @@ def test_the_contract_of_the_sandbox_names_every_program_that_runs_there() -> No
         for path in (ROOT / "autograder").rglob(pattern)
         if path.is_dir() or not any(parent.name.endswith(("_host", "standins")) for parent in path.parents)
     }
-    inside = {
+    forked_parts = {
         f"autograder.run.fork_server.{name}" for name in ("children", "confinement", "emulation")
     }  # a forked program's own
-    assert programs | inside == set(contract["protected_modules"])
+    assert programs | forked_parts == set(contract["protected_modules"])

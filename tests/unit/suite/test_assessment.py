@@ -63,7 +63,7 @@ def test_each_choice_is_a_check_of_one_point() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "given"),
+    ("text", "expected"),
     [
         ("q1: a", {"q1": "a"}),
         ("Q1 :  'B'  # sure\n\n# q2: c\nnonsense\n- q3: d", {"q1": "b"}),
@@ -74,17 +74,17 @@ def test_each_choice_is_a_check_of_one_point() -> None:
         ("&a [*a, *a]: *a", {}),
     ],
 )
-def test_a_sheet_is_read_line_by_line(text: str, given: dict[str, str]) -> None:
-    assert parse(text) == given
+def test_a_sheet_is_read_line_by_line(text: str, expected: dict[str, str]) -> None:
+    assert parse(text) == expected
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
+    ("answers", "message"),
     [({}, "There is no answer to q1: write a line `q1: LETTER`."), ({"q1": "e"}, "The answer to q1 is 'e', instead")],
 )
-def test_an_answer_that_is_not_a_letter_is_named(given: dict[str, str], message: str) -> None:
+def test_an_answer_that_is_not_a_letter_is_named(answers: dict[str, str], message: str) -> None:
     with pytest.raises(CheckFailed) as failed:
-        expect_letter(given, "q1")
+        expect_letter(answers, "q1")
     assert failed.value.message.startswith(message)
 
 

@@ -144,9 +144,9 @@ def test_a_check_must_be_worth_points(points: float) -> None:
 
 def test_expect_fails_the_check_with_its_message_and_fraction() -> None:
     expect(True, "never said")
-    with pytest.raises(CheckFailed, match="it kept driving") as caught:
+    with pytest.raises(CheckFailed, match="it kept driving") as excinfo:
         expect(False, "it kept driving", fraction=0.5)
-    assert (caught.value.message, caught.value.fraction) == ("it kept driving", 0.5)
+    assert (excinfo.value.message, excinfo.value.fraction) == ("it kept driving", 0.5)
 
 
 @pytest.mark.parametrize("fraction", [1.0, -0.1, float("nan"), float("inf")])

@@ -29,7 +29,7 @@ def test_no_trip_has_more_legs_than_fit_into_its_message() -> None:
     for seed in SEEDS:
         draw = random.Random(f"{seed}:test_trip_level")
         legs = [*(trip.legs for trip in draw_trips(draw)), *draw_too_far(draw, 20), *dict(draw_bad_legs(draw)).values()]
-        legs += [trip for drawn in draw_reserves(draw) for trip in drawn.trips]
+        legs += [trip for reserve in draw_reserves(draw) for trip in reserve.trips]
         assert max(map(len, legs)) <= MAX_LEGS
 
 
@@ -50,11 +50,11 @@ def test_a_battery_lasts_for_a_trip_and_its_rest_does_not_depend_on_rounding() -
 
 def test_a_short_trip_leaves_a_reserve_to_choose() -> None:
     for seed in SEEDS:
-        for drawn in draw_reserves(random.Random(f"{seed}:test_trip_possible")):
-            for trip in drawn.trips:
-                left = math.floor(drawn.level - sum(trip) / METRES_PER_PERCENT)
-                assert 0 <= drawn.reserve < left <= drawn.level <= 100
-                assert sum(trip) < drawn.level  # also for a program that takes a metre for a percent
+        for reserve in draw_reserves(random.Random(f"{seed}:test_trip_possible")):
+            for trip in reserve.trips:
+                remaining_level = math.floor(reserve.level - sum(trip) / METRES_PER_PERCENT)
+                assert 0 <= reserve.reserve < remaining_level <= reserve.level <= 100
+                assert sum(trip) < reserve.level  # also for a program that takes a metre for a percent
 
 
 @pytest.mark.parametrize("level", [10, 39])
@@ -117,8 +117,8 @@ def test_an_obstacle_beside_the_sector_s_edge_is_hit_by_enough_beams(
     for off in (-EDGE, EDGE):
         bearing = side * (nodes.HALF_SECTOR + off)
         assert abs(abs(bearing) - nodes.HALF_SECTOR) > wide
-        shown = scan(Part(bearing - wide, bearing + wide, 0.5), beams=beams)
-        assert sum(reading == 0.5 for reading in shown.ranges) == count
+        message = scan(Part(bearing - wide, bearing + wide, 0.5), beams=beams)
+        assert sum(reading == 0.5 for reading in message.ranges) == count
     assert nodes.HALF_SECTOR - EDGE - FINE[1] > math.degrees(0.5)  # half a radian is not 30 degrees
 
 

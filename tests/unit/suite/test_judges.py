@@ -25,20 +25,20 @@ class Kept:
 
 def judge(fractions: dict[str, float]) -> tuple[Any, Any]:
     """Judge a body that fails in the systems that are named, with these fractions."""
-    shared, lone = Kept("shared"), Kept("lone")
+    shared, separate = Kept("shared"), Kept("lone")
 
     def body(system: Any) -> None:
         if system in fractions:
             raise CheckFailed(system, fraction=fractions[system])
 
-    judge_driving(shared, lone, body)  # type: ignore[arg-type]
-    return shared, lone
+    judge_driving(shared, separate, body)  # type: ignore[arg-type]
+    return shared, separate
 
 
 def test_a_check_that_passes_in_one_of_two_gradings_passes() -> None:
     assert judge({})[0].closed == 0
-    shared, lone = judge({"shared": 0.0})
-    assert (shared.closed, lone.closed) == (1, 0)
+    shared, separate = judge({"shared": 0.0})
+    assert (shared.closed, separate.closed) == (1, 0)
 
 
 @pytest.mark.parametrize(

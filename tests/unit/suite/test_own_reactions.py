@@ -24,11 +24,11 @@ def _commands(*pairs: Pair) -> list[ReceivedMessage]:
 
 
 def test_a_wrong_velocity_is_a_separate_reaction() -> None:
-    own = own_reactions(_commands((30.0, 0.0)), _commands((0.0, -0.5)))
-    assert (own.forward, own.turn) == ((30.0, 0.0), (0.0, -0.5))
-    own.expect_forward(_commands((30.0, 0.0)), "Now")
+    reactions = own_reactions(_commands((30.0, 0.0)), _commands((0.0, -0.5)))
+    assert (reactions.forward, reactions.turn) == ((30.0, 0.0), (0.0, -0.5))
+    reactions.expect_forward(_commands((30.0, 0.0)), "Now")
     with pytest.raises(CheckFailed, match=r"the robot drove forward at 0\.30 m/s: it should"):
-        own.expect_forward(_commands((0.3, 0.0)), "Now")
+        reactions.expect_forward(_commands((0.3, 0.0)), "Now")
 
 
 @pytest.mark.parametrize(
@@ -49,9 +49,9 @@ def test_a_robot_without_reactions_is_judged_by_those_of_the_contract(
 
 
 def test_a_robot_that_only_stops_in_front_of_things_turns_by_standing_still() -> None:
-    own = own_reactions(_commands((0.3, 0.0)), _commands((0.0, 0.0)))
-    assert own.turns(_commands((0.0, 0.0)))
-    assert not own.drives(_commands((0.0, 0.0)))
+    reactions = own_reactions(_commands((0.3, 0.0)), _commands((0.0, 0.0)))
+    assert reactions.turns(_commands((0.0, 0.0)))
+    assert not reactions.drives(_commands((0.0, 0.0)))
 
 
 @pytest.mark.parametrize(("pair", "stops"), [((0.0, 0.0), True), ((0.0, 0.5), False), ((math.nan, 0.0), False)])

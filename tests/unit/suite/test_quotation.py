@@ -43,7 +43,7 @@ def markdown(source: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(
-    ("text", "quoted"),
+    ("text", "expected"),
     [
         ("The **node** is called `guard`.", "The node is called guard."),
         ("*Stop* is a `Twist()`", "Stop is a Twist() of zeros."),
@@ -67,34 +67,34 @@ def markdown(source: str) -> dict[str, Any]:
         ("It flies.", None),
     ],
 )
-def test_a_row_or_a_sentence_is_quoted_whole_and_without_markup(text: str, quoted: str | None) -> None:
-    assert quote(markdown(TABLE), text) == quoted
+def test_a_row_or_a_sentence_is_quoted_whole_and_without_markup(text: str, expected: str | None) -> None:
+    assert quote(markdown(TABLE), text) == expected
 
 
 @pytest.mark.parametrize(
-    ("text", "quoted"),
+    ("text", "expected"),
     [
         ("It uses `x`", "It uses `x`, and *more*. kwargs stay: so."),
         ("kwargs stay: so.", "kwargs stay: so."),
         ("It ends here", "It ends here, with 0."),
     ],
 )
-def test_code_is_quoted_verbatim(text: str, quoted: str) -> None:
-    assert quote({"cell_type": "code", "source": CODE}, text) == quoted
+def test_code_is_quoted_verbatim(text: str, expected: str) -> None:
+    assert quote({"cell_type": "code", "source": CODE}, text) == expected
 
 
 def rendered(source: str) -> Iterator[list[str]]:
     """Yield Markdown as another parser renders it: the cells of each row, or the text of any other block."""
     tokens, row = MarkdownIt("commonmark").enable("table").parse(source), list[str]()
-    inside = False
+    in_row = False
     for token in tokens:
         if token.type in ("tr_open", "tr_close"):
-            if inside:
+            if in_row:
                 yield row
-            row, inside = [], not inside
+            row, in_row = [], not in_row
         elif token.type == "inline":
             text = "".join(" " if child.type == "softbreak" else child.content for child in token.children or ())
-            if inside:
+            if in_row:
                 row.append(" ".join(text.split()))
             else:
                 yield [" ".join(text.split())]
@@ -109,7 +109,7 @@ def cells(assignment: str) -> list[dict[str, Any]]:
 
 @pytest.mark.parametrize("assignment", course_paths.assignments())
 def test_each_sentence_of_a_contract_is_whole_and_as_another_parser_renders_it(assignment: str) -> None:
-    known, first = contract(assignment), set[str]()
+    requirements, seen_names = contract(assignment), set[str]()
     for cell in cells(assignment):
         blocks = list(rendered("".join(cell["source"])))
         code = " ".join(re.sub(r"^\s*# ?", "", "".join(cell["source"]), flags=re.MULTILINE).split())
@@ -117,13 +117,13 @@ def test_each_sentence_of_a_contract_is_whole_and_as_another_parser_renders_it(a
             for text in [texts] if isinstance(texts, str) else texts:
                 quoted = quote(cell, text)
                 assert quoted, f"{name}: {text}"
-                if name not in first:
-                    assert quoted in known[name].text
+                if name not in seen_names:
+                    assert quoted in requirements[name].text
                 if cell["cell_type"] == "code":
                     assert quoted in code
                 else:
                     assert any(contains(block, quoted) for block in blocks), quoted
-        first.update(cell["metadata"]["course"]["contract"])
+        seen_names.update(cell["metadata"]["course"]["contract"])
 
 
 def contains(block: list[str], quoted: str) -> bool:

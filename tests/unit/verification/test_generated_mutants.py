@@ -52,9 +52,9 @@ def with_reason(
 ) -> ChapterMutationResult:
     """Return the chapter's results with the reasons from a file with this text."""
     real = suites.hidden(ASSIGNMENT)
-    twin = replace(real, files=tuple(folder / "hidden" / path.name for path in real.files))
-    assert isinstance(twin, Suite)
-    monkeypatch.setattr(suites, "hidden", lambda assignment: twin)
+    copy = replace(real, files=tuple(folder / "hidden" / path.name for path in real.files))
+    assert isinstance(copy, Suite)
+    monkeypatch.setattr(suites, "hidden", lambda assignment: copy)
     (folder / "survivors.yaml").write_text(text)
     return replace(result, reasons=reasons(ASSIGNMENT, result.generated))
 
@@ -64,7 +64,7 @@ def test_a_survivor_needs_a_reason(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
     survivor = chapter.results[-1].id
     chapter = with_reason(chapter, monkeypatch, "[]", tmp_path)
     assert chapter.unexplained == [survivor]
-    (mutant,) = (each for each in chapter.generated.mutants if each.id == survivor)
+    (mutant,) = (generated for generated in chapter.generated.mutants if generated.id == survivor)
     (message,) = faults([chapter])
     assert message.splitlines() == [
         f"{ASSIGNMENT}: {survivor} survives without a reason",
@@ -121,8 +121,8 @@ def test_part_of_the_mutants_has_no_score(monkeypatch: pytest.MonkeyPatch, tmp_p
 
 def test_a_pair_of_mutants_inherits_the_reason_of_its_parts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     pair = next(mutant.id for mutant in generated_mutants(ASSIGNMENT).mutants if mutant.operator == "pair")
-    one, other = pair.split(" + ")
-    text = f"- {{outside: unspecified, mutants: ['{one}']}}\n- {{equivalent: the same, mutants: ['{other}']}}"
+    first, second = pair.split(" + ")
+    text = f"- {{outside: unspecified, mutants: ['{first}']}}\n- {{equivalent: the same, mutants: ['{second}']}}"
     chapter = ChapterMutationResult(ASSIGNMENT, generated_mutants(ASSIGNMENT), {})
     assert with_reason(chapter, monkeypatch, text, tmp_path).reasons[pair] == "outside: unspecified"
 

@@ -17,8 +17,10 @@ def test_gradings_of_one_version_are_kept_and_an_incomplete_line_is_not(tmp_path
     report = tmp_path / "capstones.jsonl"
     assert stored(report, "v1") == {}
     other = replace(ONE, version="v2", number=2)
-    report.write_text("".join(json.dumps(asdict(each)) + "\n" for each in (ONE, other)) + '{"version": "v1", "num')
-    assert {number: asdict(each) for number, each in stored(report, "v1").items()} == {
+    report.write_text(
+        "".join(json.dumps(asdict(grading)) + "\n" for grading in (ONE, other)) + '{"version": "v1", "num'
+    )
+    assert {number: asdict(grading) for number, grading in stored(report, "v1").items()} == {
         1: {**asdict(ONE), "lost": ()},
     }
     assert cut_off(report)
@@ -33,7 +35,7 @@ def test_a_report_that_ends_with_a_complete_line_is_not_cut_off(text: str | None
 
 
 @pytest.mark.parametrize(
-    ("other", "line"),
+    ("different", "line"),
     [
         (ONE, ""),
         (replace(ONE, number=2, percent=99.0), "number 2: 99 %, other traces: none\n"),
@@ -41,6 +43,6 @@ def test_a_report_that_ends_with_a_complete_line_is_not_cut_off(text: str | None
         (replace(ONE, number=2, traces={}), "number 2: 100 %, other traces: corner.json\n"),
     ],
 )
-def test_a_grading_that_differs_is_named(other: Grading, line: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert summarise([ONE, other]) == bool(line)
+def test_a_grading_that_differs_is_named(different: Grading, line: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert summarise([ONE, different]) == bool(line)
     assert capsys.readouterr().out == f"{line}{2 - bool(line)} of 2 with all points and the same traces: {ONE.traces}\n"

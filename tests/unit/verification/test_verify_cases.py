@@ -85,12 +85,12 @@ def test_submissions_of_several_chapters_may_have_the_same_name(tmp_path: Path) 
 
 
 def test_chapters_are_graded_at_the_same_time_and_reported_in_order(tmp_path: Path) -> None:
-    written: list[str] = []
+    order: list[str] = []
 
     def named(assignment: str, name: str) -> Case:
         def write(folder: Path) -> None:
             folder.mkdir()
-            written.append(f"{assignment[:2]} {name}")
+            order.append(f"{assignment[:2]} {name}")
 
         return replace(case(assignment, write), name=name)
 
@@ -99,7 +99,7 @@ def test_chapters_are_graded_at_the_same_time_and_reported_in_order(tmp_path: Pa
     assert [(verdict.assignment, verdict.name) for verdict in verdicts] == [
         (case.assignment, case.name) for case in cases
     ]
-    assert written == ["01 a", "01 b", "02 a", "01 c", "01 d", "02 b"]
+    assert order == ["01 a", "01 b", "02 a", "01 c", "01 d", "02 b"]
 
 
 def test_a_submission_that_cannot_be_written_ends_the_verification(tmp_path: Path) -> None:

@@ -29,10 +29,10 @@ def test_an_installed_executable_is_found(workspace: Workspace) -> None:
 def test_a_missing_executable_is_reported_with_the_installed_ones(
     workspace: Workspace, package: str, installed: str
 ) -> None:
-    with pytest.raises(StudentError, match=f"The package {package} installs no program robot; {installed}") as caught:
+    with pytest.raises(StudentError, match=f"The package {package} installs no program robot; {installed}") as excinfo:
         workspace.executable(package, "robot")
-    assert caught.value.diagnosis.kind is Kind.MISSING_EXECUTABLE
-    assert "console_scripts in setup.py" in caught.value.diagnosis.sentence
+    assert excinfo.value.diagnosis.kind is Kind.MISSING_EXECUTABLE
+    assert "console_scripts in setup.py" in excinfo.value.diagnosis.sentence
 
 
 def test_a_package_that_was_not_built_is_reported_as_not_built(workspace: Workspace) -> None:
