@@ -160,7 +160,7 @@ def figures(
     """
     small, large = room(40, 4.0), room(10_000, 0.4)
     random = np.random.default_rng(2)
-    poses = [Pose(*random.uniform(-9, 9, 2).tolist(), float(random.uniform(-3, 3))) for _ in range(poses_per_round)]
+    poses = [Pose(*row) for row in random.uniform((-9, -9, -3), (9, 9, 3), (poses_per_round, 3)).tolist()]
     subjects: dict[str, tuple[Callable[[Pose], object], int]] = {
         "sim.scan360_numpy_us": (caster(small, FAR_360, "numpy"), 10),
         "sim.scan360_numba_us": (caster(small, FAR_360, "numba"), 100),

@@ -26,8 +26,7 @@ from autograder.author.verification.mutants import write_reference
 from autograder.course_paths import ROOT
 from autograder.grade import grade_submission
 from autograder.grade.job import Job
-from autograder.result.model import Outcome
-from autograder.suite import suites
+from autograder.suite import Outcome, suites
 
 ASSIGNMENT = "08_capstone"
 SEED = 2026

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from autograder.author.course.forms import CODE_STUB
 from autograder.building import colcon
 from autograder.building.build import build_workspace
 from autograder.diagnosis import OK, Kind
@@ -16,6 +15,7 @@ from autograder.exceptions import StudentError
 from autograder.ros import activate
 from autograder.run.sandbox.limits import BUILD
 from autograder.run.workspace import Workspace
+from autograder.submission.exercise_stubs import CODE_STUB
 
 MANIFEST = """<package format="3">
   <name>{name}</name><version>0.1.0</version><description>A package</description>

@@ -127,7 +127,10 @@ def _remove(name: str) -> Callable[[Path], None]:
 
 
 def _replace(name: str, text: str) -> Callable[[Path], None]:
-    return lambda source: (source / PACKAGE / name).write_text(text) and None
+    def replace(source: Path) -> None:
+        (source / PACKAGE / name).write_text(text)
+
+    return replace
 
 
 def _rename_script(source: Path) -> None:

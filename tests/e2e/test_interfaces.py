@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from autograder.author.course.forms import CODE_STUB
 from autograder.building.interfaces import load_interfaces
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
+from autograder.submission.exercise_stubs import CODE_STUB
 from tests.e2e.sandbox_support import in_worker_sandbox
 
 PACKAGE, OUTER = "my_robot_interfaces", "fleet_interfaces"

@@ -117,8 +117,8 @@ def test_a_node_that_spins_in_a_thread_keeps_its_marks_in_real_time(
 
 @pytest.mark.slow
 def test_all_programs_run_in_real_time_if_one_of_them_cannot_be_stepped(tmp_path: Path) -> None:
-    checks = ("build", "clearance_message", "health_message", "interface_package", "processor", "controller", "monitor")
-    checks = (*checks, "sectors", "drives", "stops", "enable", "health_levels", "declared")
+    builds = ("build", "clearance_message", "health_message", "interface_package", "processor", "controller", "monitor")
+    checks = (*builds, "sectors", "drives", "stops", "enable", "health_levels", "declared")
     assignment, package = "08_capstone", tmp_path / "src/robot_navigation_tutorial/robot_navigation_tutorial"
     write_reference(suites.hidden(assignment).sources, tmp_path)
     (package / "threaded.py").write_text((package / "running.py").read_text())

@@ -18,7 +18,8 @@ from autograder.author.verification.worker_pool import WorkerPool
 from autograder.diagnosis import Kind
 from autograder.grade import grade_submission
 from autograder.grade.job import WHOLE_SUITE, Job, Options
-from autograder.grade.pipeline import RunJob, in_own_sandbox
+from autograder.grade.own_sandbox import in_own_sandbox
+from autograder.grade.pipeline import RunJob
 from autograder.grade.store import LOG
 from autograder.result.model import Result, Status
 from autograder.run.sandbox import Isolation, procfs

@@ -5,6 +5,7 @@ Without a compiler or Python's headers, the set-up stops.
 
 from __future__ import annotations
 
+import shutil
 import sysconfig
 from collections.abc import Callable
 from pathlib import Path
@@ -23,7 +24,7 @@ def leave_on_path(monkeypatch: pytest.MonkeyPatch) -> LeaveOnPath:
     """Return a function that leaves only the given commands on PATH."""
 
     def only(*commands: str) -> None:
-        monkeypatch.setattr(apt.shutil, "which", lambda name: f"/bin/{name}" if name in commands else None)
+        monkeypatch.setattr(shutil, "which", lambda name: f"/bin/{name}" if name in commands else None)
 
     return only
 

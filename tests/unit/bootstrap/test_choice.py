@@ -27,7 +27,7 @@ rosbags==0.10 \\
 
 @pytest.mark.parametrize("version", ["3.10", "3.11", "3.12", "3.13"])
 def test_each_python_that_jazzy_has_wheels_for_is_accepted(version: str) -> None:
-    assert bootstrap.check_machine(version, "Linux", "x86_64") is None
+    bootstrap.check_machine(version, "Linux", "x86_64")
 
 
 @pytest.mark.promise("You need Linux on x86-64, Python 3.10 to 3.13")

@@ -20,7 +20,8 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
 from autograder.notebook.checking import CheckReport
 from autograder.plain_text import visible
-from autograder.result.model import Outcome, Result, write_json
+from autograder.result.model import Result, write_json
+from autograder.suite import Outcome
 
 # A window title, the clipboard, a cursor movement, C1 controls, marks that reverse a line or are invisible, ends of
 # lines, and half of a surrogate pair.

@@ -46,7 +46,7 @@ def test_a_missing_certificate_is_named(tmp_path: Path) -> None:
 
 @pytest.mark.promise("make cluster-certificates")
 def test_a_certificate_works_for_server_and_client_and_only_its_owner_can_read_it(tmp_path: Path) -> None:
-    command = ["make", "-f", course_paths.ROOT / "Makefile", "cluster-certificates"]
+    command = ["make", "-f", str(course_paths.ROOT / "Makefile"), "cluster-certificates"]
     subprocess.run(command, cwd=tmp_path, check=True)
     certificate, key = (tmp_path / "cluster-certificates" / name for name in (CERTIFICATE, KEY))
     context = ssl.create_default_context(cafile=str(certificate))

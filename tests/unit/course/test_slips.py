@@ -206,7 +206,11 @@ def slip(course: Path, file: str, text: str | None, replacement: str) -> Callabl
     original = path.read_text()
     assert text in original
     path.write_text(original.replace(text, replacement, 1))
-    return lambda: path.write_text(original) and None
+
+    def revert() -> None:
+        path.write_text(original)
+
+    return revert
 
 
 @pytest.mark.promise("names the file and line of every mistake")

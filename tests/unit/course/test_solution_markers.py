@@ -7,8 +7,8 @@ import ast
 import pytest
 
 from autograder.author.course.exceptions import CourseError
-from autograder.author.course.forms import CODE_STUB
 from autograder.author.course.solution_markers import mark_functions, strip_markers
+from autograder.submission.exercise_stubs import CODE_STUB
 
 MODULE = '''"""A module."""
 

@@ -108,12 +108,8 @@ def test_each_path_that_the_course_file_names_exists() -> None:
 
 
 def test_the_autograder_names_no_chapter_and_no_package_of_the_course() -> None:
-    names = {
-        *course_paths.assignments(),
-        *(path.name for path in course_paths.SOLUTIONS.iterdir()),
-        *course_paths.check_folders(),
-    }
-    names = {str(name) for name in names if str(name) != "assessment"}
+    folders = (*course_paths.SOLUTIONS.iterdir(), *course_paths.check_folders())
+    names = {*course_paths.assignments(), *(folder.name for folder in folders)} - {"assessment"}
     texts = {
         path: path.read_text(encoding="utf-8", errors="replace").replace("dummy_robot_bringup", "")  # one of ROS's
         for path in (course_paths.ROOT / "autograder").rglob("*")

@@ -7,7 +7,6 @@ import runpy
 import shutil
 from pathlib import Path
 
-import click
 import pytest
 
 from sim.__main__ import main
@@ -36,7 +35,7 @@ def test_the_guide_names_exactly_the_parameters_of_the_node() -> None:
 def test_the_commands_of_the_guide_use_existing_verbs_and_options() -> None:
     commands = re.findall(r"^\$ python -m sim (.*?)(?: --ros-args.*)?$", TEXT, re.MULTILINE)
     assert len(commands) > 8
-    verbs: dict[str, click.Command] = main.commands
+    verbs = main.commands
     for command in commands:
         name, *words = command.split()
         verb = verbs.get(name, verbs["run"])

@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from autograder.author.course.forms import CODE_STUB
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.submission.exercise_stubs import explain
+from autograder.submission.exercise_stubs import CODE_STUB, explain
 
 FAILED = Diagnosis(Kind.BUILD_FAILED, "colcon build failed.", "CMake Error at CMakeLists.txt:4:")
 DEPENDS = '<package format="3"><name>robot</name><exec_depend>interfaces</exec_depend></package>'

@@ -15,7 +15,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
 from autograder.report import feedback
 from autograder.report.feedback.text import NOT_GRADED
-from autograder.result.model import Artifact, CheckResult, Result, from_json
+from autograder.result.model import Artifact, Build, CheckResult, Result, from_json
 from autograder.run.exchanges import Exchange
 from autograder.suite import Check, Outcome
 from autograder.suite.contract import contract
@@ -252,7 +252,7 @@ def test_no_text_of_a_student_becomes_markup(
         ATTACK.replace("/", ""),
         checks=(CheckResult.of(check, Outcome.FAILED, ATTACK),),
         diagnosis=Diagnosis(Kind.CRASHED_LATER, ATTACK, ATTACK),
-        build=make_result().build.__class__(False, 1.0, (ATTACK,), ATTACK),
+        build=Build(False, 1.0, (ATTACK,), ATTACK),
         artifacts=(Artifact("x.png", "track", "", "c", ATTACK),),
     )
     (tmp_path / "x.png").write_bytes(b"\x89PNG")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import Any
 
 import pytest
@@ -13,7 +14,8 @@ class Task:
     """A callback like a task of rclpy: called once, then done, with the exception that it raised."""
 
     def __init__(self, callback: Any) -> None:
-        self._callback, self._done, self._error = callback, False, None
+        self._callback, self._done = callback, False
+        self._error: ValueError | None = None
 
     def __call__(self) -> None:
         try:
@@ -32,8 +34,6 @@ class Task:
 
 def wait(ready: Any) -> None:
     """Wait in the current worker thread."""
-    import threading
-
     worker = threading.current_thread()
     assert isinstance(worker, Worker)
     worker.wait(ready)
@@ -68,12 +68,12 @@ def test_waiting_callbacks_continue_when_ready_in_the_order_of_their_start() -> 
 
 
 def test_no_more_callbacks_wait_than_there_are_threads() -> None:
-    threads, gate = CallbackThreads(2), []
+    threads, gate = CallbackThreads(2), threading.Event()
     for _ in range(2):
         assert not threads.full
-        threads.start(Task(lambda: wait(lambda: bool(gate))))
+        threads.start(Task(lambda: wait(gate.is_set)))
     assert threads.full
-    gate.append(1)
+    gate.set()
     while threads.resume():
         pass
     assert not threads.full

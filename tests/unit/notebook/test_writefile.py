@@ -9,16 +9,16 @@ import pytest
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.testing.globalipapp import start_ipython
 
-from autograder.author.course.forms import CODE_STUB
 from autograder.exceptions import UsageError
 from autograder.notebook.writefile import REPLACED, STUB, register
 from autograder.notebook.written_record import RECORD
+from autograder.submission.exercise_stubs import CODE_STUB
 
 UNSOLVED = f"def main():\n    {CODE_STUB}\n"
 HALF = f"def main():\n    return 0\n\n\ndef other():\n    {CODE_STUB}\n"
 SOLVED = "def main():\n    return 0\n"
 OTHER = "def main():\n    return 1\n"
-Run = Callable[[str, str], str]
+Run = Callable[..., str]
 FILE = "ws/src/pkg/node.py"
 
 

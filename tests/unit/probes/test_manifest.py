@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from autograder.author.course.forms import CODE_STUB
 from autograder.course_paths import SOLUTIONS
 from autograder.probes import manifest
+from autograder.submission.exercise_stubs import CODE_STUB
+from autograder.submission.packages import MAX_MANIFEST
 from autograder.suite import CheckFailed
 
 TEXT = """<package format="3">
@@ -90,7 +91,7 @@ def test_a_manifest_that_ros_refuses_is_refused_with_the_reason(before: str, aft
     ("data", "message"),
     [
         (None, "lamp has no package.xml"),
-        (b"<package>" + b" " * manifest.MAX_MANIFEST, "far larger than a manifest"),
+        (b"<package>" + b" " * MAX_MANIFEST, "far larger than a manifest"),
         (b"\xff\xfe<package/>", "not UTF-8"),
     ],
 )

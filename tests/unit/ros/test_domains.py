@@ -42,8 +42,9 @@ def claims() -> Iterator[ExitStack]:
 def start_holder(claims: ExitStack, *command: str) -> tuple[subprocess.Popen[str], int]:
     """Start a program that prints its domain and keeps it; return it and the domain's number."""
     environ = {name: value for name, value in os.environ.items() if name != "ROS_DOMAIN_ID"}
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-    process = claims.enter_context(subprocess.Popen(command, **pipes, text=True, env=environ))
+    process = claims.enter_context(
+        subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environ)
+    )
     claims.callback(process.kill)
     assert process.stdout is not None
     return process, int(process.stdout.readline())
@@ -108,9 +109,10 @@ def test_a_user_keeps_the_domain_until_the_last_program_ends() -> None:
 
 def test_a_users_programs_that_start_at_the_same_time_share_one_domain(claims: ExitStack) -> None:
     code = HOLD.format(f"user={ADA}")
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    command = [sys.executable, "-c", code]
     processes = [
-        claims.enter_context(subprocess.Popen([sys.executable, "-c", code], **pipes, text=True)) for _ in range(6)
+        claims.enter_context(subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True))
+        for _ in range(6)
     ]
     numbers = [process.stdout.readline() for process in processes if process.stdout is not None]
     for process in processes:

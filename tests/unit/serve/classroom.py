@@ -87,8 +87,8 @@ class Hub:
 @contextmanager
 def running_hub(folder: Path) -> Iterator[Hub]:
     """Start a hub, and wait until it listens."""
-    addresses = [f"http://127.0.0.1:{free_port()}" for _ in range(2)]
-    hub = Hub(*addresses, secret=secrets.token_hex(16), admin=secrets.token_hex(16))
+    url, service = (f"http://127.0.0.1:{free_port()}" for _ in range(2))
+    hub = Hub(url, service, secret=secrets.token_hex(16), admin=secrets.token_hex(16))
     values = {"HUB": hub.url, "SERVICE": hub.service, "SERVICE_TOKEN": hub.secret, "ADMIN_TOKEN": hub.admin}
     environment = {**os.environ, **{f"TEST_{name}": value for name, value in {**values, "FOLDER": str(folder)}.items()}}
     config = Path(__file__).with_name("hub_config.py")

@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from sim import BOX_NAMES, Command, Mover, Pose, RobotSpec, Simulation, State, World, box, clearance, start, step
 from sim.engine import shapes
 from sim.engine.index import layout
-from tests.unit.sim.worlds import ENGINES, random_world, simulation_at
+from sim.state import Event
+from tests.unit.sim.worlds import ENGINES, random_pose, random_world, simulation_at
 
 ROOM = World.from_segments(box(4.0, 3.0), segment_names=BOX_NAMES)
 SQUARE = ((-0.15, -0.1), (0.15, -0.1), (0.15, 0.1), (-0.15, 0.1))
@@ -92,7 +93,7 @@ def test_no_robot_enters_or_jumps_a_wall_at_any_speed(
     world = random_world(seed, walls=12, size=5.0, pillars=2)
     spec = RobotSpec(**FAST, on_collision="slide" if slide else "stop", footprint=SQUARE if polygon else None)
     for _ in range(20):
-        pose = Pose(*random.uniform(-2.3, 2.3, 2).tolist(), float(random.uniform(-3, 3)))
+        pose = random_pose(random, 4.6)
         subject = Simulation(world, (replace(spec, start=pose),), engine="numba")
         state = start(subject)
         if clearance(subject, state).distance > 1e-3:
@@ -129,7 +130,7 @@ def test_a_thin_wall_is_not_jumped_at_20_metres_a_second() -> None:
 def test_robots_collide_with_each_other() -> None:
     robots = (RobotSpec(name="a", start=Pose(-0.5)), RobotSpec(name="b", start=Pose(0.5, 0.0, math.pi)))
     subject = Simulation(ROOM, robots)
-    state, events = start(subject), []
+    state, events = start(subject), list[Event]()
     for _ in range(20):
         state = step(subject, state, {"a": Command(0.5, 0.0), "b": Command(0.5, 0.0)}, 0.1)
         events += state.events
@@ -183,7 +184,7 @@ def test_clearance_names_the_nearest_thing_and_where_it_is() -> None:
 def test_the_gap_of_a_polygon_is_the_distance_between_the_shapes(seed: int) -> None:
     """Against a thousand points along each of the two."""
     random = np.random.default_rng(seed)
-    pose = Pose(*random.uniform(-1, 1, 2).tolist(), float(random.uniform(-3, 3)))
+    pose = random_pose(random, 2.0)
     wall = random.uniform(-1, 1, 4)
     body = np.array([(0.1, 0.2), *SQUARE])
     touch = np.empty(6)

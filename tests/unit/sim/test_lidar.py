@@ -78,7 +78,9 @@ def test_the_utm_30lx_covers_270_degrees_with_1081_beams_and_looks_ahead_in_the_
 @pytest.mark.parametrize("engine", ENGINES)
 def test_ranges_follow_rep_117(engine: str) -> None:
     lidar = LidarSpec(beams=4, angle_increment=math.tau / 4, range_min=0.5, range_max=3.0)
-    world = World.from_segments([[0.2, -1, 0.2, 1], [-1, 1, 1, 1], [-9, -1, -9, 1], [-1, -3.0, 1, -3.0]])
+    world = World.from_segments(
+        [[0.2, -1.0, 0.2, 1.0], [-1.0, 1.0, 1.0, 1.0], [-9.0, -1.0, -9.0, 1.0], [-1.0, -3.0, 1.0, -3.0]]
+    )
     ranges = scan_of(simulation_at(Pose(), world, engine, lidar)).ranges
     assert ranges[0] == -np.inf  # 0.2 m ahead: too close to measure
     assert ranges[1] == 1.0

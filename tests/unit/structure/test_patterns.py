@@ -61,13 +61,13 @@ def _uses(path: str, tree: ast.Module) -> Iterator[Use]:
             methods_used = methods.get(name, {"search"})
             yield Use(f"{path}, {name}", pattern, methods_used <= {"match", "fullmatch"}, methods_used == {"fullmatch"})
     for function in (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)):
-        for call in ast.walk(function):
-            if isinstance(call, ast.Call) and ast.unparse(call.func) in {f"re.{name}" for name in FUNCTIONS}:
-                methods_used = {ast.unparse(call.func).removeprefix("re.")}
-                location = f"{path}, line {call.lineno}"
+        for node in ast.walk(function):
+            if isinstance(node, ast.Call) and ast.unparse(node.func) in {f"re.{name}" for name in FUNCTIONS}:
+                methods_used = {ast.unparse(node.func).removeprefix("re.")}
+                location = f"{path}, line {node.lineno}"
                 yield Use(
                     location,
-                    re.compile(_text(call.args[0])),
+                    re.compile(_text(node.args[0])),
                     methods_used <= {"match", "fullmatch"},
                     methods_used == {"fullmatch"},
                 )
