@@ -114,9 +114,9 @@ def main() -> int:
             report.write(json.dumps(asdict(grading)) + "\n")
             report.flush()
             gradings_by_number[grading.number] = grading
-            took = f"{grading.at_once} at once: {grading.seconds:5.1f} s"
+            duration = f"{grading.at_once} at once: {grading.seconds:5.1f} s"
             print(
-                f"{len(gradings_by_number):4} of {args.n}, {took}, {grading.percent:g} %",
+                f"{len(gradings_by_number):4} of {args.n}, {duration}, {grading.percent:g} %",
                 *grading.lost,
                 sep="\n  ",
                 flush=True,

@@ -115,13 +115,15 @@ def test_attackers_do_not_change_the_results_of_other_students(
     only = suites.hidden(CHAPTER.assignment).with_dependencies(*checks)
     good, bad = honest(size), hostile(names)
     # Each attack is graded at the same time as an honest submission.
-    mixed = [*(submission for pair in zip(bad, good, strict=False) for submission in pair), *good[len(bad) :]]
+    alternating = [*(submission for pair in zip(bad, good, strict=False) for submission in pair), *good[len(bad) :]]
     grade(tmp_path / "without", good, only)
-    results = grade(tmp_path / "with", mixed, only)
+    results = grade(tmp_path / "with", alternating, only)
     require_no_gain({student: results[student] for student, _ in bad}, only)
     for student, _ in good:
-        alone, beside = (files_without_times(tmp_path / name / "results" / student) for name in ("without", "with"))
-        assert beside == alone, student
+        without_attackers, with_attackers = (
+            files_without_times(tmp_path / name / "results" / student) for name in ("without", "with")
+        )
+        assert with_attackers == without_attackers, student
 
 
 def write_one_of_many(attack: Attack, number: int, folder: Path) -> None:

@@ -58,12 +58,12 @@ def write_class(folder: Path, answers: list[list[tuple[str, bytes]]], students: 
     with zipfile.ZipFile(folder / "download.zip", "w") as download:
         for number in range(students):
             name = NAMES[number % len(NAMES)] + (f" {number}" if number >= len(NAMES) else "")
-            identifier, late, nothing = f"Participant {1000 + number}", number % 5 == 2, number % 6 == 4
-            status = NOTHING if nothing else LATE if late else SUBMITTED
+            identifier, is_late, is_empty = f"Participant {1000 + number}", number % 5 == 2, number % 6 == 4
+            status = NOTHING if is_empty else LATE if is_late else SUBMITTED
             rows.append((identifier, name, f"s{number}@example.edu", status, "", f"{MAX_GRADE:.2f}", "Yes", "-", "-"))
-            if nothing:
+            if is_empty:
                 continue
-            submissions[identifier] = number % len(answers), late
+            submissions[identifier] = number % len(answers), is_late
             prefix = f"{unicodedata.normalize('NFD', name)}_{1000 + number}_assignsubmission"
             submission = archive(f"my answer {number}", answers[number % len(answers)])
             download.writestr(f"{prefix}_file_/Übung 1 ({number}. Versuch).zip", submission)
@@ -148,12 +148,12 @@ def test_moodles_zip_is_graded_and_its_worksheet_gets_the_marks(
         assert float(marks[identifier]) == pytest.approx(MAX_GRADE * share * (1 - PENALTY / 100 * late), abs=0.005)
 
     # 26 hours count as two late days, and as one day after an extension by a day.
-    first, *others = (identifier for identifier, (_, late) in submissions.items() if late)
-    (tmp_path / "extensions.csv").write_text(f"student,days\n{first},1\n")
+    with_extension, *without_extension = (identifier for identifier, (_, late) in submissions.items() if late)
+    (tmp_path / "extensions.csv").write_text(f"student,days\n{with_extension},1\n")
     daily = ("--late-per-day", f"{PENALTY:g}", "--extensions", "extensions.csv")
     assert autograder("export", "results", *arguments, *daily).returncode == 0
     extended = imported(tmp_path / "marks.csv", tmp_path / "worksheet.csv")
-    assert extended[first] == marks[first]
-    for identifier in others:
+    assert extended[with_extension] == marks[with_extension]
+    for identifier in without_extension:
         unpenalized = float(marks[identifier]) / (1 - PENALTY / 100)
         assert float(extended[identifier]) == pytest.approx(unpenalized * (1 - 2 * PENALTY / 100), abs=0.02)

@@ -62,10 +62,12 @@ def test_the_reference_passes_every_visible_check_and_leaves_nothing_in_the_work
     assert isinstance(report, CheckReport)
     assert report.passed, repr(report)
     assert [path.name for path in reference_workspace.iterdir()] == ["src"]
-    again = check("02_nodes", reference_workspace)
-    assert isinstance(again, CheckReport)
-    assert replace(again, since="") == report
-    assert re.search(r"16 of 16 visible checks passed. Unchanged since \d\d:\d\d, so nothing was run.", repr(again))
+    second_report = check("02_nodes", reference_workspace)
+    assert isinstance(second_report, CheckReport)
+    assert replace(second_report, since="") == report
+    assert re.search(
+        r"16 of 16 visible checks passed. Unchanged since \d\d:\d\d, so nothing was run.", repr(second_report)
+    )
 
 
 def test_check_reuses_message_packages_that_were_built_before(tmp_path: Path) -> None:
@@ -103,11 +105,11 @@ def test_an_exercise_is_checked_with_the_failed_check_that_it_depends_on(tmp_pat
     path.write_text(path.read_text().replace("node.declare_parameter(", "node.declare_parameters(", 1))
     report = check("05_parameters", tmp_path, exercise=2)
     assert isinstance(report, CheckReport)
-    failed, *others = report.lines
+    failed, *other_lines = report.lines
     # "starts" is a check of exercise 1, without which the others cannot run.
     assert (failed.id, failed.outcome) == ("starts", Outcome.FAILED)
-    assert {line.outcome for line in others} == {Outcome.NOT_CHECKED}
-    assert [line.id for line in others] == ["contradiction", "together", "rate", "refused_whole", "lets_pass"]
+    assert {line.outcome for line in other_lines} == {Outcome.NOT_CHECKED}
+    assert [line.id for line in other_lines] == ["contradiction", "together", "rate", "refused_whole", "lets_pass"]
     assert report.summary == "05_parameters, exercise 2: 0 of 6 visible checks passed."
 
 
@@ -140,22 +142,24 @@ def test_drive_runs_in_a_map_of_ros(reference_workspace: Path) -> None:
 
 def test_drive_runs_in_a_world_of_thousands_of_walls(reference_workspace: Path) -> None:
     angles = np.linspace(-np.pi, np.pi, 5001)
-    ends = 3.0 * np.column_stack([np.cos(angles), np.sin(angles)])
-    world = World.from_segments(np.hstack([ends[:-1], ends[1:]]), name="round", starts=(Pose(0.0, 0.0, 0.0),))
+    segment_ends = 3.0 * np.column_stack([np.cos(angles), np.sin(angles)])
+    world = World.from_segments(
+        np.hstack([segment_ends[:-1], segment_ends[1:]]), name="round", starts=(Pose(0.0, 0.0, 0.0),)
+    )
     assert len(to_json(Simulation(world, (RobotSpec(),)))) > MAX_ARGUMENT
     report = drive(PACKAGE, "robot_controller", world=world, seconds=2, workspace=reference_workspace)
     assert isinstance(report, DriveReport), repr(report)
 
 
 def test_a_failed_lidar_stops_the_reference_and_not_the_mutant(reference_workspace: Path, tmp_path: Path) -> None:
-    good = drive(PACKAGE, "robot_controller", seconds=14, faults="dead", workspace=reference_workspace)
-    bad = drive(
+    reference_run = drive(PACKAGE, "robot_controller", seconds=14, faults="dead", workspace=reference_workspace)
+    mutant_run = drive(
         PACKAGE, "robot_controller", seconds=14, faults=FAULTS["dead"], workspace=_mutant("drives_blind", tmp_path)
     )
-    assert isinstance(good, DriveReport)
-    assert isinstance(bad, DriveReport)
-    assert {(v, w) for t, v, w in good.commands if t > 11} == {(0.0, 0.0)}
-    assert (0.0, 0.0) not in {(v, w) for t, v, w in bad.commands if t > 11}
+    assert isinstance(reference_run, DriveReport)
+    assert isinstance(mutant_run, DriveReport)
+    assert {(v, w) for t, v, w in reference_run.commands if t > 11} == {(0.0, 0.0)}
+    assert (0.0, 0.0) not in {(v, w) for t, v, w in mutant_run.commands if t > 11}
 
 
 def test_a_missing_package_is_reported_in_a_sentence_without_a_traceback(reference_workspace: Path) -> None:

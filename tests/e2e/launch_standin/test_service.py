@@ -29,8 +29,8 @@ from launch.events.process import SignalProcess, matches_executable, matches_nam
 pytestmark = pytest.mark.usefixtures("own_log")
 
 
-def sleeper(**more: Any) -> ExecuteProcess:
-    return ExecuteProcess(cmd=["sleep", "3600"], **more)
+def sleeper(**options: Any) -> ExecuteProcess:
+    return ExecuteProcess(cmd=["sleep", "3600"], **options)
 
 
 def service_with(*entities: Any) -> launch.LaunchService:

@@ -41,8 +41,8 @@ def names(lock: str) -> set[str]:
 
 @pytest.mark.parametrize("lock", [BASE, DEV, BENCH, CLUSTER, HUB])
 def test_a_lock_contains_only_exact_pins_with_hashes(lock: str) -> None:
-    odd = [entry for entry in entries(lock) if not re.fullmatch(ENTRY, entry)]
-    assert odd == []
+    invalid = [entry for entry in entries(lock) if not re.fullmatch(ENTRY, entry)]
+    assert invalid == []
     assert len(entries(lock)) > (10 if lock in (BENCH, CLUSTER, HUB) else 100)
 
 

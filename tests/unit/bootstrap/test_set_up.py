@@ -79,8 +79,8 @@ def test_a_different_ros_or_interpreter_repeats_the_whole_set_up(
 
 def test_a_moved_clone_repeats_the_whole_set_up(set_up: SetUp, commands: Any, tmp_path: Path) -> None:
     set_up.make(dev=False)
-    moved = replace(set_up, root=set_up.root.rename(tmp_path / "moved"))
-    assert moved.missing_parts(dev=False) == ["base"]
+    moved_set_up = replace(set_up, root=set_up.root.rename(tmp_path / "moved"))
+    assert moved_set_up.missing_parts(dev=False) == ["base"]
 
 
 def test_an_environment_without_its_interpreter_is_created_again(set_up: SetUp) -> None:
@@ -212,11 +212,11 @@ def test_two_set_ups_of_one_clone_run_one_after_the_other(tmp_path: Path, monkey
     waiting, entered = threading.Event(), threading.Event()
     monkeypatch.setattr(bootstrap, "print_progress", lambda line: waiting.set())
 
-    def other() -> None:
+    def second_set_up() -> None:
         with bootstrap.exclusive_set_up(lock):
             entered.set()
 
-    thread = threading.Thread(target=other)
+    thread = threading.Thread(target=second_set_up)
     with bootstrap.exclusive_set_up(lock):
         assert not waiting.is_set()
         thread.start()

@@ -58,8 +58,8 @@ def test_checks_that_were_not_run_for_the_same_reason_share_one_line(result: Mak
     build = [result(name, NOT_CHECKED, message="it does not build") for name in "abc"]
     assert folded(*build, result("d", NOT_CHECKED, "c", message="first c")) == [("a", "", "b c d")]
     assert causes(build)[0].not_checked == "Not checked: It is b. It is c."
-    many = causes([result(name, NOT_CHECKED, message="it does not build") for name in "abcde"])[0]
-    assert (many.not_checked, len(many.unnamed)) == ("Not checked: 4 more checks.", 4)
+    group_cause = causes([result(name, NOT_CHECKED, message="it does not build") for name in "abcde"])[0]
+    assert (group_cause.not_checked, len(group_cause.unnamed)) == ("Not checked: 4 more checks.", 4)
     assert folded(result("a", NOT_CHECKED, message="x"), result("b", NOT_CHECKED)) == [("a", "", ""), ("b", "", "")]
 
 
@@ -71,8 +71,8 @@ def test_checks_that_failed_with_the_message_of_the_diagnosis_have_one_cause(res
 
 def test_the_most_expensive_cause_includes_its_consequences_and_the_first_of_equals_wins(result: Make) -> None:
     small, large = result("small", FAILED, points=2.0), result("large", FAILED, points=3.0)
-    equal, passed = result("equal", FAILED, points=3.0), result("passed", PASSED, points=9.0)
-    assert dearest(causes([passed, small, large, equal])) == large
+    equally_costly, passed = result("equal", FAILED, points=3.0), result("passed", PASSED, points=9.0)
+    assert dearest(causes([passed, small, large, equally_costly])) == large
     with_small = [result(name, outcome, "small") for name, outcome in (("x", FAILED), ("y", NOT_CHECKED))]
     assert dearest(causes([small, large, *with_small])) == small
     assert dearest(causes([passed, result("unknown", NOT_CHECKED)])) is None

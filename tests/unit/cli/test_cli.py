@@ -58,10 +58,10 @@ def graded(monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, Any]]:
 
 
 def test_every_verb_has_help() -> None:
-    listed = _run("--help")
-    assert listed.exit_code == 0
+    overview = _run("--help")
+    assert overview.exit_code == 0
     for verb in cli.VERBS:
-        assert f"\n  {verb} " in listed.output
+        assert f"\n  {verb} " in overview.output
         completed = _run(verb, "--help")
         assert completed.exit_code == 0
         assert "Usage:" in completed.output
@@ -71,8 +71,8 @@ def test_a_module_that_only_helps_a_verb_is_not_listed_as_one(tmp_path: Path, mo
     for name in ("__init__.py", "check.py", "rows.py", "update.py"):
         (tmp_path / name).touch()
     monkeypatch.setattr(cli, "__file__", str(tmp_path / "__init__.py"))
-    listed = _run("--help")
-    assert (listed.exit_code, re.findall(r"\n  ([a-z]+) ", listed.output)) == (0, ["check", "update"])
+    overview = _run("--help")
+    assert (overview.exit_code, re.findall(r"\n  ([a-z]+) ", overview.output)) == (0, ["check", "update"])
 
 
 @pytest.mark.promise("autograder grade submissions/ --assignment 02_nodes --out results -j 4")
@@ -109,8 +109,8 @@ def test_regrading_with_resume_lists_the_students_whose_mark_changed(
     for name in ("alice", "bob", "carol"):
         _submission(tmp_path / "class" / name)
     alice, bob, carol = make_result("alice"), make_result("bob"), make_result("carol")
-    for before in (alice, bob):  # carol is not graded yet
-        result.write_json(tmp_path / "out" / before.student / "result.json", before.to_json())
+    for stored in (alice, bob):  # carol is not graded yet
+        result.write_json(tmp_path / "out" / stored.student / "result.json", stored.to_json())
     regraded = replace(alice, checks=(*alice.checks[:2], replace(alice.checks[2], points=4.0), *alice.checks[3:]))
     graded(regraded, bob, carol)
     command = ("grade", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out"))

@@ -63,7 +63,7 @@ OWN_RESOURCE = "autograder 02_nodes 5ca1ab1e0000 10cc10cc10cc 3.12 stand-ins bub
 
 @pytest.mark.promise("It gets no submissions, and the client says what differs.")
 @pytest.mark.parametrize(
-    ("offered", "reason"),
+    ("resources", "reason"),
     [
         ([OWN_RESOURCE], ""),
         ([OWN_RESOURCE.replace("bubblewrap", "process"), OWN_RESOURCE], ""),
@@ -79,9 +79,9 @@ OWN_RESOURCE = "autograder 02_nodes 5ca1ab1e0000 10cc10cc10cc 3.12 stand-ins bub
         (["GPU"], "it does not report its versions: start it with `--preload autograder.grade.cluster`"),
     ],
 )
-def test_a_worker_with_other_versions_is_rejected_with_the_reason(offered: list[str], reason: str) -> None:
-    assert difference(OWN_RESOURCE, offered).startswith(reason)
-    assert (difference(OWN_RESOURCE, offered) == "") is (OWN_RESOURCE in offered)
+def test_a_worker_with_other_versions_is_rejected_with_the_reason(resources: list[str], reason: str) -> None:
+    assert difference(OWN_RESOURCE, resources).startswith(reason)
+    assert (difference(OWN_RESOURCE, resources) == "") is (OWN_RESOURCE in resources)
 
 
 def test_a_machine_meets_its_own_requirements() -> None:

@@ -19,6 +19,6 @@ def test_the_checks_of_a_new_chapter_import_no_other_part_of_the_autograder() ->
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("autograder.")
     }
-    others = {name for name in imported if not name.startswith("autograder.checks.")}
-    assert others
-    assert all(name.startswith("autograder.checking") for name in others)
+    other_modules = {name for name in imported if not name.startswith("autograder.checks.")}
+    assert other_modules
+    assert all(name.startswith("autograder.checking") for name in other_modules)

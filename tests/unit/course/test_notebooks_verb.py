@@ -48,14 +48,14 @@ def test_several_notebooks_run_at_once_each_in_its_own_domain(tmp_path: Path, mo
     folder = tmp_path / "place"
     folder.mkdir()
     # Each waits for the other: if run one after another, both would fail.
-    meet = f"""import os, time
+    rendezvous = f"""import os, time
 from pathlib import Path
 Path('{folder}', os.environ['ROS_DOMAIN_ID']).touch()
 end = time.monotonic() + 60
 while len(list(Path('{folder}').iterdir())) < 2 and time.monotonic() < end:
     time.sleep(0.01)
 assert len(list(Path('{folder}').iterdir())) == 2"""
-    chapter(tmp_path, notebook(code(meet, "meet")))
+    chapter(tmp_path, notebook(code(rendezvous, "meet")))
     monkeypatch.setattr(course_paths, "course", lambda: Course(tmp_path, "small", "A small course"))
     completed = _run("--source", "--solved", "-j", "2")
     assert completed.exit_code == 0, completed.output

@@ -144,4 +144,4 @@ def test_chapters_are_sorted_and_other_notebooks_are_ignored(tmp_path: Path) -> 
     for name in ("02_b", "01_a"):
         chapter(tmp_path, notebook(), name)
     (tmp_path / "chapters/01_a/Untitled.ipynb").write_text("{}")
-    assert [entry.assignment for entry in chapters()] == ["01_a", "02_b"]
+    assert [listed.assignment for listed in chapters()] == ["01_a", "02_b"]

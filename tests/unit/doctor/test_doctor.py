@@ -377,11 +377,11 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     "`autograder doctor` reports different versions on a machine",
     "| `g++: command not found` |",
 )
-@pytest.mark.parametrize(("name", "lack", "status", "text", "fix"), LACKS.values(), ids=LACKS.keys())
+@pytest.mark.parametrize(("name", "missing", "status", "text", "fix"), LACKS.values(), ids=LACKS.keys())
 def test_a_missing_thing_is_named_with_the_command_that_fixes_it(
-    name: str, lack: dict[str, Any], status: Status, text: str, fix: str
+    name: str, missing: dict[str, Any], status: Status, text: str, fix: str
 ) -> None:
-    reported = finding(name, **lack)
+    reported = finding(name, **missing)
     assert reported.status is status
     assert text in reported.state
     assert fix in reported.fix
@@ -400,8 +400,8 @@ def test_a_newest_release_and_a_release_without_a_newest_folder_are_fine() -> No
 
 
 def test_a_sourced_jazzy_is_fine_and_has_no_wheels_to_fix() -> None:
-    alone = complete_machine(find_ros=lambda: SOURCED, prefix=Path("/course/bare"))
-    findings = examine(alone)
+    without_environment = complete_machine(find_ros=lambda: SOURCED, prefix=Path("/course/bare"))
+    findings = examine(without_environment)
     assert {reported.status for reported in findings} == {Status.OK}
     assert "CMake files" not in [reported.name for reported in findings]
 

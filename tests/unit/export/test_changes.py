@@ -37,18 +37,18 @@ def test_a_corrected_check_is_listed_with_its_points(make_result: MakeResult) ->
 
 def test_checks_whose_points_changed_are_listed_even_if_the_mark_is_the_same(make_result: MakeResult) -> None:
     alice = make_result("alice")
-    moved = replace(alice, checks=(replace(alice.checks[0], points=0.0), *regraded(alice, 2.0).checks[1:]))
-    (change,) = changes([alice], [moved])
+    swapped = replace(alice, checks=(replace(alice.checks[0], points=0.0), *regraded(alice, 2.0).checks[1:]))
+    (change,) = changes([alice], [swapped])
     assert change.before == change.after
     assert [check.id for check in change.checks] == ["starts", "turns"]
 
 
 def test_new_and_removed_checks_and_new_students_are_listed(make_result: MakeResult, ungraded_result: Result) -> None:
     alice = make_result("alice")
-    fewer = replace(alice, checks=alice.checks[1:])
-    compared = changes([fewer], [alice, make_result("dora"), ungraded_result])
-    assert compared[0].checks == (CheckChange("starts", None, 1.0),)
-    assert [(change.student, change.before, change.after) for change in compared[1:]] == [("dora", None, 4.0)]
+    without_one_check = replace(alice, checks=alice.checks[1:])
+    listed_changes = changes([without_one_check], [alice, make_result("dora"), ungraded_result])
+    assert listed_changes[0].checks == (CheckChange("starts", None, 1.0),)
+    assert [(change.student, change.before, change.after) for change in listed_changes[1:]] == [("dora", None, 4.0)]
 
 
 def test_a_student_with_two_results_is_refused(make_result: MakeResult) -> None:

@@ -24,12 +24,12 @@ MakeResult = Callable[..., Result]
 def test_a_page_is_written_for_full_marks_only(
     make_result: MakeResult, broken_result: Result, ungraded_result: Result, tmp_path: Path
 ) -> None:
-    less = make_result()
-    assert less.score < less.max_score
-    checks = tuple(replace(check, points=check.max_points) for check in less.checks)
-    full = replace(less, student="dora", checks=checks)
-    assert full.score == full.max_score
-    out = write([less, broken_result, ungraded_result, full], "other_answers", tmp_path / "out")
+    partial_marks = make_result()
+    assert partial_marks.score < partial_marks.max_score
+    checks = tuple(replace(check, points=check.max_points) for check in partial_marks.checks)
+    full_marks = replace(partial_marks, student="dora", checks=checks)
+    assert full_marks.score == full_marks.max_score
+    out = write([partial_marks, broken_result, ungraded_result, full_marks], "other_answers", tmp_path / "out")
     (page,) = (path for path in out.rglob("*") if path.is_file())
     assert page == out / "dora" / "other_answers.html"
     html = page.read_text(encoding="utf-8")

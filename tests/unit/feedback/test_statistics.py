@@ -14,14 +14,14 @@ from autograder.suite import Outcome
 MakeResult = Callable[..., Result]
 
 
-def with_passes(result: Result, *passed: bool) -> Result:
+def with_passes(result: Result, *passes: bool) -> Result:
     """Return a result of checks worth 1 point each, passed or failed."""
-    outcomes = [(Outcome.PASSED, 1.0) if is_passed else (Outcome.FAILED, 0.0) for is_passed in passed]
+    outcomes = [(Outcome.PASSED, 1.0) if is_passed else (Outcome.FAILED, 0.0) for is_passed in passes]
     checks = tuple(
         replace(check, outcome=outcome, points=points, max_points=1.0)
         for check, (outcome, points) in zip(result.checks, outcomes, strict=False)
     )
-    return replace(result, checks=checks, max_score=float(len(passed)))
+    return replace(result, checks=checks, max_score=float(len(passes)))
 
 
 @pytest.mark.promise("The page shows the distribution of marks")

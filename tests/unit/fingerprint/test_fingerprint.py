@@ -104,10 +104,10 @@ def test_a_file_of_the_grader_changes_the_version_only_with_the_number(
 def test_the_version_of_another_course_does_not_depend_on_checks_of_this_course(
     course: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    other = course / "other"
-    _write(other / course_paths.COURSE_FILE, "name: other\ntitle: Another\n")
-    _write(other / "checks/ch02_nodes/hidden/graph.py", "")
-    monkeypatch.setattr(course_paths, "course", lambda: Course.read(other))
+    other_course = course / "other"
+    _write(other_course / course_paths.COURSE_FILE, "name: other\ntitle: Another\n")
+    _write(other_course / "checks/ch02_nodes/hidden/graph.py", "")
+    monkeypatch.setattr(course_paths, "course", lambda: Course.read(other_course))
     read = {str(path.relative_to(course)) for path in files(CHAPTER)}
     assert "other/checks/ch02_nodes/hidden/graph.py" in read
     assert {"sim/world.py", "autograder/suite/suites.py", "assets/worlds/lab.yaml"} <= read
@@ -151,9 +151,9 @@ def test_every_module_that_a_grading_imports_is_among_the_files() -> None:
     folders = (course_paths.ROOT / "autograder", course_paths.ROOT / "sim")
     modules = {Path(place) for place in json.loads(printed.stdout)}
     imported = {module for module in modules if any(folder in module.parents for folder in folders)}
-    listed = {path for name in suites.graded_assignments() for path in files(name, suites.hidden(name).reads)}
+    listed_files = {path for name in suites.graded_assignments() for path in files(name, suites.hidden(name).reads)}
     assert len(imported) > 100
-    assert imported - listed == set()
+    assert imported - listed_files == set()
 
 
 def test_each_path_in_reads_of_a_suite_exists() -> None:

@@ -210,6 +210,6 @@ def test_a_submission_that_was_not_graded_is_graded_again(grade: Callable[..., l
 
 
 def test_each_result_is_announced(grade: Callable[..., list[str]]) -> None:
-    announced: list[str] = []
-    grade(on_result=lambda result: announced.append(result.student))
-    assert sorted(announced) == ["alice", "bob"]
+    announced_students: list[str] = []
+    grade(on_result=lambda result: announced_students.append(result.student))
+    assert sorted(announced_students) == ["alice", "bob"]

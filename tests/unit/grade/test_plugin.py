@@ -202,19 +202,19 @@ def test_a_fault_of_the_student_s_in_a_fixture_fails_the_check_and_is_the_diagno
 
 
 @pytest.mark.parametrize("error", ["GraderError('lost')", "ZeroDivisionError()", "AssertionError()", "SystemExit(0)"])
-@pytest.mark.parametrize("where", ["check", "fixture", "teardown"])
-def test_any_other_exception_is_the_grader_s_own_failure(grade: Grade, error: str, where: str) -> None:
+@pytest.mark.parametrize("phase", ["check", "fixture", "teardown"])
+def test_any_other_exception_is_the_grader_s_own_failure(grade: Grade, error: str, phase: str) -> None:
     plugin = grade(f"""
         @pytest.fixture
         def thing():
-            if "{where}" == "fixture": raise {error}
+            if "{phase}" == "fixture": raise {error}
             yield
-            if "{where}" == "teardown": raise {error}
+            if "{phase}" == "teardown": raise {error}
 
         @check(points=1, group="g")
         def test_it(thing):
             '''It is so.'''
-            if "{where}" == "check": raise {error}
+            if "{phase}" == "check": raise {error}
         """)
     assert plugin.results["it"].outcome is Outcome.NOT_CHECKED
     assert plugin.results["it"].points == 0.0
@@ -222,16 +222,16 @@ def test_any_other_exception_is_the_grader_s_own_failure(grade: Grade, error: st
 
 
 @pytest.mark.promise("`grader.log` beside the result says where.")
-@pytest.mark.parametrize("where", ["check", "fixture", "module"])
+@pytest.mark.parametrize("phase", ["check", "fixture", "module"])
 def test_an_error_in_handling_a_student_s_data_fails_only_that_check_and_is_logged_for_the_instructor(
-    grade: Grade, where: str
+    grade: Grade, phase: str
 ) -> None:
     plugin = grade(f"""
         from autograder.submission.reading import hold
 
-        @pytest.fixture(scope="{"module" if where == "module" else "function"}")
+        @pytest.fixture(scope="{"module" if phase == "module" else "function"}")
         def answer():
-            if "{where}" != "check": hold("What /add answered")
+            if "{phase}" != "check": hold("What /add answered")
 
         @check(points=1, group="g")
         def test_reads_first(answer):
@@ -240,7 +240,7 @@ def test_an_error_in_handling_a_student_s_data_fails_only_that_check_and_is_logg
         @check(points=1, group="g")
         def test_reads(answer):
             '''It is so.'''
-            if "{where}" == "check": hold("What /add answered")
+            if "{phase}" == "check": hold("What /add answered")
             secret = 10**400 * 1.0
 
         @check(points=1, group="g")
@@ -365,8 +365,8 @@ def test_the_draws_of_a_check_follow_from_the_seed(grade: Grade) -> None:
             '''It is so.'''
             expect(False, str(draw.random()))
     """
-    first, again, other = (grade(text, seed=seed).results["it"].message for seed in (7, 7, 8))
-    assert first == again != other
+    first, repeated, of_other_seed = (grade(text, seed=seed).results["it"].message for seed in (7, 7, 8))
+    assert first == repeated != of_other_seed
 
 
 def test_files_around_the_suite_are_not_collected(grade: Grade, tmp_path: Path) -> None:

@@ -34,8 +34,8 @@ def result(make_result: Callable[..., Result]) -> Result:
     return make_result(JOB.student, checks=checks, seed=JOB.seed, isolation=JOB.isolation.value, **versions)
 
 
-def files(result: Result, **others: bytes) -> dict[str, bytes]:
-    return {"result.json": json.dumps(result.to_json()).encode(), **others}
+def files(result: Result, **other_files: bytes) -> dict[str, bytes]:
+    return {"result.json": json.dumps(result.to_json()).encode(), **other_files}
 
 
 def test_an_error_caused_by_a_reply_does_not_end_the_grading_of_a_class(

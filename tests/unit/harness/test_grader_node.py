@@ -17,8 +17,11 @@ def test_the_grader_offers_a_quality_of_service_that_fits_every_subscription() -
     weak = _peer(ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE)
     strong = _peer(ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL)
     assert grader_node.offered_qos([weak]).durability == DurabilityPolicy.VOLATILE
-    offered = grader_node.offered_qos([weak, strong])
-    assert (offered.reliability, offered.durability) == (strong.qos_profile.reliability, strong.qos_profile.durability)
+    offered_profile = grader_node.offered_qos([weak, strong])
+    assert (offered_profile.reliability, offered_profile.durability) == (
+        strong.qos_profile.reliability,
+        strong.qos_profile.durability,
+    )
 
 
 def test_the_grader_requests_a_quality_of_service_that_every_publisher_offers() -> None:

@@ -31,7 +31,7 @@ def test_a_tick_hits_every_firing_of_the_timers(timers: list[int], tick: int) ->
 
 
 @pytest.mark.parametrize(
-    ("wakes", "instant"),
+    ("wake_ups", "instant"),
     [
         ([], 100 * MS),
         ([None, 250 * MS], 100 * MS),
@@ -41,5 +41,5 @@ def test_a_tick_hits_every_firing_of_the_timers(timers: list[int], tick: int) ->
     ],
     ids=["no wake-up", "later", "the first", "not at once", "just before the end"],
 )
-def test_a_step_ends_early_at_a_pending_wake_up(wakes: list[int | None], instant: int) -> None:
-    assert next_instant(0, 100 * MS, wakes) == instant
+def test_a_step_ends_early_at_a_pending_wake_up(wake_ups: list[int | None], instant: int) -> None:
+    assert next_instant(0, 100 * MS, wake_ups) == instant

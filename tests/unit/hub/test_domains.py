@@ -63,8 +63,8 @@ def test_a_hub_that_starts_again_keeps_the_domains_of_running_servers(spawners: 
     spawners[0].claim_domain()
     state = spawners[0].get_state()
     spawners[0].clear_state()  # the hub's process has ended
-    again = CourseSpawner(user=SimpleNamespace(name=NAMES[0]))
-    again.load_state(state)
-    with Domain(DOMAINS.index(domain_of(again))) as other:
-        assert domain_of(again) == state["ros_domain"] != other.number
-    again.clear_state()
+    restarted = CourseSpawner(user=SimpleNamespace(name=NAMES[0]))
+    restarted.load_state(state)
+    with Domain(DOMAINS.index(domain_of(restarted))) as other_domain:
+        assert domain_of(restarted) == state["ros_domain"] != other_domain.number
+    restarted.clear_state()

@@ -49,8 +49,8 @@ def sources(files: Files) -> dict[str, bytes]:
     return {name.removeprefix("ws/"): data for name, data in files.items() if name.startswith("ws/src/")}
 
 
-def environment(name: str, count: int = 30, **more: bytes) -> dict[str, bytes]:
-    return below(name, {f"lib/python3.12/site-packages/m{n}.py": b"x" for n in range(count)} | more)
+def environment(name: str, count: int = 30, **other_files: bytes) -> dict[str, bytes]:
+    return below(name, {f"lib/python3.12/site-packages/m{n}.py": b"x" for n in range(count)} | other_files)
 
 
 def minor_4(book: dict[str, Any]) -> None:

@@ -50,10 +50,10 @@ def test_the_types_of_fields_have_the_names_of_rosidl() -> None:
 
 
 def test_the_same_texts_give_the_same_classes_and_others_do_not_interfere() -> None:
-    other = package({**TEXTS, "msg/Inner.msg": "int8 flag\n"})
+    changed = package({**TEXTS, "msg/Inner.msg": "int8 flag\n"})
     assert package().msg.Inner is package().msg.Inner
-    assert other.msg.Inner is not package().msg.Inner
-    assert other.msg.Inner(flag=3) != package().msg.Inner()
+    assert changed.msg.Inner is not package().msg.Inner
+    assert changed.msg.Inner(flag=3) != package().msg.Inner()
 
 
 @pytest.mark.parametrize(

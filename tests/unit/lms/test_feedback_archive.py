@@ -60,10 +60,10 @@ def store_results(folder: Path, *results: Result) -> None:
         write_json(folder / "results" / result.student / "result.json", result.to_json())
 
 
-def export(folder: Path, form: str, roster: str, *more: str) -> Ran:
+def export(folder: Path, form: str, roster: str, *options: str) -> Ran:
     (folder / "roster.csv").write_text(roster, encoding="utf-8-sig")
     command = ["export", str(folder / "results"), "--format", form, "--roster", str(folder / "roster.csv")]
-    return CliRunner().invoke(group, [*command, "--out", str(folder / "feedback.zip"), *more])
+    return CliRunner().invoke(group, [*command, "--out", str(folder / "feedback.zip"), *options])
 
 
 @pytest.mark.promise(

@@ -78,11 +78,11 @@ def test_a_row_of_the_table_overrides_the_due_time_and_the_systems_time(extensio
 
 def test_moodles_delay_counts_without_a_due_time_and_extension_days_are_subtracted_from_it() -> None:
     policy = LatePolicy(per_day=10, extensions={"ada": Extension(days=DAY), "eve": Extension(until=DUE)})
-    late = Delivery(late=True, late_by=DAY + 2 * HOUR)
-    assert [policy.judge(name, late).days for name in ("ada", "bob")] == [1, 2]
-    assert policy.judge("eve", late).unclear == "it is late, and nothing says by how much: give --due"
-    known = LatePolicy(per_day=10, due=DUE, extensions={"eve": Extension(until=DUE + DAY)})
-    assert known.judge("eve", late).days == 1
+    moodle_delivery = Delivery(late=True, late_by=DAY + 2 * HOUR)
+    assert [policy.judge(name, moodle_delivery).days for name in ("ada", "bob")] == [1, 2]
+    assert policy.judge("eve", moodle_delivery).unclear == "it is late, and nothing says by how much: give --due"
+    policy_with_deadlines = LatePolicy(per_day=10, due=DUE, extensions={"eve": Extension(until=DUE + DAY)})
+    assert policy_with_deadlines.judge("eve", moodle_delivery).days == 1
 
 
 def test_a_time_overrides_the_systems_late_flag_which_alone_suffices_only_for_a_flat_penalty() -> None:

@@ -43,9 +43,9 @@ def assessed(tmp_path: Path, make_result: MakeResult, make_check: MakeCheck) -> 
     return tmp_path
 
 
-def export(folder: Path, form: str, *more: str) -> Ran:
+def export(folder: Path, form: str, *options: str) -> Ran:
     command = ["export", str(folder / "results"), "--format", form, "--out", str(folder / "out.csv")]
-    return CliRunner().invoke(group, [*command, *more])
+    return CliRunner().invoke(group, [*command, *options])
 
 
 def with_points(folder: Path, text: str, form: str = "moodle", roster: str = "worksheet.csv") -> Ran:

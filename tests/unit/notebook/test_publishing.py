@@ -13,14 +13,18 @@ from autograder.notebook.publishing import messages_at, planned, types_of
 
 
 def test_messages_arrive_unchanged_at_their_steps(tmp_path: Path) -> None:
-    plan = planned(lambda t: {"mode": String(data=f"é {t}"), "/n": Int32(data=-7)} if t >= 0.2 else None, 0.4, tmp_path)
-    types = types_of(plan)
+    planned_run = planned(
+        lambda t: {"mode": String(data=f"é {t}"), "/n": Int32(data=-7)} if t >= 0.2 else None, 0.4, tmp_path
+    )
+    types = types_of(planned_run)
     assert types == {"/mode": String, "/n": Int32}
-    assert messages_at(plan, types, 100_000_000) == {}
-    assert messages_at(plan, types, 200_000_000) == {"/mode": String(data="é 0.2"), "/n": Int32(data=-7)}
-    assert messages_at(plan, types, 250_000_000) == {}
-    assert messages_at(plan, types, 400_000_000) == {"/mode": String(data="é 0.4"), "/n": Int32(data=-7)}
-    assert messages_at(plan, types, 500_000_000) == messages_at(plan, types, 0) == {}  # after and before the drive
+    assert messages_at(planned_run, types, 100_000_000) == {}
+    assert messages_at(planned_run, types, 200_000_000) == {"/mode": String(data="é 0.2"), "/n": Int32(data=-7)}
+    assert messages_at(planned_run, types, 250_000_000) == {}
+    assert messages_at(planned_run, types, 400_000_000) == {"/mode": String(data="é 0.4"), "/n": Int32(data=-7)}
+    assert (
+        messages_at(planned_run, types, 500_000_000) == messages_at(planned_run, types, 0) == {}
+    )  # after and before the drive
 
 
 @pytest.mark.parametrize(

@@ -55,9 +55,9 @@ def test_a_period_of_a_second_is_judged_to_a_tenth_in_real_time_too(period: floa
 
 
 def test_a_machine_that_delays_some_messages_in_real_time_costs_no_points() -> None:
-    late = [0.1, 0.18, 0.02, 0.1, 0.1, 0.35, 0.0, 0.1, 0.105, 0.095] * 4
-    assert is_paced(_after(late), PERIOD, REAL)
-    assert not is_paced(_after(late), PERIOD, LOCKSTEP)
+    delays = [0.1, 0.18, 0.02, 0.1, 0.1, 0.35, 0.0, 0.1, 0.105, 0.095] * 4
+    assert is_paced(_after(delays), PERIOD, REAL)
+    assert not is_paced(_after(delays), PERIOD, LOCKSTEP)
 
 
 @pytest.mark.parametrize("count", [0, 1])

@@ -67,13 +67,13 @@ def test_an_obfuscated_version_behaves_the_same_and_looks_different_for_each_see
 
 
 def test_no_two_names_of_an_obfuscated_version_become_one() -> None:
-    many = range(3000)  # among so many, some names are drawn twice
-    assignments = "\n".join(f"        self.attribute_{number} = local_{number} = {number}" for number in many)
+    numbers = range(3000)  # among so many, some names are drawn twice
+    assignments = "\n".join(f"        self.attribute_{number} = local_{number} = {number}" for number in numbers)
     version = Version({"p/p.py": f"class Crowded:\n    def __init__(self):\n{assignments}\n"}, {})
     tree = ast.parse(obfuscate(version, 1).files["p/p.py"])
     attributes = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
     locals_ = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
-    assert (len(attributes), len(locals_)) == (len(many), len(many))
+    assert (len(attributes), len(locals_)) == (len(numbers), len(numbers))
     assert not attributes & locals_
 
 
@@ -153,6 +153,6 @@ def test_the_text_of_a_fault_must_occur_once_unless_the_fault_allows_more() -> N
     edits = dict.fromkeys(STYLES, ("return", "return None or"))
     with pytest.raises(GraderError, match=r"stands \d times"):
         broken(Fault("twice", "stop", "speed_guard/limits.py", edits, frozenset()), STYLES[0], random.Random(1))
-    last = Fault("twice", "stop", "speed_guard/limits.py", edits, frozenset(STYLES))
-    text = broken(last, STYLES[1], random.Random(1)).files["speed_guard/limits.py"]
+    repeated = Fault("twice", "stop", "speed_guard/limits.py", edits, frozenset(STYLES))
+    text = broken(repeated, STYLES[1], random.Random(1)).files["speed_guard/limits.py"]
     assert text.partition("\n# ")[0].endswith("return None or wanted")

@@ -96,15 +96,15 @@ def test_130_kernels_of_two_users_have_two_domains(claims: ExitStack) -> None:
 
 
 def test_a_user_keeps_the_domain_until_the_last_program_ends() -> None:
-    first = Domain(user=ADA)
-    start, second = DOMAINS.index(first.number), Domain(user=ADA)
-    first.close()
+    first_claim = Domain(user=ADA)
+    start, second = DOMAINS.index(first_claim.number), Domain(user=ADA)
+    first_claim.close()
     with Domain(start) as other, Domain(start, user=BEN) as of_ben, Domain(user=ADA) as third:
-        assert first.number == second.number == third.number
-        assert first.number not in {other.number, of_ben.number}
+        assert first_claim.number == second.number == third.number
+        assert first_claim.number not in {other.number, of_ben.number}
     second.close()
     with Domain(start) as other:
-        assert other.number == first.number
+        assert other.number == first_claim.number
 
 
 def test_a_users_programs_that_start_at_the_same_time_share_one_domain(claims: ExitStack) -> None:

@@ -122,8 +122,8 @@ def test_packages_that_cannot_all_be_installed_are_not_installed(
     source = Source("LAUNCH", NO_GIT, "1", commit_of(clone), ("made_launch", "made_ros"))
     with pytest.raises(RealLaunchError, match="could not install what was built: "):
         install(ros, {"LAUNCH": str(clone)}, python=python, sources=(source,), requirement="")
-    listed = subprocess.run([python, "-m", "pip", "list"], capture_output=True, text=True, check=True).stdout
-    assert "made" not in listed
+    installed = subprocess.run([python, "-m", "pip", "list"], capture_output=True, text=True, check=True).stdout
+    assert "made" not in installed
 
 
 def test_another_commit_than_the_pinned_one_is_refused_unless_the_user_names_its_tag(tmp_path: Path) -> None:
@@ -158,10 +158,10 @@ def test_sources_that_do_not_answer_are_given_up_after_ten_seconds(
 def test_set_up_uses_the_stand_ins_if_a_source_is_unreachable_and_says_so_in_one_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    nowhere = tmp_path / "nowhere"
+    missing_source = tmp_path / "nowhere"
     monkeypatch.setattr(real_launch, "installed_packages", lambda names: {})
-    line = set_up({source.variable: str(nowhere) for source in SOURCES})
-    assert line.startswith(f"launch and ros2: {describe_launch()} (could not reach {nowhere}: ")
+    line = set_up({source.variable: str(missing_source) for source in SOURCES})
+    assert line.startswith(f"launch and ros2: {describe_launch()} (could not reach {missing_source}: ")
     assert line.endswith(
         "; point ROS2_INTERFACES_SOURCE at a clone that this machine reaches); `make real-launch` tries again"
     )

@@ -148,8 +148,8 @@ def test_a_configuration_can_be_removed(run: Run, record: Record, recorded: list
 
 
 def test_substitutions_are_performed_when_the_action_is_executed(run: Run, record: Record, recorded: list[str]) -> None:
-    late = record(X)
-    run(SetLaunchConfiguration("x", "1"), SetLaunchConfiguration("x", [X, "2"]), late)
+    record_x = record(X)
+    run(SetLaunchConfiguration("x", "1"), SetLaunchConfiguration("x", [X, "2"]), record_x)
     assert recorded == ["12"]
 
 

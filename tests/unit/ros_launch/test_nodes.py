@@ -70,8 +70,8 @@ def test_a_node_without_a_name_in_the_launch_file_keeps_its_own_name(run: Run) -
 def test_pushed_namespaces_and_remaps_apply_within_their_group(run: Run) -> None:
     first, second, third, outside = (Recorded(name="n") for _ in range(4))
     absolute = Recorded(name="n", namespace="/own")
-    deeper = GroupAction([PushRosNamespace("arm"), second])
-    run(GroupAction([PushRosNamespace("robot1"), SetRemap("a", "b"), first, deeper, third, absolute]), outside)
+    inner_group = GroupAction([PushRosNamespace("arm"), second])
+    run(GroupAction([PushRosNamespace("robot1"), SetRemap("a", "b"), first, inner_group, third, absolute]), outside)
     names = [node.node_name for node in (first, second, third, absolute)]
     assert names == ["/robot1/n", "/robot1/arm/n", "/robot1/n", "/own/n"]
     assert first.words[-2:] == ["-r", "a:=b"]
@@ -88,7 +88,7 @@ def test_parameters_go_to_a_file_for_any_node_or_for_the_named_one(run: Run) -> 
 
 def test_parameters_for_all_nodes_come_before_own_ones_and_end_with_their_group(run: Run, tmp_path: Path) -> None:
     (tmp_path / "all.yaml").write_text("/**: {ros__parameters: {a: 1}}")
-    inside, outside = Recorded(parameters=[{"rate": 1}]), Recorded()
+    in_group, out_of_group = Recorded(parameters=[{"rate": 1}]), Recorded()
     run(
         GroupAction(
             [
@@ -97,17 +97,17 @@ def test_parameters_for_all_nodes_come_before_own_ones_and_end_with_their_group(
                 SetParameter("text", "5"),
                 SetParameter("list", [1.0, 2.0]),
                 SetParametersFromFile([str(tmp_path), "/all.yaml"]),
-                inside,
+                in_group,
             ]
         ),
-        outside,
+        out_of_group,
     )
-    assert inside.words[2:-2] == [
+    assert in_group.words[2:-2] == [
         "-p", "rate:=7", "-p", "text:=5", "-p", "list:=[1.0, 2.0]",
         "--params-file", str(tmp_path / "all.yaml"),
     ]  # fmt: skip
-    assert inside.files[-1] == {"/**": {"ros__parameters": {"rate": 1}}}
-    assert outside.words == ["/bin/node", "--ros-args"]
+    assert in_group.files[-1] == {"/**": {"ros__parameters": {"rate": 1}}}
+    assert out_of_group.words == ["/bin/node", "--ros-args"]
 
 
 def test_single_parameters_are_passed_for_the_named_node(run: Run) -> None:

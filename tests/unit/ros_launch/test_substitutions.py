@@ -189,6 +189,6 @@ def test_a_substitution_describes_itself_without_a_context(substitution: Any, de
 
 @pytest.mark.parametrize("kind", [AndSubstitution, OrSubstitution])
 def test_both_operands_of_a_substitution_can_be_read(context: LaunchContext, kind: Any) -> None:
-    decision = kind("true", ["f", LaunchConfiguration("rest", default="alse")])
-    assert [context.perform_substitution(part) for part in decision.left] == ["true"]
-    assert [context.perform_substitution(part) for part in decision.right] == ["f", "alse"]
+    condition = kind("true", ["f", LaunchConfiguration("rest", default="alse")])
+    assert [context.perform_substitution(part) for part in condition.left] == ["true"]
+    assert [context.perform_substitution(part) for part in condition.right] == ["f", "alse"]

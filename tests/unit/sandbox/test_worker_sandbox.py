@@ -23,16 +23,16 @@ def test_only_folders_of_worker_sandboxes_without_a_lock_are_removed(
     entered_tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(entered_tmp_path))
-    abandoned, locked, young, other = (
+    abandoned, locked, new, unrelated = (
         entered_tmp_path / f"{name}"
         for name in ("autograder-worker-1", "autograder-worker-2", "autograder-worker-3", "other")
     )
-    for folder in (abandoned, locked, young, other):
+    for folder in (abandoned, locked, new, unrelated):
         (folder / "ws").mkdir(parents=True)
-        if folder != young:
+        if folder != new:
             os.utime(folder, (0, 0))
     link = entered_tmp_path / "autograder-worker-4"
-    link.symlink_to(other)
+    link.symlink_to(unrelated)
     descriptor = os.open(locked, os.O_RDONLY)
     fcntl.flock(descriptor, fcntl.LOCK_EX)
     try:
@@ -42,8 +42,8 @@ def test_only_folders_of_worker_sandboxes_without_a_lock_are_removed(
     finally:
         os.close(descriptor)
     assert Path(report.output.strip()).parent == entered_tmp_path
-    assert {*entered_tmp_path.iterdir()} == {locked, young, other, link}
-    assert (other / "ws").is_dir()
+    assert {*entered_tmp_path.iterdir()} == {locked, new, unrelated, link}
+    assert (unrelated / "ws").is_dir()
 
 
 def test_a_worker_imports_nothing_from_the_folder_that_the_grader_was_started_in(
@@ -86,8 +86,8 @@ def test_nothing_in_a_worker_sandbox_outlives_a_killed_grader() -> None:
         grader.kill()
     deadline, remaining = time.monotonic() + 30.0, dict(below)
     while remaining and time.monotonic() < deadline:
-        ended, _, _ = select.select(remaining, (), (), deadline - time.monotonic())
-        remaining = {descriptor: name for descriptor, name in remaining.items() if descriptor not in ended}
+        readable, _, _ = select.select(remaining, (), (), deadline - time.monotonic())
+        remaining = {descriptor: name for descriptor, name in remaining.items() if descriptor not in readable}
     for descriptor in remaining:
         signal.pidfd_send_signal(descriptor, signal.SIGKILL)
     for descriptor in below:

@@ -125,7 +125,7 @@ def test_each_answer_is_served_once_whenever_it_arrives(events: list[str | None]
 def test_the_announced_order_is_kept_if_no_answer_arrives(events: list[str | None]) -> None:
     desk = Desk()
     desk.follow(events)
-    announced, served = list(in_order(desk.waiting, desk.turns)), len(desk.served)
+    expected_order, served_count = list(in_order(desk.waiting, desk.turns)), len(desk.served)
     while desk.waiting:
         desk.serve()
-    assert desk.served[served:] == announced
+    assert desk.served[served_count:] == expected_order

@@ -39,10 +39,10 @@ def test_a_received_answer_survives_a_restart(tmp_path: Path) -> None:
 
 def test_the_same_key_keeps_the_first_answer(tmp_path: Path) -> None:
     store = Store(tmp_path)
-    first = store.receive("ada", "02_nodes", "key", b"first", NOW)
-    assert store.receive("ada", "02_nodes", "key", b"second", NOW + timedelta(hours=1)) == first
-    assert store.receive("bob", "02_nodes", "key", b"bob's", NOW).number != first.number
-    assert store.begin(first.number) == b"first"
+    first_hand_in = store.receive("ada", "02_nodes", "key", b"first", NOW)
+    assert store.receive("ada", "02_nodes", "key", b"second", NOW + timedelta(hours=1)) == first_hand_in
+    assert store.receive("bob", "02_nodes", "key", b"bob's", NOW).number != first_hand_in.number
+    assert store.begin(first_hand_in.number) == b"first"
     assert len(store.of_assignment("02_nodes")) == 2
     store.close()
 

@@ -173,9 +173,9 @@ def test_the_order_of_observations_does_not_matter() -> None:
         assert scan is not None
         return scan.ranges.tobytes()
 
-    forth = {(index, robot): bits(states[index], robot) for index in range(6) for robot in ("r0", "r1")}
-    back = {(index, robot): bits(states[index], robot) for robot in ("r1", "r0") for index in reversed(range(6))}
-    assert forth == back
+    forwards = {(index, robot): bits(states[index], robot) for index in range(6) for robot in ("r0", "r1")}
+    backwards = {(index, robot): bits(states[index], robot) for robot in ("r1", "r0") for index in reversed(range(6))}
+    assert forwards == backwards
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -196,17 +196,17 @@ def test_the_compiled_sources_run_interpreted_too() -> None:
     circles = np.array([[1.0, 1.0, 0.3]])
     beams = beams_of(FULL_TURN)
     arguments = (circles, beams.table, 0.3, 0.4, 0.5, 0.0, beams.per_radian, beams.reach)
-    through = traverse.fan_in_grid(
+    through_grid = traverse.fan_in_grid(
         walls, grid.starts, grid.members, grid.west, grid.south, grid.cell, grid.columns, grid.rows, *arguments
     )
-    np.testing.assert_array_equal(through, arrays.fan(walls, *arguments))
+    np.testing.assert_array_equal(through_grid, arrays.fan(walls, *arguments))
     assert math.isclose(shapes.nearest(walls, circles, 0.3, 0.4), arrays.nearest(walls, circles, 0.3, 0.4))
     robot = np.zeros(14)
-    other = robot.copy()
+    moved_robot = robot.copy()
     limits, drift, noise = np.array([1.0, 1.0, 9.0, 9.0]), np.zeros(3), np.zeros((4, 2))
     motion.advance_free(robot, 0.5, 0.3, 4, 0.02, limits, drift, noise)
-    arrays.advance_free(other, 0.5, 0.3, 4, 0.02, limits, drift, noise)
-    np.testing.assert_array_equal(robot, other)
+    arrays.advance_free(moved_robot, 0.5, 0.3, 4, 0.02, limits, drift, noise)
+    np.testing.assert_array_equal(robot, moved_robot)
 
 
 def test_an_unknown_engine_is_refused_by_name() -> None:
@@ -229,5 +229,5 @@ def test_auto_uses_numba_if_it_is_installed() -> None:
 def test_a_simulation_that_has_run_can_be_copied_and_sent_to_another_process(name: str) -> None:
     subject = simulation(name)
     state = step(subject, start(subject), {"r0": Command(0.3, 0.5)}, 0.3)
-    for other in (copy.deepcopy(subject), pickle.loads(pickle.dumps(subject))):
-        assert step(other, start(other), {"r0": Command(0.3, 0.5)}, 0.3) == state
+    for duplicate in (copy.deepcopy(subject), pickle.loads(pickle.dumps(subject))):
+        assert step(duplicate, start(duplicate), {"r0": Command(0.3, 0.5)}, 0.3) == state

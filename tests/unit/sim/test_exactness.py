@@ -25,19 +25,19 @@ walls = st.lists(st.tuples(points, points).map(lambda ends: (*ends[0], *ends[1])
 def largest_error(scans: int, seed: int, engine: str) -> float:
     """Cast scans in random worlds, assert that hits and misses agree, and return the largest error."""
     random = np.random.default_rng(seed)
-    worst = 0.0
+    largest = 0.0
     for number in range(scans):
         if number % 100 == 0:
             world = random_world(int(random.integers(1 << 30)), walls=20)
             simulation = simulation_at(Pose(), world, engine)
         pose = random_pose(random)
         ranges = cast(simulation, pose, FULL_TURN)
-        truth = extended((pose.x, pose.y), directions(pose, FULL_TURN), world.segments, world.circles)
-        truth[truth > FULL_TURN.range_max] = np.inf
-        hits = np.isfinite(truth)
+        expected = extended((pose.x, pose.y), directions(pose, FULL_TURN), world.segments, world.circles)
+        expected[expected > FULL_TURN.range_max] = np.inf
+        hits = np.isfinite(expected)
         np.testing.assert_array_equal(np.isfinite(ranges), hits)
-        worst = max(worst, float(np.abs(ranges[hits] - truth[hits]).max(initial=0.0)))
-    return worst
+        largest = max(largest, float(np.abs(ranges[hits] - expected[hits]).max(initial=0.0)))
+    return largest
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -56,10 +56,10 @@ def check_fan(origin: tuple[float, float], yaw: float, segments: list[tuple[floa
     lidar = LidarSpec(beams=8, angle_increment=math.tau / 8, range_min=0.0, range_max=50.0)
     pose = Pose(*origin, yaw)
     beam_directions = directions(pose, lidar)
-    truth = [rational(origin, (float(x), float(y)), world.segments.tolist()) for x, y in beam_directions]
+    expected = [rational(origin, (float(x), float(y)), world.segments.tolist()) for x, y in beam_directions]
     for engine in ENGINES:
         ranges = cast(simulation_at(pose, world, engine), pose, lidar)
-        for beam, (measured, exact) in enumerate(zip(ranges.tolist(), truth, strict=True)):
+        for beam, (measured, exact) in enumerate(zip(ranges.tolist(), expected, strict=True)):
             if exact is None or exact > 50:
                 assert measured == math.inf, (
                     f"{engine}: beam {beam} meets something at {measured}, and nothing is there"
@@ -111,14 +111,14 @@ def test_no_beam_slips_through_a_closed_outline_at_its_corners(
     outline = [(*a, *b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
     world = World.from_segments(outline)
     for x, y in corners:
-        apart = math.hypot(x - origin[0], y - origin[1])
-        assume(apart > 1e-3)
+        distance = math.hypot(x - origin[0], y - origin[1])
+        assume(distance > 1e-3)
         yaw = math.atan2(y - origin[1], x - origin[0])
         lidar = LidarSpec(beams=1, range_min=0.0, range_max=100.0)
-        truth = rational(origin, tuple(directions(Pose(*origin, yaw), lidar)[0].tolist()), world.segments.tolist())  # type: ignore[arg-type]
+        expected = rational(origin, tuple(directions(Pose(*origin, yaw), lidar)[0].tolist()), world.segments.tolist())  # type: ignore[arg-type]
         for engine in ENGINES:
             measured = cast(simulation_at(Pose(*origin, yaw), world, engine), Pose(*origin, yaw), lidar)[0]
-            assert (measured < math.inf) == (truth is not None)
+            assert (measured < math.inf) == (expected is not None)
 
 
 @settings(deadline=None, max_examples=200)
@@ -129,12 +129,12 @@ def test_a_beam_nearly_tangent_to_a_pillar_is_measured_to_a_picometre(
     lidar = LidarSpec(beams=1, range_min=0.0, range_max=30.0)
     pose = Pose(0.3, -0.7, yaw)
     x, y = directions(pose, lidar)[0].tolist()
-    beside = radius - inside
-    circle = (pose.x + distance * x - beside * y, pose.y + distance * y + beside * x, radius)
-    truth = rational_disc((pose.x, pose.y), (x, y), circle)
+    gap = radius - inside
+    circle = (pose.x + distance * x - gap * y, pose.y + distance * y + gap * x, radius)
+    expected = rational_disc((pose.x, pose.y), (x, y), circle)
     for engine in ENGINES:
         measured = cast(simulation_at(pose, World.from_segments([], circles=[circle]), engine), pose, lidar)[0]
-        assert measured == math.inf if truth is None else abs(measured - truth) <= TOLERANCE
+        assert measured == math.inf if expected is None else abs(measured - expected) <= TOLERANCE
 
 
 @pytest.mark.parametrize("engine", ENGINES)

@@ -41,8 +41,8 @@ FREE = RobotSpec(
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803")
 
 
-def drive(spec: RobotSpec, command: Command, seconds: float, engine: str = "numpy", **more: float) -> State:
-    simulation = Simulation(NOWHERE, (spec,), engine=engine, **more)  # type: ignore[arg-type]
+def drive(spec: RobotSpec, command: Command, seconds: float, engine: str = "numpy", **settings: float) -> State:
+    simulation = Simulation(NOWHERE, (spec,), engine=engine, **settings)  # type: ignore[arg-type]
     return step(simulation, start(simulation), command, seconds)
 
 
@@ -228,7 +228,7 @@ def test_an_invalid_drift_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("more", "message"),
+    ("settings", "message"),
     [
         ({"robots": ()}, "a simulation needs a robot"),
         ({"robots": (RobotSpec(), RobotSpec())}, "two robots have one name"),
@@ -237,9 +237,9 @@ def test_an_invalid_drift_is_refused() -> None:
         ({"seed": 0.5}, "seed is 0.5; give a whole number"),
     ],
 )
-def test_an_invalid_simulation_is_refused(more: dict[str, object], message: str) -> None:
+def test_an_invalid_simulation_is_refused(settings: dict[str, object], message: str) -> None:
     with pytest.raises(SpecError, match=message):
-        Simulation(NOWHERE, **more)  # type: ignore[arg-type]
+        Simulation(NOWHERE, **settings)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("dt", [0.0, -1.0, math.nan, math.inf, 1e9])
@@ -250,14 +250,14 @@ def test_an_invalid_step_is_refused(dt: float) -> None:
 
 
 def test_invalid_commands_are_refused() -> None:
-    one = Simulation(NOWHERE)
-    two = Simulation(NOWHERE, (RobotSpec(name="a"), RobotSpec(name="b")))
+    unnamed_robot = Simulation(NOWHERE)
+    named_robots = Simulation(NOWHERE, (RobotSpec(name="a"), RobotSpec(name="b")))
     with pytest.raises(SpecError, match="the command for robot 'robot' is not finite"):
-        step(one, start(one), Command(math.nan, 0.0))
+        step(unnamed_robot, start(unnamed_robot), Command(math.nan, 0.0))
     with pytest.raises(SpecError, match="one command for several robots"):
-        step(two, start(two), Command())
+        step(named_robots, start(named_robots), Command())
     with pytest.raises(SpecError, match="there is no robot 'c'; the robots are: a, b"):
-        step(two, start(two), {"c": Command()})
+        step(named_robots, start(named_robots), {"c": Command()})
 
 
 def test_invalid_worlds_are_refused() -> None:

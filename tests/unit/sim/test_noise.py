@@ -46,10 +46,10 @@ def test_the_random_words_of_a_key_never_change() -> None:
 
 def test_each_tick_has_its_own_random_words_drawn_together_or_singly() -> None:
     key = key_of(3, "robot", "odometry")
-    together = words_of_ticks(key, 10, 6)
+    drawn_together = words_of_ticks(key, 10, 6)
     singly = [words_of_ticks(key, 10 + tick, 1)[0] for tick in range(6)]
-    np.testing.assert_array_equal(together, singly)
-    assert len(np.unique(together)) == together.size
+    np.testing.assert_array_equal(drawn_together, singly)
+    assert len(np.unique(drawn_together)) == drawn_together.size
     assert not np.array_equal(words(key, 1, 4), words(key, 2, 4))
 
 

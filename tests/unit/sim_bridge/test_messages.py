@@ -109,6 +109,6 @@ def test_a_command_that_is_not_finite_is_refused(value: float) -> None:
 
 
 def test_times_are_exact_to_the_nanosecond() -> None:
-    late = 4_000_000_000_999_999_999 // 2
-    assert time_to_msg(late).sec * 1_000_000_000 + time_to_msg(late).nanosec == late
+    time_ns = 4_000_000_000_999_999_999 // 2
+    assert time_to_msg(time_ns).sec * 1_000_000_000 + time_to_msg(time_ns).nanosec == time_ns
     assert clock_to_msg(1_000_000_001).clock == time_to_msg(1_000_000_001)

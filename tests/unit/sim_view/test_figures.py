@@ -123,8 +123,8 @@ def test_a_mark_shows_its_instant_and_its_note(recording: Recording) -> None:
 def test_the_mark_draws_a_line_to_the_nearest_obstacle(recording: Recording) -> None:
     row = int(np.argmin(recording.clearances[:, 0]))
     ax = plot(recording, mark=float(recording.times[row]), robot="one").figure.axes[0]
-    ends = [np.column_stack(line.get_data()) for line in ax.lines if len(line.get_xdata()) == 2]
-    gap = next(line for line in ends if line[0] == pytest.approx(recording.poses[row, 0, :2]))
+    endpoints = [np.column_stack(line.get_data()) for line in ax.lines if len(line.get_xdata()) == 2]
+    gap = next(line for line in endpoints if line[0] == pytest.approx(recording.poses[row, 0, :2]))
     spec = recording.simulation.robots[0]
     assert np.hypot(*(gap[1] - gap[0])) == pytest.approx(recording.clearances[row, 0] + spec.radius, abs=1e-9)
 
@@ -142,8 +142,8 @@ def test_without_a_mark_the_closest_place_is_drawn_with_its_distance(world: Worl
 def test_robots_are_named_if_there_are_several(world: World, recording: Recording) -> None:
     assert {"one", "two"} <= texts(plot(recording).figure.axes[0])
     assert {"one", "two"} <= texts(show(recording.simulation, start(recording.simulation)).figure.axes[0])
-    alone = Simulation(world)
-    assert alone.robots[0].name not in texts(show(alone, start(alone)).figure.axes[0])
+    single = Simulation(world)
+    assert single.robots[0].name not in texts(show(single, start(single)).figure.axes[0])
 
 
 def test_each_mark_has_colours_that_each_theme_names() -> None:

@@ -254,8 +254,8 @@ def test_frames_are_jpeg_or_png_of_one_size(world: World) -> None:
 def test_a_frame_has_no_empty_band_beside_or_below_the_world(size: tuple[float, float]) -> None:
     session = Session(Simulation(World.from_segments(box(*size))))
     picture = np.asarray(Renderer(session.simulation, LIGHT).draw(session.at(0))).astype(int)
-    inked = np.abs(picture - 255).max(axis=2) > 4
-    rows, columns = np.flatnonzero(inked.any(axis=1)), np.flatnonzero(inked.any(axis=0))
+    is_drawn = np.abs(picture - 255).max(axis=2) > 4
+    rows, columns = np.flatnonzero(is_drawn.any(axis=1)), np.flatnonzero(is_drawn.any(axis=0))
     assert picture.shape[0] - rows[-1] < 40
     assert picture.shape[1] - columns[-1] < 40
 
@@ -274,5 +274,5 @@ def test_a_moving_obstacle_moves_in_the_picture() -> None:
     session = Session(Simulation(world))
     session.advance(2 * SECOND)
     renderer = Renderer(session.simulation, LIGHT)
-    first, last = (np.asarray(renderer.draw(session.at(when))) for when in (0, 2 * SECOND))
+    first, last = (np.asarray(renderer.draw(session.at(instant))) for instant in (0, 2 * SECOND))
     assert (np.abs(first[60:, :600].astype(int) - last[60:, :600]).max(axis=2) > 60).sum() > 200

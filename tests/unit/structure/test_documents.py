@@ -57,8 +57,8 @@ def commands(document: str) -> list[list[str]]:
 @pytest.mark.parametrize("document", DOCUMENTS)
 def test_each_path_that_a_document_names_exists(document: str) -> None:
     named = {path for path in paths(document) if not path.startswith(MADE) and path not in IN_A_CHAPTER}
-    beside = (ROOT, (ROOT / document).parent)
-    missing = {path for path in named if not any(any(folder.glob(path)) for folder in beside)}
+    folders = (ROOT, (ROOT / document).parent)
+    missing = {path for path in named if not any(any(folder.glob(path)) for folder in folders)}
     assert missing <= {"package.xml", "setup.py", *MADE_PAGES}
 
 
@@ -82,8 +82,8 @@ def test_each_command_that_a_document_names_exists(document: str) -> None:
 
 
 def test_each_make_target_that_a_document_names_exists() -> None:
-    listed = subprocess.run(["make", "-s", "help"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
-    targets = {*re.findall(r"make ([a-z-]+)", listed), "lint"}
+    targets_text = subprocess.run(["make", "-s", "help"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    targets = {*re.findall(r"make ([a-z-]+)", targets_text), "lint"}
     for document in DOCUMENTS:
         named = {match[1] for span in spans(document) if (match := re.match(r"make (?:\w+=\S+ )?([a-z-]+)", span))}
         assert named <= targets, document

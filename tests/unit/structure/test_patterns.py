@@ -103,7 +103,7 @@ def steepest_growth(use: Use) -> tuple[float, str]:
     def steps(text: str) -> int:
         return Steps(use.pattern, MOST).search(text, anchored=use.anchored, full=use.full)
 
-    worst, hardest = 0.0, ""
+    steepest, hardest = 0.0, ""
     for make in hard_texts(use.pattern, full=use.full):
         try:
             middle = steps(make(LENGTH))
@@ -112,8 +112,8 @@ def steepest_growth(use: Use) -> tuple[float, str]:
             growth = (steps(make(2 * LENGTH)) - middle) / max(middle - steps(make(LENGTH // 2)), 1)
         except Budget:
             return float("inf"), make(4)
-        worst, hardest = max((worst, hardest), (growth, make(4)))
-    return worst, hardest
+        steepest, hardest = max((steepest, hardest), (growth, make(4)))
+    return steepest, hardest
 
 
 USES = list(uses())

@@ -101,11 +101,11 @@ def test_a_robot_that_keeps_to_the_rule_drives_far_enough_and_touches_nothing(na
 def test_a_near_obstacle_is_measurable_and_within_the_sector_for_every_limit() -> None:
     assert all(RANGE_MIN < near < 0.2 for near in (*NEAR, JUST_AHEAD.value))
     assert all(0.0 < bearing < nodes.HALF_SECTOR - 6.0 for bearing in BESIDE)
-    for low, high, others, counts, phantom in OTHER_LIMITS:
-        assert low <= counts <= high <= RANGE_MAX
+    for low, high, other_distance, valid, phantom in OTHER_LIMITS:
+        assert low <= valid <= high <= RANGE_MAX
         assert not low <= phantom <= high
-        assert others > nodes.SAFETY_DISTANCE
-        assert all(float(np.float32(value)) == value for value in (counts, phantom))
+        assert other_distance > nodes.SAFETY_DISTANCE
+        assert all(float(np.float32(value)) == value for value in (valid, phantom))
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])

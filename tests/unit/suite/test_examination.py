@@ -76,14 +76,14 @@ def test_a_run_does_not_depend_on_which_other_runs_are_made(workspace: Workspace
         assert Examination(workspace, 1, frozenset(checks)).runs
         return list(ordered)
 
-    few = versions("limits_pass", "limits_right", "stop")
-    many = versions("limits_pass", "limits_right", "stop", "slow", "refused")
-    assert all(order in many for order in few)
+    few_runs = versions("limits_pass", "limits_right", "stop")
+    many_runs = versions("limits_pass", "limits_right", "stop", "slow", "refused")
+    assert all(order in many_runs for order in few_runs)
 
 
 def test_correct_and_faulty_versions_are_shuffled_for_each_seed(workspace: Workspace, ordered: list[TestRun]) -> None:
-    mixed = {tuple(Examination(workspace, seed, frozenset(FILES)).runs) for seed in range(5)}
-    assert len(mixed) == 5
+    orders = {tuple(Examination(workspace, seed, frozenset(FILES)).runs) for seed in range(5)}
+    assert len(orders) == 5
     assert len(ordered) > 5 * len(faults())
 
 

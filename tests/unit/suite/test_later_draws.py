@@ -69,9 +69,9 @@ def test_05_asks_for_values_outside_of_each_range() -> None:
 
 def test_07_finds_seeds_that_a_parameter_may_have() -> None:
     for seed in SOME:
-        shaky = robust._shaky(random.Random(seed))
-        assert 1 <= shaky <= 2**31 - 1
-        assert expected(shaky, 0.5, robust.READINGS, 1).count("unstable: 2 in a row") >= 2
+        unstable_seed = robust._shaky(random.Random(seed))
+        assert 1 <= unstable_seed <= 2**31 - 1
+        assert expected(unstable_seed, 0.5, robust.READINGS, 1).count("unstable: 2 in a row") >= 2
 
 
 def test_08_launches_with_values_within_the_ranges() -> None:
@@ -85,9 +85,9 @@ def test_08_launches_with_values_within_the_ranges() -> None:
 def test_08_shows_obstacles_that_a_lidar_measures_and_the_robot_turns_at() -> None:
     safety = capstone.PARAMETERS[capstone.CONTROLLER]["safety_distance"].default
     for seed in SEEDS:
-        for near, tight in commands.draw_rooms(random.Random(seed)).values():
-            assert RANGE_MIN < near < safety
-            assert RANGE_MIN < tight - 0.4 < tight < RANGE_MAX
+        for distance, narrow in commands.draw_rooms(random.Random(seed)).values():
+            assert RANGE_MIN < distance < safety
+            assert RANGE_MIN < narrow - 0.4 < narrow < RANGE_MAX
 
 
 @pytest.mark.parametrize("seed", SOME)

@@ -28,5 +28,5 @@ def test_each_sector_has_the_nearest_reading_that_counts() -> None:
     for seed in range(1000):
         scan, half = _scan(random.Random(seed)), random.Random(seed).uniform(0.1, 0.78)
         for middle in MIDDLES.values():
-            ours, theirs = nearest(scan, middle, half), reference(scan, middle, half)
-            assert ours == theirs or (math.isnan(ours) and math.isnan(theirs))
+            computed, expected = nearest(scan, middle, half), reference(scan, middle, half)
+            assert computed == expected or (math.isnan(computed) and math.isnan(expected))

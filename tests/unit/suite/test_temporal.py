@@ -25,10 +25,10 @@ def test_the_first_instant_of_a_violation_is_named_in_the_trace_s_own_time() -> 
 
 
 def test_formulas_combine_signals_and_look_ahead_by_samples() -> None:
-    answered = "(blocked > 0.5) implies (eventually[0:1] (turn > 0.4))"
+    formula = "(blocked > 0.5) implies (eventually[0:1] (turn > 0.4))"
     signals = {"blocked": [0.0, 1.0, 0.0, 0.0], "turn": [0.0, 0.0, 0.5, 0.0]}
-    assert always(answered, TIMES, signals).violated_at is None
-    assert always(answered, TIMES, {**signals, "turn": [0.0, 0.0, 0.0, 0.5]}).violated_at == 0.5
+    assert always(formula, TIMES, signals).violated_at is None
+    assert always(formula, TIMES, {**signals, "turn": [0.0, 0.0, 0.0, 0.5]}).violated_at == 0.5
 
 
 def test_a_malformed_formula_is_an_error() -> None:

@@ -13,5 +13,5 @@ CHECKS = suites.hidden(CAPSTONE).checks
 
 @pytest.mark.parametrize("check", CHECKS, ids=[check.id for check in CHECKS])
 def test_each_check_fails_by_itself_in_three_flawed_versions(check: Check) -> None:
-    alone = [m.id for m in mutants(CAPSTONE) if check.id in m.fails and not m.fails & set(check.dependencies)]
-    assert len(alone) >= 3
+    independent = [m.id for m in mutants(CAPSTONE) if check.id in m.fails and not m.fails & set(check.dependencies)]
+    assert len(independent) >= 3

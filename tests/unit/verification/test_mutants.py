@@ -22,8 +22,8 @@ def mutants_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The path of a mutants.yaml that belongs to the real suite's checks."""
     real = suites.hidden("02_nodes")
     files = tuple(tmp_path / "hidden" / path.name for path in real.files)
-    twin = Suite(real.assignment, real.packages, files, real.checks)
-    monkeypatch.setattr(suites, "hidden", lambda assignment: twin)
+    copied = Suite(real.assignment, real.packages, files, real.checks)
+    monkeypatch.setattr(suites, "hidden", lambda assignment: copied)
     return tmp_path / "mutants.yaml"
 
 

@@ -60,13 +60,15 @@ def test_an_untouched_release_gains_no_points() -> None:
 
 
 def test_a_release_that_students_cannot_begin_with_is_not_as_expected() -> None:
-    nothing = result(*(check.id for check in SUITE.checks))
-    unbuilt = replace(nothing, diagnosis=Diagnosis(Kind.BUILD_FAILED, "setup.py fails."))
+    without_points = result(*(check.id for check in SUITE.checks))
+    unbuilt = replace(without_points, diagnosis=Diagnosis(Kind.BUILD_FAILED, "setup.py fails."))
     assert verify_zero(unbuilt) == "students get it broken: setup.py fails."
     assert verify_zero(replace(unbuilt, assignment="01_package_structure")) == ""  # its students correct a build
-    unread = replace(nothing, assignment="01_package_structure", diagnosis=Diagnosis(Kind.NOTEBOOK_FAILED, "It ends."))
-    assert verify_zero(unread) == "students get it broken: It ends."
-    unfinished = replace(nothing, diagnosis=Diagnosis(Kind.UNFINISHED, "A part is still to be written."))
+    unreadable = replace(
+        without_points, assignment="01_package_structure", diagnosis=Diagnosis(Kind.NOTEBOOK_FAILED, "It ends.")
+    )
+    assert verify_zero(unreadable) == "students get it broken: It ends."
+    unfinished = replace(without_points, diagnosis=Diagnosis(Kind.UNFINISHED, "A part is still to be written."))
     assert verify_zero(unfinished) == ""
 
 
