@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.e2e.sandbox_support import in_worker_sandbox
-from tests.e2e.test_lockstep_features import open_harness, received, twice, write_workspace
+from tests.e2e.test_lockstep_features import open_harness, received, same_result_twice, write_workspace
 
 STEPS = 10  # of 0.1 s each
 
@@ -234,7 +234,7 @@ def record_in_both_orders(scratch: Path) -> Any:
             texts = [[text for _, text in received(harness, topic)] for topic in ("/said", "/also")]
             return [*texts, dict(harness.activations - before)]
 
-    return [twice(lambda: run("talker", "recorder")), twice(lambda: run("recorder", "talker"))]
+    return [same_result_twice(lambda: run("talker", "recorder")), same_result_twice(lambda: run("recorder", "talker"))]
 
 
 def test_messages_have_the_same_order_whichever_program_is_listed_first() -> None:
