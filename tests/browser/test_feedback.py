@@ -112,7 +112,7 @@ def test_the_run_of_a_failed_check_plays(
     expect(page.locator("#run-starts-track output")).to_have_text("1.00 s")
     expect(page.locator("#run-starts-track canvas")).to_be_visible()  # the link has opened its details
     for scheme in ("light", "dark"):
-        page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+        page.emulate_media(color_scheme=scheme)
         page.screenshot(path=screenshots / f"feedback-run-{scheme}.png", full_page=True)
     page.emulate_media(media="print")
     expect(player.locator("img")).to_be_visible()

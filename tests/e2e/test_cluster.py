@@ -163,13 +163,15 @@ def test_a_submission_that_kills_two_workers_is_not_graded_and_the_others_are(jo
 def test_a_worker_with_another_suite_is_rejected_and_gets_no_submission(
     jobs: list[Job], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    graded: list[Result] = []
     reports: list[str] = []
     other_resource = resource(ASSIGNMENT, Isolation.PROCESS).replace(suites.hidden(ASSIGNMENT).files_digest, "another")
     with connected(LOCAL, 1, tmp_path) as client:
         monkeypatch.setattr(dispatch, "resource", lambda assignment, isolation: other_resource)
         monkeypatch.setattr(dispatch, "NO_WORKER_TIMEOUT_SECONDS", 0.0)
         with pytest.raises(ClusterError, match="no suitable worker was available"):
-            grade_on(client, jobs, pytest.fail, report=reports.append, grade=reply_without_grading)
+            grade_on(client, jobs, graded.append, report=reports.append, grade=reply_without_grading)
+    assert graded == []
     (sentence,) = reports
     assert f"is rejected: its suite of {ASSIGNMENT} is" in sentence
     assert sentence.endswith("but here it is another: install the same version of the course on both.")

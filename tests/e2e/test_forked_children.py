@@ -112,6 +112,7 @@ def test_a_forked_child_program_sees_the_same_environment_as_a_started_one() -> 
 def exit_reasons(scratch: Path) -> list[dict[str, Any]]:
     spec = program_sandbox(scratch)
     codes = {name: code for name, code in EXITS.items() if name != "left behind"}  # its output never ends
+    commands: list[tuple[str, Any, dict[str, Any]]]
     commands = [(name, [program(spec.workdir, name, code)], {}) for name, code in codes.items()]
     no_rights = spec.workdir / "no rights"
     no_rights.write_text(f"#!{sys.executable}")

@@ -63,7 +63,7 @@ def exchange_messages(scratch: Path) -> dict[str, Any]:
     (outer / "msg" / "Fleet.msg").write_text(f"{PACKAGE}/RobotStatus[] robots\n")
     fleet = load_interfaces(workspace, OUTER).msg.Fleet
     module = load_interfaces(workspace, PACKAGE)
-    kind, received = module.msg.RobotStatus, []
+    kind, received = module.msg.RobotStatus, list[Any]()
     rclpy.init()
     node = rclpy.create_node("grader")
     out = node.create_publisher(kind, "in", 10)

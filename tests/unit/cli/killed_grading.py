@@ -93,7 +93,7 @@ def grade(
                 os.kill(os.getpid(), signal.SIGKILL)
             changes += 1
 
-    batch.grade_submission = partial(grade_submission, run_job=Worker(failed_checks))  # type: ignore[assignment]
+    batch.grade_submission = partial(grade_submission, run_job=Worker(failed_checks))
     Suite.version = property(lambda suite: version)  # type: ignore[assignment, method-assign]
     os.dup2(printed, 1)
     words = ("grade", str(folder / "class"), "--assignment", CHAPTER, "--out", str(results), "-j", "1")

@@ -131,10 +131,10 @@ def _cell(source: str) -> nbformat.NotebookNode:
     return nbformat.v4.new_code_cell(source)
 
 
-def _zip(folder: Path, data: bytes) -> object:
+def _zip(folder: Path, data: bytes) -> None:
     (folder / "alice.zip").write_bytes(data)
     read = intake.read_submission(folder / "alice.zip", "02_nodes")
-    return intake.write_tree(read.source, folder / "src")
+    intake.write_tree(read.source, folder / "src")
 
 
 def _archive() -> bytes:

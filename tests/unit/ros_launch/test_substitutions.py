@@ -154,7 +154,7 @@ def test_other_values_are_refused_as_substitutions(value: Any) -> None:
 
 def test_text_must_be_text() -> None:
     with pytest.raises(TypeError, match="TextSubstitution expected Text object got '<class 'int'>' instead"):
-        TextSubstitution(text=5)  # type: ignore[arg-type]
+        TextSubstitution(text=5)
 
 
 def test_a_choice_needs_a_value() -> None:

@@ -27,7 +27,7 @@ def change_after_lookup(monkeypatch: pytest.MonkeyPatch, looked_up: str, change:
     real = os.stat
 
     def stat(path: str, *arguments: object, **options: object) -> os.stat_result:
-        info: os.stat_result = real(path, *arguments, **options)  # type: ignore[call-overload]
+        info: os.stat_result = real(path, *arguments, **options)
         if path == looked_up and "dir_fd" in options:
             change()
         return info

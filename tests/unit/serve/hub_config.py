@@ -9,7 +9,7 @@ SERVICE = "autograder"
 HUB, SERVICE_URL, FOLDER = (os.environ[f"TEST_{name}"] for name in ("HUB", "SERVICE", "FOLDER"))
 
 
-class Routes(Proxy):  # type: ignore[misc]
+class Routes(Proxy):
     """Keeps the routes of a proxy in memory, without a proxy."""
 
     def __init__(self, **options: Any) -> None:

@@ -115,7 +115,7 @@ def test_no_beam_slips_through_a_closed_outline_at_its_corners(
         assume(distance > 1e-3)
         yaw = math.atan2(y - origin[1], x - origin[0])
         lidar = LidarSpec(beams=1, range_min=0.0, range_max=100.0)
-        expected = rational(origin, tuple(directions(Pose(*origin, yaw), lidar)[0].tolist()), world.segments.tolist())  # type: ignore[arg-type]
+        expected = rational(origin, tuple(directions(Pose(*origin, yaw), lidar)[0].tolist()), world.segments.tolist())
         for engine in ENGINES:
             measured = cast(simulation_at(Pose(*origin, yaw), world, engine), Pose(*origin, yaw), lidar)[0]
             assert (measured < math.inf) == (expected is not None)

@@ -44,7 +44,7 @@ def test_plot_and_export_take_a_saved_recording(recording: Recording, tmp_path: 
     assert result.output.strip() == str(tmp_path / "run.html")
     assert call("export", tmp_path / "run.npz", tmp_path / "run.gif", "--speed", "4", "--fps", "5").exit_code == 0
     with Image.open(tmp_path / "run.gif") as image:
-        assert image.n_frames == 1 + int(recording.times[-1] / 4.0 * 5.0)  # type: ignore[attr-defined]
+        assert image.n_frames == 1 + int(recording.times[-1] / 4.0 * 5.0)
 
 
 @pytest.mark.parametrize(

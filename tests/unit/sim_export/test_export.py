@@ -26,7 +26,7 @@ from sim.simulation import Simulation
 def test_a_gif_has_a_frame_for_each_tenth_of_a_second(recording: Recording, tmp_path: Path) -> None:
     with Image.open(to_gif(recording, tmp_path / "run.gif")) as image:
         assert image.format == "GIF"
-        assert image.n_frames == 31  # type: ignore[attr-defined]
+        assert image.n_frames == 31
         assert image.info["duration"] == 100
         first = np.asarray(image.convert("RGB"))
         image.seek(30)
@@ -35,7 +35,7 @@ def test_a_gif_has_a_frame_for_each_tenth_of_a_second(recording: Recording, tmp_
 
 def test_a_fast_gif_has_fewer_frames(recording: Recording, tmp_path: Path) -> None:
     with Image.open(to_gif(recording, tmp_path / "run.gif", speed=3.0, fps=5.0)) as image:
-        assert image.n_frames == 6  # type: ignore[attr-defined]
+        assert image.n_frames == 6
 
 
 @pytest.mark.parametrize(("speed", "fps"), [(0.0, 10.0), (1.0, 0.0), (math.nan, 10.0), (1.0, 100.0)])
@@ -151,7 +151,7 @@ def test_the_ending_of_the_file_name_selects_the_format(recording: Recording, tm
     assert (export(recording, tmp_path / "b" / "run.mcap") / "metadata.yaml").is_file()
     assert export(recording, tmp_path / "c" / "run.gif").is_file()
     with Image.open(export(recording, tmp_path / "d" / "run.gif", speed=3.0)) as image:
-        assert image.n_frames < 12  # type: ignore[attr-defined]
+        assert image.n_frames < 12
     with pytest.raises(ExportError, match=r"only a \.gif or \.mp4 has fps and speed: leave it out"):
         export(recording, tmp_path / "run.html", speed=2.0, fps=5.0)
     for name in ("run.avi", "run"):
