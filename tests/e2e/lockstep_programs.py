@@ -104,10 +104,10 @@ class Counter(Speaker):
     def __init__(self):
         super().__init__('counter')
         self.action = ActionServer(node=self, action_type=Count, action_name='count',
-                                   execute_callback=self.execute, goal_callback=self.judge,
+                                   execute_callback=self.execute, goal_callback=self.check_goal,
                                    cancel_callback=lambda goal: CancelResponse.ACCEPT, callback_group={group}())
 
-    def judge(self, goal):
+    def check_goal(self, goal):
         return GoalResponse.ACCEPT if goal.order < 50 else GoalResponse.REJECT
 
     {keyword} execute(self, goal):

@@ -1,4 +1,4 @@
-"""What code in a sandbox can see, reach and leave behind, whether it is started or forked."""
+"""The limits of code in a sandbox, started or forked: files, network, processes and resources."""
 
 from __future__ import annotations
 

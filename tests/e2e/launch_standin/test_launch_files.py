@@ -1,4 +1,4 @@
-"""Launch files as students write them: which processes they start, what these print, and how they end."""
+"""Launch files as students write them: their processes, output and exit codes."""
 
 from __future__ import annotations
 

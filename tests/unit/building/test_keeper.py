@@ -1,4 +1,4 @@
-"""How a worker learns that interface packages do not build."""
+"""A worker gets the error of interface packages that do not build, and does not repeat the build."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An author's slips: `autograder course check` reports all of them at once, each with its file and line."""
+"""`autograder course check` reports all mistakes of an author at once, each with its file and line."""
 
 from __future__ import annotations
 

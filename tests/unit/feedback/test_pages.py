@@ -1,4 +1,4 @@
-"""Feedback pages: what they show, what they leave out, and that all text is escaped."""
+"""Feedback pages: their contents, and the escaping of all text."""
 
 from __future__ import annotations
 

@@ -150,7 +150,7 @@ def test_checks_that_need_a_failed_check_directly_or_not_are_not_run(grade: Grad
 
 
 @pytest.mark.promise("If both fail, feedback shows this one under the other.")
-def test_a_check_after_one_that_failed_is_run_and_judged_by_itself(grade: Grade) -> None:
+def test_a_check_after_a_failed_one_is_run_and_has_its_own_result(grade: Grade) -> None:
     plugin = grade("""
         @check(points=1, group="g")
         def test_first():

@@ -1,4 +1,4 @@
-"""One harness for several checks."""
+"""Several checks share one harness."""
 
 from __future__ import annotations
 

@@ -13,7 +13,9 @@ from autograder.lms.hub.spawner import CourseSpawner
 from autograder.ros.domains import DOMAINS, Domain
 from tests.unit.ros.test_domains import TAKE_ALL, run_in_separate_network
 
-NAMES = [user.pw_name for user in pwd.getpwall() if user.pw_uid not in (0, os.getuid())][:3]  # of any machine
+NAMES = [user.pw_name for user in pwd.getpwall() if user.pw_uid not in (0, os.getuid())][
+    :3
+]  # users that each machine has
 REFUSED = """
 from types import SimpleNamespace
 from autograder.lms.hub.spawner import CourseSpawner, NoServerError

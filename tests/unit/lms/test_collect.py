@@ -227,7 +227,7 @@ def test_a_brightspace_download_names_the_student_and_the_time_in_folders_or_fil
     )
     assert [name for name, _ in collected.unmatched] == [
         "13394-80553 - Eve Stranger - 29 März 2018 - a.zip",
-        "13394-80554 - Zoë Poe - Eve Stranger - Mar 29, 2018 1155 PM - a.zip",  # a group may call itself anything
+        "13394-80554 - Zoë Poe - Eve Stranger - Mar 29, 2018 1155 PM - a.zip",  # a group may have any name
     ]
 
 

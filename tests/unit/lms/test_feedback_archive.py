@@ -167,9 +167,7 @@ def test_canvas_gives_each_student_a_file_of_the_kind_that_they_handed_in(
 
 
 @pytest.mark.promise("A student who submitted nothing of this kind is listed, and the exit status is 1.")
-def test_of_several_files_the_easiest_to_open_of_the_newest_attempt_is_used(
-    tmp_path: Path, make_result: MakeResult
-) -> None:
+def test_the_file_of_the_newest_attempt_that_opens_most_easily_is_used(tmp_path: Path, make_result: MakeResult) -> None:
     store_results(tmp_path, make_result("zoe"), make_result("jdoe"))
     download = canvas_download(
         tmp_path,

@@ -90,7 +90,7 @@ def test_students_are_named_by_anything_in_the_roster(assessed: Path) -> None:
 
 
 @pytest.mark.promise("A student who has not been marked yet has no mark, is listed, and the exit status is 1.")
-def test_a_student_whom_no_person_has_marked_yet_gets_no_mark_and_is_listed(assessed: Path) -> None:
+def test_a_student_who_has_not_been_marked_yet_gets_no_mark_and_is_listed(assessed: Path) -> None:
     for text in ("student,q2-answer\nzoe@x.edu,6\n", "student,q2-answer\nzoe@x.edu,6\njane@x.edu,\n"):
         completed = with_points(assessed, text)
         assert completed.exit_code == 1

@@ -1,4 +1,4 @@
-"""Why a program ended, in sentences that a student can act on."""
+"""Diagnoses of ended programs are sentences that a student can act on."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_a_syntax_error_has_its_own_diagnosis(kind: str) -> None:
     assert "Python cannot read your file: expected ':' (robot.py, line 7). Fix that line" in diagnosis.sentence
 
 
-def test_a_module_that_rosidl_made_is_not_called_the_student_s_file() -> None:
+def test_a_module_generated_by_rosidl_is_not_called_the_students_file() -> None:
     traceback = '  File "/ws/install/msgs/lib/python3/site-packages/msgs/msg/_status.py", line 72\n    x = []\n'
     diagnosis = diagnose_crash(Crash("import", "SyntaxError", "invalid syntax (_status.py, line 72)", traceback))
     assert diagnosis.kind is Kind.CRASHED_AT_IMPORT

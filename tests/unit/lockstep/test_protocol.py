@@ -118,7 +118,7 @@ def _trees() -> dict[str, ast.Module]:
     return {path.name: ast.parse(path.read_text()) for path in HOST.glob("*.py")}
 
 
-def test_the_host_imports_nothing_of_the_grader() -> None:
+def test_the_host_imports_nothing_from_the_grader() -> None:
     imported = {
         name.split(".")[0]
         for tree in _trees().values()

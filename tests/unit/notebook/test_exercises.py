@@ -35,7 +35,7 @@ def test_each_visible_check_belongs_to_one_exercise_and_each_exercise_has_one(as
     [
         ("01_package_structure", "exercise 2", ("alarm_builds", "alarm_runs", "alarm_dependencies", "alarm_facts")),
         ("03_interfaces", "exercise 1", ("robot_status", "check_trip", "drive_distance", "builds")),
-        # The sentences of one check are in exercise 1, but students write the method that it judges in exercise 2.
+        # The sentences of one check are in exercise 1, but students write the method that it tests in exercise 2.
         ("05_parameters", "exercise 2", ("contradiction", "together", "rate", "refused_whole", "lets_pass")),
         ("08_capstone", "step 2", ("starts", "sees", "moves", "enable", "watches")),
         ("08_capstone", "step 7", ("quality",)),

@@ -50,7 +50,7 @@ def test_messages_with_other_pauses_are_not_paced_in_either_time(pauses: Sequenc
 
 
 @pytest.mark.parametrize("period", [1.2, 1.1, 0.9])
-def test_a_period_of_a_second_is_judged_to_a_tenth_in_real_time_too(period: float) -> None:
+def test_a_period_of_a_second_is_checked_to_a_tenth_in_real_time_too(period: float) -> None:
     assert not is_paced(_after([period] * 6), 1.0, REAL)
 
 

@@ -34,7 +34,7 @@ def test_a_missing_parameter_is_reported_with_the_one_of_a_similar_name() -> Non
     assert sentence == "The node does not declare safety_distance (it declares saftey_distance), slow_distance."
 
 
-def test_of_very_many_and_very_long_names_only_some_are_compared() -> None:
+def test_only_some_of_many_long_names_are_compared() -> None:
     names = {*(f"safety_distance{number:06}" for number in range(300_000)), "slow_distance" * 100_000}
     assert near_misses(EXPECTED, names) == {"safety_distance": "safety_distance000000", "slow_distance": ""}
 

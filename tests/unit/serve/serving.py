@@ -50,7 +50,7 @@ def serve(
         environment: what the hub tells its service.
         lines: a shared counter of executed lines of the service's code; None to count none.
         kill_at: the index of the executed line before which the process kills itself; -1 for none.
-        hold: whether gradings wait until there is a file `hold` beside the data.
+        hold: whether gradings wait until the file `hold` exists beside the data.
         jobs: how many are graded at once.
     """
     os.environ.update(environment)

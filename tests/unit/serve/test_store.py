@@ -1,4 +1,4 @@
-"""The store of hand-ins: what survives a restart, and which answer counts."""
+"""The store of hand-ins keeps received answers over a restart, and selects the answer that counts."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def test_the_last_or_the_best_answer_counts() -> None:
     assert counting(hand_ins[3:], best=True) is None
 
 
-def test_of_two_equal_answers_the_later_counts() -> None:
+def test_the_later_of_two_equal_answers_counts() -> None:
     hand_ins = [hand_in(1, HALF), hand_in(2, HALF)]
     assert counting(hand_ins, best=True) == hand_ins[1]
 

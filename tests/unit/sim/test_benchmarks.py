@@ -1,4 +1,4 @@
-"""The benchmarks run, and measure something."""
+"""The benchmark of the simulator runs and returns figures."""
 
 from __future__ import annotations
 

@@ -120,7 +120,7 @@ def crosses(a: Pose, b: Pose, wall: list[float]) -> bool:
     return is_on_both_sides and is_left(a.x, a.y, b.x, b.y, x1, y1) != is_left(a.x, a.y, b.x, b.y, x2, y2)
 
 
-def test_a_thin_wall_is_not_jumped_at_20_metres_a_second() -> None:
+def test_a_robot_at_20_metres_a_second_does_not_jump_a_thin_wall() -> None:
     world = World.from_segments([[1.0, -1.0, 1.0, 1.0]])
     subject = simulation_at(Pose(), world, **FAST)
     state = step(subject, start(subject), Command(20.0, 0.0), 0.5)

@@ -32,7 +32,7 @@ def test_scans_and_odometry_have_their_mean_rates_for_any_tick() -> None:
     assert [output.state.tick for output in outputs] == list(range(1, 2001))
 
 
-def test_a_command_is_obeyed_once_and_the_watchdog_counts_from_there() -> None:
+def test_a_command_is_applied_once_and_the_watchdog_counts_from_there() -> None:
     driver = Driver(Simulation(World()))
     driver.command("robot", Command(9.0, 0.0))
     driver.command("robot", Command(0.2, 0.0))

@@ -129,7 +129,7 @@ def test_the_mark_draws_a_line_to_the_nearest_obstacle(recording: Recording) -> 
     assert np.hypot(*(gap[1] - gap[0])) == pytest.approx(recording.clearances[row, 0] + spec.radius, abs=1e-9)
 
 
-def test_without_a_mark_the_closest_place_is_drawn_with_its_distance(world: World) -> None:
+def test_without_a_mark_the_closest_point_is_drawn_with_its_distance(world: World) -> None:
     safe = run(Simulation(world), lambda state, scans: Command(0.2, 0.0), 4.0)
     row = int(np.argmin(safe.clearances[:, 0]))
     ax = plot(safe).figure.axes[0]

@@ -26,7 +26,7 @@ Then = Callable[[int], bool]
 
 
 class Budget(Exception):
-    """More steps than a linear pattern could need."""
+    """The pattern has taken more steps than a linear one could need."""
 
 
 class Steps:

@@ -83,9 +83,9 @@ def test_a_sheet_is_read_line_by_line(text: str, expected: dict[str, str]) -> No
     [({}, "There is no answer to q1: write a line `q1: LETTER`."), ({"q1": "e"}, "The answer to q1 is 'e', instead")],
 )
 def test_an_answer_that_is_not_a_letter_is_named(answers: dict[str, str], message: str) -> None:
-    with pytest.raises(CheckFailed) as failed:
+    with pytest.raises(CheckFailed) as excinfo:
         expect_letter(answers, "q1")
-    assert failed.value.message.startswith(message)
+    assert excinfo.value.message.startswith(message)
 
 
 @pytest.mark.parametrize(
@@ -101,9 +101,9 @@ def test_a_sheet_that_cannot_be_read_is_explained(text: str | None, message: str
     sheet.parent.mkdir(parents=True)
     if text is not None:
         sheet.write_text(text)
-    with pytest.raises(CheckFailed) as failed:
+    with pytest.raises(CheckFailed) as excinfo:
         answers(Workspace(tmp_path, find(), tmp_path / "scratch"))
-    assert failed.value.message.startswith(message)
+    assert excinfo.value.message.startswith(message)
 
 
 def test_a_fan_with_two_thresholds_keeps_its_state_between_them() -> None:

@@ -85,9 +85,9 @@ def test_tests_that_do_not_pass_on_the_given_package_are_named_and_the_others_ar
     run: Report | None, sentence: str, usable: bool
 ) -> None:
     assert is_usable(LIMITS, run) is usable
-    with pytest.raises(CheckFailed) as failed:
+    with pytest.raises(CheckFailed) as excinfo:
         expect_passed(LIMITS, run)
-    assert failed.value.message == sentence
+    assert excinfo.value.message == sentence
 
 
 def test_enough_passing_tests_are_usable() -> None:
@@ -135,10 +135,10 @@ def test_tests_that_fail_on_all_faults_of_a_line_earn_its_points(examination: Ex
 
 def test_tests_that_fail_on_some_faults_of_a_line_earn_a_part_and_the_line_is_named(examination: Examination) -> None:
     examination.__dict__["runs"][LIMITS, "nan_is_clear"] = ENOUGH
-    with pytest.raises(CheckFailed) as failed:
+    with pytest.raises(CheckFailed) as excinfo:
         examination.expect_objection("unknown", "the promise.")
-    assert failed.value.fraction == 0.5
-    assert failed.value.message == (
+    assert excinfo.value.fraction == 0.5
+    assert excinfo.value.message == (
         "1 of 2 faulty versions that break this line of the contract pass all tests in test_limits.py: the promise."
     )
 
@@ -158,6 +158,6 @@ def test_a_stopped_run_counts_as_failed_and_as_endless(examination: Examination)
 def test_tests_that_fail_in_reverse_order_are_reported(examination: Examination) -> None:
     examination.__dict__["runs"][LIMITS, BACKWARDS] = report(BAD, message="secret").closed(frozenset())
     examination.expect_right(LIMITS)
-    with pytest.raises(CheckFailed, match=r"test_limits\.py fails when the tests run in the opposite") as failed:
+    with pytest.raises(CheckFailed, match=r"test_limits\.py fails when the tests run in the opposite") as excinfo:
         examination.expect_right(LIMITS, BACKWARDS)
-    assert "secret" not in failed.value.message
+    assert "secret" not in excinfo.value.message

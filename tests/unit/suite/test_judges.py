@@ -1,4 +1,4 @@
-"""The controller of 08 is judged behind the student's processor, and without it if that fails."""
+"""The controller of 08 is graded with the student's processor, and without it if that fails."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from autograder.checks.ch08_capstone.hidden.judges import judge_driving
 from autograder.suite import CheckFailed
 
 
-class Kept:
+class SystemStub:
     """Replaces a shared system: a check's body only sees its name."""
 
     def __init__(self, name: str) -> None:
@@ -23,9 +23,9 @@ class Kept:
         self.closed += 1
 
 
-def judge(fractions: dict[str, float]) -> tuple[Any, Any]:
-    """Judge a body that fails in the systems that are named, with these fractions."""
-    shared, separate = Kept("shared"), Kept("lone")
+def grade_body(fractions: dict[str, float]) -> tuple[Any, Any]:
+    """Grade a check whose body fails in the named systems, with these fractions; return both systems."""
+    shared, separate = SystemStub("shared"), SystemStub("lone")
 
     def body(system: Any) -> None:
         if system in fractions:
@@ -36,8 +36,8 @@ def judge(fractions: dict[str, float]) -> tuple[Any, Any]:
 
 
 def test_a_check_that_passes_in_one_of_two_gradings_passes() -> None:
-    assert judge({})[0].closed == 0
-    shared, separate = judge({"shared": 0.0})
+    assert grade_body({})[0].closed == 0
+    shared, separate = grade_body({"shared": 0.0})
     assert (shared.closed, separate.closed) == (1, 0)
 
 
@@ -46,6 +46,6 @@ def test_a_check_that_passes_in_one_of_two_gradings_passes() -> None:
     [({"shared": 0.0, "lone": 0.0}, "shared"), ({"shared": 0.25, "lone": 0.5}, "lone")],
 )
 def test_a_check_that_fails_in_both_gradings_has_the_better_outcome(fractions: dict[str, float], message: str) -> None:
-    with pytest.raises(CheckFailed) as failed:
-        judge(fractions)
-    assert failed.value.message == message
+    with pytest.raises(CheckFailed) as excinfo:
+        grade_body(fractions)
+    assert excinfo.value.message == message

@@ -1,4 +1,4 @@
-"""A robot of 02 is judged by its own reactions, if it has any."""
+"""The checks of 02 compare a robot with its own reactions, if it has any."""
 
 from __future__ import annotations
 
@@ -42,13 +42,13 @@ def test_a_wrong_velocity_is_a_separate_reaction() -> None:
     ],
     ids=["nothing came", "it never moves", "it never turns", "it wavers", "not finite"],
 )
-def test_a_robot_without_reactions_is_judged_by_those_of_the_contract(
+def test_a_robot_without_reactions_is_compared_with_those_of_the_contract(
     clear: tuple[Pair, ...], blocked: tuple[Pair, ...]
 ) -> None:
     assert own_reactions(_commands(*clear), _commands(*blocked)) == CONTRACT
 
 
-def test_a_robot_that_only_stops_in_front_of_things_turns_by_standing_still() -> None:
+def test_standing_still_counts_as_turning_if_a_robot_only_stops_for_obstacles() -> None:
     reactions = own_reactions(_commands((0.3, 0.0)), _commands((0.0, 0.0)))
     assert reactions.turns(_commands((0.0, 0.0)))
     assert not reactions.drives(_commands((0.0, 0.0)))

@@ -1,4 +1,4 @@
-"""A controller of 08 that is judged alone gets the clearances that the reference would compute."""
+"""A controller of 08 that is graded alone gets the clearances that the reference would compute."""
 
 from __future__ import annotations
 
