@@ -274,10 +274,6 @@ def stub_file(released: bytes) -> bytes:
     return next(text for text in texts if text.startswith(f"%%writefile {TARGET}\n")).partition("\n")[2].encode()
 
 
-def test_at_least_sixty_envelopes_are_tested() -> None:
-    assert len(FOLDERS) + len(NOTEBOOKS) + len(ARCHIVES) + len(DOWNLOADS) >= 60
-
-
 @pytest.mark.promise(
     "If a file is missing or unchanged, it is taken from the notebook's cell.",
     "If a file is missing or unchanged since the release, it is taken from the notebook's cell.",

@@ -60,7 +60,8 @@ import sys
 import sim
 state = sim.start(simulation := sim.Simulation(sim.World.from_segments(sim.box(4, 3))))
 assert sim.observe(simulation, sim.step(simulation, state, sim.Command(0.1, 0.1))) is not None
-print([name for name in ("numba", "matplotlib", "rclpy", "pandas", "scipy", "IPython") if name in sys.modules])
+heavy = ("numba", "matplotlib", "PIL", "rclpy", "pandas", "scipy", "IPython", "ipywidgets")
+print([name for name in heavy if name in sys.modules])
 """
     completed = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert completed.stdout.strip() == "[]"
