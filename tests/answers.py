@@ -40,9 +40,9 @@ class Answer:
 
     def notebook(self, change: Callable[[dict[str, Any]], None]) -> bytes:
         """Return the notebook with a change."""
-        book = json.loads(self.files[BOOK])
-        change(book)
-        return json.dumps(book).encode()
+        notebook = json.loads(self.files[BOOK])
+        change(notebook)
+        return json.dumps(notebook).encode()
 
 
 def make_answer(scratch: Path) -> Answer:
@@ -56,11 +56,11 @@ def make_answer(scratch: Path) -> Answer:
 
 def filled(notebook: bytes, text: str) -> bytes:
     """Return a notebook with a text in the cell of the exercise."""
-    book = json.loads(notebook)
-    for cell in book["cells"]:
+    nb = json.loads(notebook)
+    for cell in nb["cells"]:
         if cell["metadata"].get("nbgrader", {}).get("grade_id") == "robot-controller":
             cell["source"] = f"%%writefile {TARGET}\n{text}".splitlines(keepends=True)
-    return json.dumps(book, indent=1).encode()
+    return json.dumps(nb, indent=1).encode()
 
 
 def write(folder: Path, files: Files) -> Path:

@@ -44,7 +44,7 @@ def a_class(answer: Answer, tmp_path_factory: pytest.TempPathFactory) -> Path:
     files = {
         "tar.tar.gz": tarred(answer.files, f"{CHAPTER}/", "w:gz"),
         "upper.ZIP": zipped(answer.files),
-        "minor.ipynb": answer.notebook(lambda book: book.update(nbformat_minor=4)),
+        "minor.ipynb": answer.notebook(lambda notebook: notebook.update(nbformat_minor=4)),
         "seven.7z": b"7z\xbc\xaf\x27\x1c",
         "notes.txt": b"",
     }

@@ -37,12 +37,12 @@ def check(id: str, *covers: str) -> Check:
     return Check(id, f"{id}.", 1.0, "graph", Visibility.HIDDEN, (), None, (), covers)
 
 
-def broken(name: str, book: NotebookNode, checks: Sequence[Check]) -> list[Finding]:
-    return [*broken_cells(name, book), *broken_coverage(name, book, checks, {})]
+def broken(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> list[Finding]:
+    return [*broken_cells(name, notebook), *broken_coverage(name, notebook, checks, {})]
 
 
-def messages(book: NotebookNode, *checks: Check) -> list[str]:
-    return [finding.message for finding in broken("small.ipynb", book, checks)]
+def messages(notebook: NotebookNode, *checks: Check) -> list[str]:
+    return [finding.message for finding in broken("small.ipynb", notebook, checks)]
 
 
 def test_a_table_row_is_quoted_with_its_heading_and_a_bullet_without_its_dash() -> None:
@@ -68,8 +68,8 @@ def test_a_check_without_a_requirement_is_found() -> None:
 
 
 def test_a_sentence_that_changed_in_its_cell_is_found() -> None:
-    book = contract_notebook(contract={"waits": ROW.replace("0", "1"), "ends": ENDS})
-    findings = messages(book, check("stops", "waits", "ends"))
+    notebook = contract_notebook(contract={"waits": ROW.replace("0", "1"), "ends": ENDS})
+    findings = messages(notebook, check("stops", "waits", "ends"))
     assert "'waits': its released text does not contain the sentence '| no scan yet | 1 | 1 |'" in findings
 
 
@@ -91,21 +91,21 @@ def test_a_row_or_a_bullet_without_an_id_is_found_unless_it_only_explains() -> N
 def test_a_sentence_that_the_release_does_not_show_is_found() -> None:
     source = f"{FUNCTION}    # BEGIN SOLUTION\n    end()  # It ends.\n    # END SOLUTION"
     course = {"hide": ["main"], "contract": {"runs": "Run.", "ends": "It ends."}}
-    book = notebook(code(source, "main", course=course, nbgrader=solution("main")))
-    findings = messages(book, check("stops", "runs", "ends"))
+    nb = notebook(code(source, "main", course=course, nbgrader=solution("main")))
+    findings = messages(nb, check("stops", "runs", "ends"))
     assert findings == ["'ends': its released text does not contain the sentence 'It ends.'"]
 
 
 def test_the_docstring_of_a_function_that_a_student_writes_needs_an_id() -> None:
     source = f"{FUNCTION}    # BEGIN SOLUTION\n    pass\n    # END SOLUTION"
-    book = notebook(code(source, "main", course={"hide": ["main"]}, nbgrader=solution("main")))
-    assert messages(book) == ["neither `contract` nor `explains` names a sentence of 'Run.'"]
+    nb = notebook(code(source, "main", course={"hide": ["main"]}, nbgrader=solution("main")))
+    assert messages(nb) == ["neither `contract` nor `explains` names a sentence of 'Run.'"]
 
 
 def test_an_unchecked_sentence_has_no_check() -> None:
-    book = contract_notebook(unchecked={"ends": "it is not visible from outside"})
-    assert messages(book, check("stops", "waits")) == []
-    findings = messages(book, check("stops", "waits", "ends"))
+    notebook = contract_notebook(unchecked={"ends": "it is not visible from outside"})
+    assert messages(notebook, check("stops", "waits")) == []
+    findings = messages(notebook, check("stops", "waits", "ends"))
     assert findings == ["the requirement 'ends' is marked as unchecked, but a check covers it"]
     assert "'flies' is marked as unchecked, but is not a requirement of the cell" in messages(
         contract_notebook(unchecked={"flies": "so"}), check("stops", "waits", "ends")

@@ -12,18 +12,18 @@ from tests.notebooks.alternative_texts import images_without_alt
 from .notebooks import code, grade, manual, notebook, prose, solution
 
 
-def messages(book: NotebookNode) -> str:
-    return "\n".join(str(finding) for finding in broken_rules("n.ipynb", book))
+def messages(notebook: NotebookNode) -> str:
+    return "\n".join(str(finding) for finding in broken_rules("n.ipynb", notebook))
 
 
 def test_a_clean_notebook_has_no_findings() -> None:
-    book = notebook(
+    nb = notebook(
         prose("# Title\n\n## Part\n\n### Step\n\n![a robot](robot.png)\n\n```\n# no heading\n```", "title"),
         prose("## Next\n\n<img src='x.svg' alt='a wall'>", "next"),
         code("# BEGIN SOLUTION\n# END SOLUTION", "s", nbgrader=solution("s")),
         code("grade()", "g", nbgrader=grade("g", 1), course={"group": "graph"}),
     )
-    assert messages(book) == ""
+    assert messages(nb) == ""
 
 
 ANSWER = "# BEGIN SOLUTION\nSo.\n# END SOLUTION"
@@ -31,12 +31,12 @@ SCHEME = "### BEGIN MARK SCHEME\n1 point.\n### END MARK SCHEME"
 
 
 def test_cells_that_a_person_grades_need_no_group_and_their_markers_are_not_headings() -> None:
-    book = notebook(
+    nb = notebook(
         prose("# Title", "title"),
         prose(f"Why?\n\n{SCHEME}", "why", nbgrader={**solution("why"), "solution": False, "locked": True}),
         prose(ANSWER, "so", nbgrader=manual("so", 2)),
     )
-    assert messages(book) == ""
+    assert messages(nb) == ""
 
 
 def executed() -> NotebookNode:
@@ -51,26 +51,26 @@ def old_schema() -> NotebookNode:
 
 
 def half_a_cell() -> NotebookNode:
-    book = notebook(code("", "half"))
-    del book.cells[0]["source"]
-    return book
+    nb = notebook(code("", "half"))
+    del nb.cells[0]["source"]
+    return nb
 
 
 def other_kernel() -> NotebookNode:
-    book = notebook(prose("# T", "t"))
-    book.metadata.kernelspec.name = "ros"
-    return book
+    nb = notebook(prose("# T", "t"))
+    nb.metadata.kernelspec.name = "ros"
+    return nb
 
 
 def old_format() -> NotebookNode:
-    book = notebook(prose("# T", "t"))
-    book.nbformat_minor = 4
-    del book.cells[0]["id"]
-    return book
+    nb = notebook(prose("# T", "t"))
+    nb.nbformat_minor = 4
+    del nb.cells[0]["id"]
+    return nb
 
 
 @pytest.mark.parametrize(
-    ("book", "message"),
+    ("nb", "message"),
     [
         (executed(), "cell 'run': has outputs"),
         (executed(), "cell 'run': has an execution count"),
@@ -125,8 +125,8 @@ def old_format() -> NotebookNode:
         ),
     ],
 )
-def test_each_error_of_a_notebook_is_named(book: NotebookNode, message: str) -> None:
-    assert message in messages(book)
+def test_each_error_of_a_notebook_is_named(nb: NotebookNode, message: str) -> None:
+    assert message in messages(nb)
 
 
 @pytest.mark.parametrize(

@@ -18,29 +18,29 @@ def graded(**groups: float) -> NotebookNode:
     )
 
 
-def differences(book: NotebookNode) -> list[str]:
-    return [str(finding) for finding, _ in point_differences("n.ipynb", book, POINTS)]
+def differences(notebook: NotebookNode) -> list[str]:
+    return [str(finding) for finding, _ in point_differences("n.ipynb", notebook, POINTS)]
 
 
-def correct(book: NotebookNode) -> None:
-    for _, correction in list(point_differences("n.ipynb", book, POINTS)):
+def correct(notebook: NotebookNode) -> None:
+    for _, correction in list(point_differences("n.ipynb", notebook, POINTS)):
         assert correction is not None
         correction()
 
 
 def test_each_cell_gets_the_points_of_its_group() -> None:
-    book = graded(reaction=0, graph=0)
-    correct(book)
-    assert [cell.metadata.nbgrader.points for cell in book.cells] == [3.5, 1.0]
-    assert differences(book) == []
+    notebook = graded(reaction=0, graph=0)
+    correct(notebook)
+    assert [cell.metadata.nbgrader.points for cell in notebook.cells] == [3.5, 1.0]
+    assert differences(notebook) == []
 
 
 def test_points_that_a_person_gives_are_not_counted_by_the_suite() -> None:
-    book = graded(reaction=0, graph=1)
-    book.cells.append(prose("Why?", "why", nbgrader=manual("why", 6)))
-    correct(book)
-    assert [cell.metadata.nbgrader.points for cell in book.cells] == [3.5, 1.0, 6]
-    assert differences(book) == []
+    notebook = graded(reaction=0, graph=1)
+    notebook.cells.append(prose("Why?", "why", nbgrader=manual("why", 6)))
+    correct(notebook)
+    assert [cell.metadata.nbgrader.points for cell in notebook.cells] == [3.5, 1.0, 6]
+    assert differences(notebook) == []
 
 
 def test_wrong_points_are_named() -> None:
@@ -50,7 +50,7 @@ def test_wrong_points_are_named() -> None:
 
 
 @pytest.mark.parametrize(
-    ("book", "message"),
+    ("nb", "message"),
     [
         (graded(graph=1, reaction=3.5), "its grade cells are not in the order of the suite: reaction, graph"),
         (graded(reaction=3.5), "group 'graph' has no grade cell"),
@@ -65,6 +65,6 @@ def test_wrong_points_are_named() -> None:
         ),
     ],
 )
-def test_a_notebook_that_does_not_match_its_suite_is_left_to_the_author(book: NotebookNode, message: str) -> None:
-    ((finding, correction),) = (pair for pair in point_differences("n.ipynb", book, POINTS) if message in str(pair[0]))
+def test_a_notebook_that_does_not_match_its_suite_is_left_to_the_author(nb: NotebookNode, message: str) -> None:
+    ((finding, correction),) = (pair for pair in point_differences("n.ipynb", nb, POINTS) if message in str(pair[0]))
     assert correction is None, finding

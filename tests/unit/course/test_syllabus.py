@@ -57,8 +57,8 @@ def test_an_objective_with_an_unknown_or_missing_target_is_named(change: dict[st
 
 
 def test_a_key_that_the_syllabus_does_not_have_is_named() -> None:
-    book = chapter_notebook(objectives=[OBJECTIVE], errata=[99])
-    assert "the syllabus has no 99" in messages(("02_nodes", book, [CHECK]))
+    notebook = chapter_notebook(objectives=[OBJECTIVE], errata=[99])
+    assert "the syllabus has no 99" in messages(("02_nodes", notebook, [CHECK]))
 
 
 def test_the_page_has_a_row_for_each_item_and_escapes_markdown() -> None:

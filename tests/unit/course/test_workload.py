@@ -28,8 +28,8 @@ def test_words_cells_and_the_lines_of_answers_are_counted() -> None:
 def test_the_longest_time_without_anything_to_write_is_counted() -> None:
     write, later_exercise = (code(EXERCISE, name, nbgrader=solution(name)) for name in ("turn", "again"))
     run, first, second = code("turn()", "run"), prose("word " * 100, "first"), prose("word " * 400, "second")
-    book = new_notebook(cells=[first, write, run, second, later_exercise])
-    assert effort(book).longest_reading == pytest.approx(1 + 2.0)
+    notebook = new_notebook(cells=[first, write, run, second, later_exercise])
+    assert effort(notebook).longest_reading == pytest.approx(1 + 2.0)
 
 
 @pytest.mark.parametrize("chapter", chapters(), ids=lambda chapter: chapter.assignment)

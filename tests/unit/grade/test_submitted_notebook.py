@@ -172,6 +172,6 @@ def test_a_file_that_is_not_a_notebook_is_named_with_the_remedy(data: bytes) -> 
 
 
 def test_a_notebook_of_thousands_of_cells_is_refused() -> None:
-    book = new_notebook(cells=[new_markdown_cell("") for _ in range(submitted_notebook.MAX_CELLS + 1)])
+    notebook = new_notebook(cells=[new_markdown_cell("") for _ in range(submitted_notebook.MAX_CELLS + 1)])
     with pytest.raises(StudentError, match="has 501 cells: at most 500 are allowed"):
-        submitted_notebook.read(nbformat.writes(book).encode(), "a.ipynb")
+        submitted_notebook.read(nbformat.writes(notebook).encode(), "a.ipynb")

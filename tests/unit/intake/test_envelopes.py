@@ -53,65 +53,65 @@ def environment(name: str, count: int = 30, **other_files: bytes) -> dict[str, b
     return below(name, {f"lib/python3.12/site-packages/m{n}.py": b"x" for n in range(count)} | other_files)
 
 
-def minor_4(book: dict[str, Any]) -> None:
-    book["nbformat_minor"] = 4
+def minor_4(notebook: dict[str, Any]) -> None:
+    notebook["nbformat_minor"] = 4
 
 
-def no_ids(book: dict[str, Any]) -> None:
-    minor_4(book)
-    for cell in book["cells"]:
+def no_ids(notebook: dict[str, Any]) -> None:
+    minor_4(notebook)
+    for cell in notebook["cells"]:
         cell.pop("id", None)
 
 
-def nameless_output(book: dict[str, Any]) -> None:
-    code(book)[0]["outputs"] = [{"output_type": "stream", "text": ["hi"]}]
+def nameless_output(notebook: dict[str, Any]) -> None:
+    code(notebook)[0]["outputs"] = [{"output_type": "stream", "text": ["hi"]}]
 
 
-def no_outputs(book: dict[str, Any]) -> None:
-    for cell in code(book):
+def no_outputs(notebook: dict[str, Any]) -> None:
+    for cell in code(notebook):
         cell.pop("outputs", None)
         cell.pop("execution_count", None)
 
 
-def unknown_keys(book: dict[str, Any]) -> None:
-    book["colab"] = {}
-    for cell in book["cells"]:
+def unknown_keys(notebook: dict[str, Any]) -> None:
+    notebook["colab"] = {}
+    for cell in notebook["cells"]:
         cell["vscode"] = {"languageId": "python"}
 
 
-def no_marks(book: dict[str, Any]) -> None:
-    book["metadata"] = {"colab": {"provenance": []}}
-    for cell in book["cells"]:
+def no_marks(notebook: dict[str, Any]) -> None:
+    notebook["metadata"] = {"colab": {"provenance": []}}
+    for cell in notebook["cells"]:
         cell["metadata"] = {"id": "x"}
         cell.pop("id", None)
 
 
-def no_metadata(book: dict[str, Any]) -> None:
-    for cell in book["cells"]:
+def no_metadata(notebook: dict[str, Any]) -> None:
+    for cell in notebook["cells"]:
         cell.pop("metadata", None)
 
 
-def twin_ids(book: dict[str, Any]) -> None:
-    for cell in book["cells"]:
+def twin_ids(notebook: dict[str, Any]) -> None:
+    for cell in notebook["cells"]:
         cell["id"] = "same"
 
 
-def text_in_one_piece(book: dict[str, Any]) -> None:
-    for cell in book["cells"]:
+def text_in_one_piece(notebook: dict[str, Any]) -> None:
+    for cell in notebook["cells"]:
         cell["source"] = "".join(cell["source"])
 
 
-def large_outputs(book: dict[str, Any]) -> None:
-    code(book)[0]["outputs"] = [{"output_type": "stream", "name": "stdout", "text": ["x" * 79 + "\n"] * 260_000}]
+def large_outputs(notebook: dict[str, Any]) -> None:
+    code(notebook)[0]["outputs"] = [{"output_type": "stream", "name": "stdout", "text": ["x" * 79 + "\n"] * 260_000}]
 
 
-def windows_cells(book: dict[str, Any]) -> None:
-    for cell in book["cells"]:
+def windows_cells(notebook: dict[str, Any]) -> None:
+    for cell in notebook["cells"]:
         cell["source"] = "".join(cell["source"]).replace("\n", "\r\n")
 
 
-def code(book: dict[str, Any]) -> list[dict[str, Any]]:
-    return [cell for cell in book["cells"] if cell["cell_type"] == "code"]
+def code(notebook: dict[str, Any]) -> list[dict[str, Any]]:
+    return [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
 
 
 # The files in the student's folder.
@@ -290,8 +290,8 @@ def test_a_folder_is_graded_like_the_plain_answer(
 def test_a_notebook_is_graded_like_the_plain_answer(
     change: str, location: str, answer: Answer, plain: Submission, tmp_path: Path
 ) -> None:
-    book = {BOOK: answer.notebook(NOTEBOOKS[change])}
-    folder = write(tmp_path / "ada", book if location == "alone" else {**answer.released, **book})
+    notebook = {BOOK: answer.notebook(NOTEBOOKS[change])}
+    folder = write(tmp_path / "ada", notebook if location == "alone" else {**answer.released, **notebook})
     _expect_same(read_submission(folder, CHAPTER), plain)
 
 

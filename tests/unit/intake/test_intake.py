@@ -381,10 +381,10 @@ def test_a_zip_with_an_endless_list_of_files_is_refused_before_it_is_read(tmp_pa
 
 
 def test_outputs_are_dropped_only_if_the_notebook_parses_to_few_values() -> None:
-    book = b'{"nbformat": 4, "cells": [{"cell_type": "code", "source": "", "outputs": [%s]}]}'
-    assert b"outputs" not in without_outputs(book % b'{"text": "\\"x"}')
+    notebook = b'{"nbformat": 4, "cells": [{"cell_type": "code", "source": "", "outputs": [%s]}]}'
+    assert b"outputs" not in without_outputs(notebook % b'{"text": "\\"x"}')
     for outputs in (b"[]," * 3_000_000 + b"[]", b'"a",' * 1_000_001 + b'""', b"[" * 9_000_000):
-        assert without_outputs(book % outputs) == book % outputs
+        assert without_outputs(notebook % outputs) == notebook % outputs
 
 
 def test_two_files_of_one_name_or_a_file_that_is_a_folder_are_refused(tmp_path: Path) -> None:
