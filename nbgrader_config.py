@@ -1,10 +1,10 @@
 """Configures nbgrader, with this folder as the course directory.
 
-The isolated grader (`autograder.lms.nbgrader`) computes the scores, and nbgrader records them. `NBGRADER_EXCHANGE` names
-the exchange folder of a class. Without it the folder is `.build/exchange`.
+The isolated grader (`autograder.lms.nbgrader`) computes the scores, and nbgrader records them. `NBGRADER_EXCHANGE`
+names the exchange folder of a class. Without it the folder is `.build/exchange`.
 
 `nbgrader autograde` grades one submission after the other, and records stored results. These commands grade a
-class on all cores, or on a cluster by `--scheduler`, and then record it:
+class on all cores, or on a cluster by `--scheduler`, and then record the results:
 
     autograder grade submitted --assignment ID --out .build/nbgrader/ID -j 8
     nbgrader autograde ID

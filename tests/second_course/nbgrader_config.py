@@ -3,7 +3,8 @@
 The isolated grader (`autograder.lms.nbgrader`) computes the scores, and nbgrader records them. `NBGRADER_EXCHANGE`
 names the exchange folder of a class. Without it the folder is `.build/exchange`.
 
-`nbgrader autograde` grades one submission after the other. These commands grade a class on all cores and then record it:
+`nbgrader autograde` grades one submission after the other. These commands grade a class on all cores, and then record
+the results:
 
     autograder grade submitted --assignment ID --out .build/nbgrader/ID -j 8
     nbgrader autograde ID
