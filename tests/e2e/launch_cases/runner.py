@@ -49,7 +49,7 @@ def generate_launch_description():
 {entities}
     ])
 """
-# Parts that differ between runs or implementations without any meaning.
+# Parts whose differences between runs or implementations have no meaning.
 VARIABLE_PARTS = (
     (re.compile(r"(pid \[?)\d+"), r"\1PID"),
     (re.compile(r"<launch[\w.]*\.(\w+) object at 0x[0-9a-f]+>"), r"<\1>"),

@@ -39,7 +39,7 @@ CALLS = (
 NAMES = {"good_launch_test.py": "good", "test_listener.launch.py": "listener"}
 PYTEST = "-c /dev/null -q --tb=short -rfEsxX --show-capture=no -p no:cacheprovider --rootdir .".split()  # noqa: SIM905
 PYTEST += ["-W", "ignore::pytest.PytestAssertRewriteWarning"]  # about modules that are imported before the forks
-# Parts that differ between runs or versions of Python without any meaning.
+# Parts whose differences between runs or versions of Python have no meaning.
 VARIABLE_PARTS = (
     (re.compile(r"Traceback \(most recent call last\):\n(  .*\n)+(.*\n)"), r"\2"),
     (re.compile(r"usage: .*\n( +.*\n)*"), "usage\n"),

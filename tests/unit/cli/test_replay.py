@@ -1,4 +1,4 @@
-"""`autograder replay`: one check of a stored result and its run, on a page of their own."""
+"""`autograder replay`: a page with one check of a stored result and its run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Text of a student does not control the grader's terminal, whichever verb prints it."""
+"""A student's text cannot control the grader's terminal, whichever verb prints it."""
 
 from __future__ import annotations
 
