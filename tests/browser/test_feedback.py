@@ -28,15 +28,15 @@ def browser_messages(page: Page) -> list[str]:
 
 
 @pytest.fixture
-def flawed(make_result: Callable[..., Result], track: Callable[..., Artifact], tmp_path: Path) -> Path:
+def flawed_page(make_result: Callable[..., Result], track: Callable[..., Artifact], tmp_path: Path) -> Path:
     """The feedback page of a flawed submission with a picture."""
     return feedback.write(make_result(artifacts=(track(tmp_path),)), tmp_path)
 
 
 def test_the_track_is_shown_and_hints_unfold(
-    page: Page, flawed: Path, browser_messages: list[str], screenshots: Path
+    page: Page, flawed_page: Path, browser_messages: list[str], screenshots: Path
 ) -> None:
-    page.goto(flawed.as_uri())
+    page.goto(flawed_page.as_uri())
     expect(page.get_by_role("heading", level=1)).to_have_text("alice")
     picture = page.get_by_role("img", name="The robot's track: it touches the north wall at t = 12.4 s.")
     expect(picture).to_be_visible()
@@ -120,18 +120,18 @@ def test_the_run_of_a_failed_check_plays(
     assert browser_messages == []
 
 
-def test_the_page_fits_a_phone(page: Page, flawed: Path, browser_messages: list[str], screenshots: Path) -> None:
+def test_the_page_fits_a_phone(page: Page, flawed_page: Path, browser_messages: list[str], screenshots: Path) -> None:
     page.set_viewport_size({"width": 360, "height": 740})
-    page.goto(flawed.as_uri())
+    page.goto(flawed_page.as_uri())
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
     page.screenshot(path=screenshots / "feedback-phone.png", full_page=True)
     assert browser_messages == []
 
 
 def test_the_page_is_dark_if_the_browser_prefers_dark(
-    page: Page, flawed: Path, browser_messages: list[str], screenshots: Path
+    page: Page, flawed_page: Path, browser_messages: list[str], screenshots: Path
 ) -> None:
-    page.goto(flawed.as_uri())
+    page.goto(flawed_page.as_uri())
     colour = "getComputedStyle(document.body).backgroundColor"
     light = page.evaluate(colour)
     page.emulate_media(color_scheme="dark")

@@ -60,7 +60,7 @@ def browser_messages(page: Page) -> list[str]:
 
 
 @pytest.fixture
-def opened(page: Page, browser_messages: list[str], tmp_path: Path) -> Path:
+def run_page(page: Page, browser_messages: list[str], tmp_path: Path) -> Path:
     """The open page of a run of two seconds."""
     path = to_html(drive("moving_obstacle", 2.0), tmp_path / "run.html")
     page.goto(path.as_uri())
@@ -122,7 +122,7 @@ def test_a_run_is_a_picture_without_javascript(chromium: Browser, tmp_path: Path
 
 
 def test_the_player_plays_to_the_end_of_the_run_and_stops(
-    page: Page, opened: Path, browser_messages: list[str], screenshots: Path
+    page: Page, run_page: Path, browser_messages: list[str], screenshots: Path
 ) -> None:
     clock = page.locator(".run-player output")
     page.keyboard.press("Home")
@@ -157,7 +157,7 @@ def test_a_run_plays_once_when_it_becomes_visible_unless_it_broke_a_rule(
 
 
 @pytest.mark.promise("Press Play, drag the time line, or use the space bar and the arrow keys.")
-def test_the_slider_and_the_keys_show_any_instant(page: Page, opened: Path, browser_messages: list[str]) -> None:
+def test_the_slider_and_the_keys_show_any_instant(page: Page, run_page: Path, browser_messages: list[str]) -> None:
     clock, first = page.locator(".run-player output"), canvas_picture(page)
     page.get_by_label("Time in seconds").fill("1.5")
     expect(clock).to_have_text("1.50 s")
@@ -174,7 +174,7 @@ def test_the_slider_and_the_keys_show_any_instant(page: Page, opened: Path, brow
     assert browser_messages == []
 
 
-def test_keys_control_the_player_under_the_mouse_unless_a_field_has_the_focus(page: Page, opened: Path) -> None:
+def test_keys_control_the_player_under_the_mouse_unless_a_field_has_the_focus(page: Page, run_page: Path) -> None:
     clocks = page.locator(".run-player output")
     page.evaluate("""() => {
         document.querySelector("main").insertAdjacentHTML("beforeend", "<input id=field>");
@@ -202,7 +202,7 @@ def test_keys_control_the_player_under_the_mouse_unless_a_field_has_the_focus(pa
 
 
 def test_the_picture_zooms_moves_and_follows_the_robot(
-    page: Page, opened: Path, browser_messages: list[str], screenshots: Path
+    page: Page, run_page: Path, browser_messages: list[str], screenshots: Path
 ) -> None:
     canvas, whole = page.locator(".run-player canvas"), canvas_picture(page)
     canvas.hover()
@@ -249,7 +249,7 @@ def test_several_robots_are_named(page: Page, browser_messages: list[str], tmp_p
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_axe_finds_no_violation_in_the_player(page: Page, opened: Path, scheme: str, screenshots: Path) -> None:
+def test_axe_finds_no_violation_in_the_player(page: Page, run_page: Path, scheme: str, screenshots: Path) -> None:
     page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
     page.screenshot(path=screenshots / f"run-page-{scheme}.png")
     report = Axe().run(page, options=RULES)
@@ -257,10 +257,10 @@ def test_axe_finds_no_violation_in_the_player(page: Page, opened: Path, scheme: 
 
 
 def test_a_link_with_an_instant_opens_the_run_at_that_instant(
-    page: Page, opened: Path, browser_messages: list[str]
+    page: Page, run_page: Path, browser_messages: list[str]
 ) -> None:
     page.goto("about:blank")
-    page.goto(f"{opened.as_uri()}#t=1.3")
+    page.goto(f"{run_page.as_uri()}#t=1.3")
     expect(page.locator(".run-player output")).to_have_text("1.30 s")
     page.get_by_label("Time in seconds").fill("0.7")
     link = page.get_by_role("link", name="Link to this instant")
@@ -271,7 +271,7 @@ def test_a_link_with_an_instant_opens_the_run_at_that_instant(
     assert browser_messages == []
 
 
-def test_the_player_is_dark_if_the_browser_prefers_dark(page: Page, opened: Path) -> None:
+def test_the_player_is_dark_if_the_browser_prefers_dark(page: Page, run_page: Path) -> None:
     def background() -> str:
         return str(page.evaluate("getComputedStyle(document.body).backgroundColor"))
 

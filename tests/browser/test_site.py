@@ -44,7 +44,7 @@ SIZE = """address => new Promise((resolve, reject) => {
 
 
 @pytest.fixture(scope="module")
-def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def graded_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A class's folder: a graded robot with a flaw, and other students whose failures are those of recorded mutants."""
     folder, answer = (tmp_path_factory.mktemp(name) for name in ("graded", "answer"))
     flaws = {mutant.id: mutant for mutant in mutants(ASSIGNMENT)}
@@ -65,12 +65,12 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def pictures(chromium: Browser, graded: Path) -> Path:
+def pictures(chromium: Browser, graded_folder: Path) -> Path:
     """The screenshots of the instructors' guide: a page of feedback, a run in it, and the page of a class."""
     page = chromium.new_page(viewport={"width": 1100, "height": 800})
-    folder = graded / "screenshots"
+    folder = graded_folder / "screenshots"
     for name, path in (("class", "index.html"), ("alice", "alice/feedback.html")):
-        page.goto((graded / path).as_uri())
+        page.goto((graded_folder / path).as_uri())
         page.screenshot(path=folder / f"{name}.png")
     page.goto(f"{page.url}#run=run-room-track&t=0")  # a link to a run unfolds it
     room = page.locator("#check-room")
@@ -102,9 +102,11 @@ def test_axe_finds_no_violation_on_a_page_of_the_site(
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("name", ["alice/feedback.html", "index.html"])
-def test_axe_finds_no_violation_in_feedback(pictures: Path, graded: Path, page: Page, name: str, scheme: str) -> None:
+def test_axe_finds_no_violation_in_feedback(
+    pictures: Path, graded_folder: Path, page: Page, name: str, scheme: str
+) -> None:
     page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
-    page.goto((graded / name).as_uri())
+    page.goto((graded_folder / name).as_uri())
     report = Axe().run(page, options=RULES)
     assert report.violations_count == 0, report.generate_report()
 

@@ -74,7 +74,7 @@ def test_ctrl_c_ends_a_class_and_resume_continues_it(tmp_path: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def graded_class(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A class that an earlier version of the suite graded, with one more point for everybody."""
     folder = tmp_path_factory.mktemp("graded")
     for student in STUDENTS[:2]:
@@ -93,9 +93,9 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_resume_also_reports_marks_that_changed_before_a_signal(
-    graded: Path, tmp_path: Path, number: signal.Signals
+    graded_class: Path, tmp_path: Path, number: signal.Signals
 ) -> None:
-    folder = Path(shutil.copytree(graded, tmp_path / "graded"))
+    folder = Path(shutil.copytree(graded_class, tmp_path / "graded"))
     before = {path: json.loads(path.read_text())["score"] for path in (folder / "results").glob("*/result.json")}
     with resume(folder) as process:
         assert process.stdout is not None

@@ -59,7 +59,7 @@ def solve(student: str, released: NotebookNode) -> NotebookNode:
 
 
 @pytest.fixture(scope="module")
-def graded(tmp_path_factory: pytest.TempPathFactory) -> Classroom:
+def graded_class(tmp_path_factory: pytest.TempPathFactory) -> Classroom:
     """The class after its instructor has run all commands up to `generate_feedback`."""
     room = Classroom(tmp_path_factory.mktemp("class"), ASSIGNMENT)
     room.nbgrader("generate_assignment")
@@ -78,12 +78,12 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Classroom:
 
 
 @pytest.fixture(scope="module")
-def results(graded: Classroom) -> dict[str, Result]:
+def results(graded_class: Classroom) -> dict[str, Result]:
     """The results of `autograder grade --resume`, which grades the flawed submission and reuses the other results."""
     for name in ("reference", "empty", "odd"):
-        stored = graded.course / ".build" / "nbgrader" / ASSIGNMENT / name
-        shutil.copytree(stored, graded.root / "results" / ASSIGNMENT / name)
-    return {result.student: result for result in load(graded.grade("--resume"))}
+        stored = graded_class.course / ".build" / "nbgrader" / ASSIGNMENT / name
+        shutil.copytree(stored, graded_class.root / "results" / ASSIGNMENT / name)
+    return {result.student: result for result in load(graded_class.grade("--resume"))}
 
 
 @pytest.mark.promise(
@@ -91,15 +91,15 @@ def results(graded: Classroom) -> dict[str, Result]:
 )
 @pytest.mark.parametrize("student", CLASS)
 def test_the_gradebook_has_the_points_that_the_grader_gave(
-    student: str, graded: Classroom, results: dict[str, Result]
+    student: str, graded_class: Classroom, results: dict[str, Result]
 ) -> None:
     result = results[student]
     expected = {
         f"grade-{name}": (pytest.approx(sum(check.points for check in result.group(name))), worth, False)
         for name, worth in suites.hidden(ASSIGNMENT).groups.items()
     }
-    assert graded.grades(student) == expected
-    assert sum(maximum for _, maximum, _ in graded.grades(student).values()) == result.max_score
+    assert graded_class.grades(student) == expected
+    assert sum(maximum for _, maximum, _ in graded_class.grades(student).values()) == result.max_score
 
 
 def test_the_reference_gets_full_marks_flawed_answers_some_and_empty_ones_none(results: dict[str, Result]) -> None:
@@ -114,10 +114,10 @@ def code_lines(path: Path) -> list[str]:
     return sorted(line for line in lines if len(line) > 24 and "(" in line and not set("\"'#") & set(line))
 
 
-def test_the_release_contains_no_solution_and_nothing_of_the_hidden_suite(graded: Classroom) -> None:
-    files = [path for path in (graded.course / "release").rglob("*") if path.is_file()]
+def test_the_release_contains_no_solution_and_nothing_of_the_hidden_suite(graded_class: Classroom) -> None:
+    files = [path for path in (graded_class.course / "release").rglob("*") if path.is_file()]
     text = "\n".join(path.read_text(encoding="utf-8", errors="replace") for path in files)
-    notebook = nbformat.read(graded.course / "release" / ASSIGNMENT / f"{ASSIGNMENT}.ipynb", as_version=4)
+    notebook = nbformat.read(graded_class.course / "release" / ASSIGNMENT / f"{ASSIGNMENT}.ipynb", as_version=4)
     text += "\n".join(cell.source for cell in notebook.cells)
     source = nbformat.read(course_paths.source_notebook(ASSIGNMENT), as_version=4)
     solution = next(cell.source for cell in source.cells if cell.id == SOLUTION)
@@ -134,11 +134,13 @@ def test_the_release_contains_no_solution_and_nothing_of_the_hidden_suite(graded
 
 
 @pytest.mark.parametrize("student", CLASS)
-def test_the_feedback_explains_failures_and_contains_no_source_of_the_suite(student: str, graded: Classroom) -> None:
-    path = graded.course / "feedback" / student / ASSIGNMENT / f"{ASSIGNMENT}.html"
+def test_the_feedback_explains_failures_and_contains_no_source_of_the_suite(
+    student: str, graded_class: Classroom
+) -> None:
+    path = graded_class.course / "feedback" / student / ASSIGNMENT / f"{ASSIGNMENT}.html"
     html = unescape(path.read_text(encoding="utf-8"))
     suite = suites.hidden(ASSIGNMENT)
-    (stored,) = load(graded.course / ".build" / "nbgrader" / ASSIGNMENT / student)
+    (stored,) = load(graded_class.course / ".build" / "nbgrader" / ASSIGNMENT / student)
     for check in stored.checks:
         assert check.title in html
         if check.outcome is Outcome.FAILED:  # skipped checks are folded below the failed one
@@ -148,20 +150,20 @@ def test_the_feedback_explains_failures_and_contains_no_source_of_the_suite(stud
     assert "def test_" not in html
 
 
-def test_outputs_of_the_sandboxed_kernel_are_in_the_autograded_notebook(graded: Classroom) -> None:
-    path = graded.course / "autograded" / "reference" / ASSIGNMENT / f"{ASSIGNMENT}.ipynb"
+def test_outputs_of_the_sandboxed_kernel_are_in_the_autograded_notebook(graded_class: Classroom) -> None:
+    path = graded_class.course / "autograded" / "reference" / ASSIGNMENT / f"{ASSIGNMENT}.ipynb"
     notebook = nbformat.read(path, as_version=4)
     solution = next(cell for cell in notebook.cells if cell.id == SOLUTION)
     assert [output.text.split()[0] for output in solution.outputs] in (["Writing"], ["Overwriting"])
 
 
 @pytest.mark.promise("`release_assignment`, `collect`, `autograde` and `generate_feedback` work as usual.")
-def test_students_fetch_their_feedback(graded: Classroom) -> None:
-    graded.nbgrader("release_feedback")
-    folder = graded.root / "flawed"
-    graded.nbgrader("fetch_feedback", folder=folder)
+def test_students_fetch_their_feedback(graded_class: Classroom) -> None:
+    graded_class.nbgrader("release_feedback")
+    folder = graded_class.root / "flawed"
+    graded_class.nbgrader("fetch_feedback", folder=folder)
     (page,) = (folder / ASSIGNMENT / "feedback").rglob("*.html")
-    generated = graded.course / "feedback" / "flawed" / ASSIGNMENT / f"{ASSIGNMENT}.html"
+    generated = graded_class.course / "feedback" / "flawed" / ASSIGNMENT / f"{ASSIGNMENT}.html"
     assert page.read_bytes() == generated.read_bytes()
 
 
@@ -169,24 +171,24 @@ def test_students_fetch_their_feedback(graded: Classroom) -> None:
     "nbgrader autograde 02_nodes",
     "`autograde` records that result instead of grading again.",
 )
-def test_autograde_records_results_of_an_earlier_grading(graded: Classroom, results: dict[str, Result]) -> None:
-    stored = graded.root / "results"
+def test_autograde_records_results_of_an_earlier_grading(graded_class: Classroom, results: dict[str, Result]) -> None:
+    stored = graded_class.root / "results"
     before = (stored / ASSIGNMENT / "flawed" / "result.json").stat().st_mtime_ns
-    recorded_before = graded.grades("flawed")
+    recorded_before = graded_class.grades("flawed")
     options = (f"--SandboxedGrade.results={stored}", "--student=flawed", "--force")
-    graded.nbgrader("autograde", *options)
+    graded_class.nbgrader("autograde", *options)
     assert (stored / ASSIGNMENT / "flawed" / "result.json").stat().st_mtime_ns == before
-    assert graded.grades("flawed") == recorded_before
+    assert graded_class.grades("flawed") == recorded_before
     assert sum(points for points, _, _ in recorded_before.values()) == pytest.approx(results["flawed"].score)
 
 
-def test_a_restored_exercise_cell_earns_no_points(graded: Classroom) -> None:
-    graded.hand_in("dropped")
-    folder = graded.course / "submitted" / "dropped" / ASSIGNMENT
+def test_a_restored_exercise_cell_earns_no_points(graded_class: Classroom) -> None:
+    graded_class.hand_in("dropped")
+    folder = graded_class.course / "submitted" / "dropped" / ASSIGNMENT
     notebook = nbformat.read(folder / f"{ASSIGNMENT}.ipynb", as_version=4)
     notebook.cells = [cell for cell in notebook.cells if "nbgrader" not in cell.metadata]
     nbformat.write(notebook, folder / f"{ASSIGNMENT}.ipynb")
-    graded.nbgrader("autograde", "--student=dropped")
-    grades = graded.grades("dropped")
+    graded_class.nbgrader("autograde", "--student=dropped")
+    grades = graded_class.grades("dropped")
     assert {points for points, _, _ in grades.values()} == {0.0}
     assert sum(maximum for _, maximum, _ in grades.values()) == suites.hidden(ASSIGNMENT).max_score

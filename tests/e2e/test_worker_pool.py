@@ -39,7 +39,7 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def incomplete(reference: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def incomplete_submission(reference: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A submission that is graded quickly: a package without setup.py."""
     folder = tmp_path_factory.mktemp("incomplete") / "tree"
     shutil.copytree(reference, folder)
@@ -76,15 +76,18 @@ def servers() -> Servers:
 
 
 def test_a_shared_sandbox_gives_the_same_results_as_one_for_each_submission(
-    reference: Path, incomplete: Path, servers: Servers, tmp_path: Path
+    reference: Path, incomplete_submission: Path, servers: Servers, tmp_path: Path
 ) -> None:
     with WorkerPool(Isolation.BUBBLEWRAP, 1) as workers:
         shared = [
-            _grade(path, tmp_path / "shared", workers, SOME_CHECKS) for path in (reference, incomplete, reference)
+            _grade(path, tmp_path / "shared", workers, SOME_CHECKS)
+            for path in (reference, incomplete_submission, reference)
         ]
         assert len(servers()) == 1
     assert servers() == []
-    separate = [_grade(path, tmp_path / "separate", in_own_sandbox, SOME_CHECKS) for path in (reference, incomplete)]
+    separate = [
+        _grade(path, tmp_path / "separate", in_own_sandbox, SOME_CHECKS) for path in (reference, incomplete_submission)
+    ]
     assert [_verdicts(result) for result in shared] == [_verdicts(separate[number]) for number in (0, 1, 0)]
     for shared_result, separate_result in zip(shared, separate, strict=False):
         assert (shared_result.suite_version, shared_result.files_digest) == (
@@ -107,24 +110,24 @@ def _zombies(pid: int) -> list[int]:
 
 
 def test_a_worker_waits_for_the_processes_that_earlier_submissions_left(
-    reference: Path, incomplete: Path, servers: Servers, tmp_path: Path
+    reference: Path, incomplete_submission: Path, servers: Servers, tmp_path: Path
 ) -> None:
     with WorkerPool(Isolation.BUBBLEWRAP, 1) as workers:
         _grade(reference, tmp_path / "reference", workers, SOME_CHECKS)
         (server,) = servers()
         zombies = _zombies(server)
-        _grade(incomplete, tmp_path / "incomplete", workers)
+        _grade(incomplete_submission, tmp_path / "incomplete", workers)
         assert set(zombies).isdisjoint(_zombies(server))
 
 
 def test_a_worker_can_be_used_after_the_thread_that_used_it_first_has_ended(
-    incomplete: Path, servers: Servers, tmp_path: Path
+    incomplete_submission: Path, servers: Servers, tmp_path: Path
 ) -> None:
     servers_used = []
     with WorkerPool(Isolation.BUBBLEWRAP, 1) as workers:
         for name in ("one", "two"):
             with ThreadPoolExecutor(1) as thread:
-                result = thread.submit(_grade, incomplete, tmp_path / name, workers).result()
+                result = thread.submit(_grade, incomplete_submission, tmp_path / name, workers).result()
             assert result.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
             servers_used.append(servers())
     assert len(servers_used[0]) == 1
@@ -132,13 +135,13 @@ def test_a_worker_can_be_used_after_the_thread_that_used_it_first_has_ended(
 
 
 def test_a_failed_grading_reports_the_reason_and_the_next_one_gets_a_new_sandbox(
-    reference: Path, incomplete: Path, servers: Servers, tmp_path: Path
+    reference: Path, incomplete_submission: Path, servers: Servers, tmp_path: Path
 ) -> None:
     with WorkerPool(Isolation.BUBBLEWRAP, 1) as workers:
-        _grade(incomplete, tmp_path / "before", workers)
+        _grade(incomplete_submission, tmp_path / "before", workers)
         before = servers()
         failed = _grade(reference, tmp_path / "failed", workers, Options(only=("no_such_check",)))
-        graded = _grade(incomplete, tmp_path / "graded", workers)
+        graded = _grade(incomplete_submission, tmp_path / "graded", workers)
         assert len(servers()) == 1
         assert servers() != before
     assert failed.status is Status.NOT_GRADED
@@ -147,19 +150,21 @@ def test_a_failed_grading_reports_the_reason_and_the_next_one_gets_a_new_sandbox
 
 
 def test_a_fork_server_that_ends_is_replaced_and_leaves_nothing(
-    incomplete: Path, servers: Servers, entered_tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    incomplete_submission: Path, servers: Servers, entered_tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(entered_tmp_path))
     with WorkerPool(Isolation.PROCESS, 1) as workers:
         assert (
-            _grade(incomplete, entered_tmp_path / "one", workers, isolation=Isolation.PROCESS).status is Status.GRADED
+            _grade(incomplete_submission, entered_tmp_path / "one", workers, isolation=Isolation.PROCESS).status
+            is Status.GRADED
         )
         (sandbox,) = entered_tmp_path.glob("autograder-worker-*")
         assert list(sandbox.iterdir()) == []
         (server,) = servers()
         os.kill(server, signal.SIGKILL)
         assert (
-            _grade(incomplete, entered_tmp_path / "two", workers, isolation=Isolation.PROCESS).status is Status.GRADED
+            _grade(incomplete_submission, entered_tmp_path / "two", workers, isolation=Isolation.PROCESS).status
+            is Status.GRADED
         )
         assert servers() not in ([], [server])
     assert list(entered_tmp_path.glob("autograder-worker-*")) == []

@@ -39,7 +39,7 @@ def _submission(folder: Path) -> Path:
 
 
 @pytest.fixture
-def graded(monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, Any]]:
+def replace_grade(monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, Any]]:
     """Return a function that makes `grade` return given results. It returns the options that `grade` is called with."""
 
     def give(*results: result.Result) -> dict[str, Any]:
@@ -77,9 +77,9 @@ def test_a_module_that_only_helps_a_verb_is_not_listed_as_one(tmp_path: Path, mo
 
 @pytest.mark.promise("autograder grade submissions/ --assignment 02_nodes --out results -j 4")
 def test_grading_prints_a_line_and_a_row_for_each_submission_and_exits_0(
-    tmp_path: Path, make_result: MakeResult, graded: Callable[..., dict[str, Any]]
+    tmp_path: Path, make_result: MakeResult, replace_grade: Callable[..., dict[str, Any]]
 ) -> None:
-    options = graded(make_result("alice"))
+    options = replace_grade(make_result("alice"))
     out, stored = tmp_path / "out", tmp_path / "all.json"
     completed = _run(
         *("grade", str(_submission(tmp_path / "alice")), "--assignment", "02_nodes", "--out", str(out)),
@@ -104,7 +104,7 @@ def test_grading_prints_a_line_and_a_row_for_each_submission_and_exits_0(
     "At the end, the command lists each student whose mark has changed, by how much, and because of which checks.",
 )
 def test_regrading_with_resume_lists_the_students_whose_mark_changed(
-    tmp_path: Path, make_result: MakeResult, graded: Callable[..., dict[str, Any]]
+    tmp_path: Path, make_result: MakeResult, replace_grade: Callable[..., dict[str, Any]]
 ) -> None:
     for name in ("alice", "bob", "carol"):
         _submission(tmp_path / "class" / name)
@@ -112,7 +112,7 @@ def test_regrading_with_resume_lists_the_students_whose_mark_changed(
     for stored in (alice, bob):  # carol is not graded yet
         result.write_json(tmp_path / "out" / stored.student / "result.json", stored.to_json())
     regraded = replace(alice, checks=(*alice.checks[:2], replace(alice.checks[2], points=4.0), *alice.checks[3:]))
-    graded(regraded, bob, carol)
+    replace_grade(regraded, bob, carol)
     command = ("grade", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out"))
     output = _run(*command, "--resume").output
     heading = "Marks that changed because of the suite or the submission:\n"
@@ -154,9 +154,9 @@ def test_a_dry_run_of_grading_says_which_stored_results_are_kept_or_replaced(
 
 
 def test_a_submission_that_was_not_graded_exits_1_and_shows_no_zero(
-    tmp_path: Path, ungraded_result: result.Result, graded: Callable[..., dict[str, Any]]
+    tmp_path: Path, ungraded_result: result.Result, replace_grade: Callable[..., dict[str, Any]]
 ) -> None:
-    graded(ungraded_result)
+    replace_grade(ungraded_result)
     completed = _run(
         "grade", str(_submission(tmp_path / "carol")), "--assignment", "02_nodes", "--out", str(tmp_path / "out")
     )

@@ -44,7 +44,7 @@ def run(folder: Path, failed_checks: FailedChecks, version: str, *options: str, 
 
 
 @pytest.fixture(scope="module")
-def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def graded_class(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A class that was graded with the old version. Erin's submission is a copy of Alice's."""
     folder = tmp_path_factory.mktemp("graded")
     for student in (*BEFORE, "erin"):
@@ -56,16 +56,16 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def changes(graded: Path, tmp_path_factory: pytest.TempPathFactory) -> int:
+def changes(graded_class: Path, tmp_path_factory: pytest.TempPathFactory) -> int:
     """The number of changes to files by a grading of the class with the new version."""
-    folder = copy(graded, tmp_path_factory.mktemp("counted"))
+    folder = copy(graded_class, tmp_path_factory.mktemp("counted"))
     assert run(folder, AFTER, NEW, "--resume") == 0
     assert listed(folder) == [LIST]
     return int((folder / "changes").read_text())
 
 
-def copy(graded: Path, folder: Path) -> Path:
-    shutil.copytree(graded, folder, dirs_exist_ok=True)
+def copy(graded_class: Path, folder: Path) -> Path:
+    shutil.copytree(graded_class, folder, dirs_exist_ok=True)
     (folder / "printed").unlink()
     return folder
 
@@ -85,9 +85,9 @@ def listed(folder: Path) -> list[str]:
 @pytest.mark.slow
 @pytest.mark.parametrize("instant", range(INSTANTS))
 def test_the_list_of_changes_is_whole_after_a_kill_at_any_instant(
-    graded: Path, changes: int, instant: int, tmp_path: Path
+    graded_class: Path, changes: int, instant: int, tmp_path: Path
 ) -> None:
-    folder, kill_at = copy(graded, tmp_path), instant * changes // INSTANTS
+    folder, kill_at = copy(graded_class, tmp_path), instant * changes // INSTANTS
     options = ("--resume",) if instant % 4 else ()
     assert run(folder, AFTER, NEW, *options, kill_at=kill_at) == -signal.SIGKILL
     marks = {result.student: result.score for result in load(folder / "results")}
@@ -100,8 +100,8 @@ def test_the_list_of_changes_is_whole_after_a_kill_at_any_instant(
     assert file_names.isdisjoint({".unfinished", "earlier-marks.json"})
 
 
-def test_changes_that_were_listed_are_not_listed_again(graded: Path, changes: int, tmp_path: Path) -> None:
-    folder = copy(graded, tmp_path)
+def test_changes_that_were_listed_are_not_listed_again(graded_class: Path, changes: int, tmp_path: Path) -> None:
+    folder = copy(graded_class, tmp_path)
     assert [run(folder, AFTER, NEW, "--resume") for _ in range(2)] == [0, 0]
     assert (folder / "printed").read_text().count("[5/5]") == 2
     assert "Marks that changed" not in (folder / "printed").read_text().rpartition("[5/5]")[2]

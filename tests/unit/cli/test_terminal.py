@@ -38,7 +38,7 @@ def expect_harmless(text: str, allowed: str = "") -> None:
 
 
 @pytest.fixture
-def hostile(make_result: MakeResult) -> Result:
+def hostile_result(make_result: MakeResult) -> Result:
     result = make_result("b" + HOSTILE.replace("\x00", ""))
     checks = tuple(
         replace(check, message=HOSTILE + check.message) if check.outcome is Outcome.FAILED else check
@@ -55,13 +55,15 @@ def run(*arguments: str) -> str:
 
 
 def test_grading_escapes_control_characters_in_names_and_messages(
-    tmp_path: Path, hostile: Result, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, hostile_result: Result, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    broken = replace(hostile, student="c\nd", diagnosis=Diagnosis(Kind.BUILD_FAILED, HOSTILE), build=None, checks=())
+    broken = replace(
+        hostile_result, student="c\nd", diagnosis=Diagnosis(Kind.BUILD_FAILED, HOSTILE), build=None, checks=()
+    )
 
     def grade_all(entries: object, assignment: str, *, on_result: Callable[[Result], None], **_: Any) -> list[Result]:
-        on_result(hostile)
-        return [hostile, broken]
+        on_result(hostile_result)
+        return [hostile_result, broken]
 
     monkeypatch.setattr(import_module("autograder.cli.grade"), "grade_all", grade_all)
     (tmp_path / "x" / "src").mkdir(parents=True)
@@ -72,8 +74,10 @@ def test_grading_escapes_control_characters_in_names_and_messages(
 
 
 @pytest.mark.parametrize("form", ["csv", "markdown", "junit"])
-def test_exporting_escapes_control_characters_in_names_and_messages(tmp_path: Path, hostile: Result, form: str) -> None:
-    write_json(tmp_path / "all" / "results.json", [hostile.to_json()])
+def test_exporting_escapes_control_characters_in_names_and_messages(
+    tmp_path: Path, hostile_result: Result, form: str
+) -> None:
+    write_json(tmp_path / "all" / "results.json", [hostile_result.to_json()])
     run("export", str(tmp_path / "all"), "--format", form, "--out", str(tmp_path / "marks"))
     expect_harmless((tmp_path / "marks").read_bytes().decode().replace("\r\n", "\n"), MARKS)
 
@@ -86,18 +90,18 @@ def test_a_formula_is_text_in_a_spreadsheet(tmp_path: Path, make_result: MakeRes
         assert not cell.startswith(("=", "+", "-", "@")), begin
 
 
-def test_comparing_and_replaying_escape_control_characters_in_names(tmp_path: Path, hostile: Result) -> None:
+def test_comparing_and_replaying_escape_control_characters_in_names(tmp_path: Path, hostile_result: Result) -> None:
     for folder, score in (("old", 1.0), ("new", 0.0)):
-        checks = (replace(hostile.checks[0], points=score), *hostile.checks[1:])
-        write_json(tmp_path / folder / "result.json", replace(hostile, checks=checks).to_json())
+        checks = (replace(hostile_result.checks[0], points=score), *hostile_result.checks[1:])
+        write_json(tmp_path / folder / "result.json", replace(hostile_result, checks=checks).to_json())
     assert r"\x1b]0;t\x07" in run("compare", str(tmp_path / "old"), str(tmp_path / "new"))
-    run("replay", str(tmp_path / "new"), "--check", hostile.checks[0].id, "--no-open")
+    run("replay", str(tmp_path / "new"), "--check", hostile_result.checks[0].id, "--no-open")
 
 
 def test_checking_escapes_control_characters_in_messages(
-    tmp_path: Path, hostile: Result, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, hostile_result: Result, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    failed = [check for check in hostile.checks if check.outcome is Outcome.FAILED]
+    failed = [check for check in hostile_result.checks if check.outcome is Outcome.FAILED]
 
     def checked(assignment: str, workspace: Path, **options: object) -> CheckReport:
         return CheckReport(assignment, tuple(failed))

@@ -30,7 +30,7 @@ def a_class(make_result: MakeResult, broken_result: Result, ungraded_result: Res
 
 
 @pytest.fixture
-def hostile(make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path) -> Class:
+def hostile_class(make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path) -> Class:
     text = "=1+1|<script>`x`[a](b)\x00\udcff\n# head"
     check = CheckResult.of(make_check("c", text, 1, "g"), Outcome.FAILED, text)
     diagnosis = Diagnosis(Kind.CRASHED_LATER, text, text)
@@ -53,8 +53,8 @@ def test_csv_has_a_row_for_each_submission_and_a_column_for_each_check(a_class: 
     assert (carol["status"], carol["score"], carol["percent"]) == ("not_graded", "", "")
 
 
-def test_csv_contains_no_formula(hostile: Class, tmp_path: Path) -> None:
-    (row,) = rows(write(hostile, "csv", tmp_path / "marks.csv"))
+def test_csv_contains_no_formula(hostile_class: Class, tmp_path: Path) -> None:
+    (row,) = rows(write(hostile_class, "csv", tmp_path / "marks.csv"))
     assert row["student"] == "'=cmd"
     assert row["reason"] == "'=1+1|<script>`x`[a](b)\ufffd\ufffd # head"
 
@@ -90,8 +90,8 @@ def test_junit_counts_and_names_each_outcome(a_class: Class, tmp_path: Path) -> 
     assert NOT_GRADED in error.get("message", "")
 
 
-def test_junit_is_well_formed_for_any_text_of_a_student(hostile: Class, tmp_path: Path) -> None:
-    root = ET.parse(write(hostile, "junit", tmp_path / "junit.xml")).getroot()
+def test_junit_is_well_formed_for_any_text_of_a_student(hostile_class: Class, tmp_path: Path) -> None:
+    root = ET.parse(write(hostile_class, "junit", tmp_path / "junit.xml")).getroot()
     failure = root.find("testsuite/testcase/failure")
     assert failure is not None
     assert failure.get("message") == "=1+1|<script>`x`[a](b)\ufffd\ufffd # head"
@@ -161,8 +161,8 @@ def test_markdown_has_a_table_and_a_section_for_each_student(a_class: Class, tmp
         assert line in text.splitlines()
 
 
-def test_markdown_shows_a_students_text_as_text(hostile: Class, tmp_path: Path) -> None:
-    html = markdown2html(write(hostile, "markdown", tmp_path / "report.md").read_text(encoding="utf-8"))
+def test_markdown_shows_a_students_text_as_text(hostile_class: Class, tmp_path: Path) -> None:
+    html = markdown2html(write(hostile_class, "markdown", tmp_path / "report.md").read_text(encoding="utf-8"))
     assert "<script>" not in html
     assert '<a href="b"' not in html
     assert html.count("<tr>") == 4  # two tables of a head and a row: no line of the student's broke one

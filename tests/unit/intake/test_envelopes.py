@@ -33,7 +33,7 @@ def answer(tmp_path_factory: pytest.TempPathFactory) -> Answer:
 
 
 @pytest.fixture(scope="session")
-def plain(answer: Answer, tmp_path_factory: pytest.TempPathFactory) -> Submission:
+def plain_answer(answer: Answer, tmp_path_factory: pytest.TempPathFactory) -> Submission:
     return read_submission(write(tmp_path_factory.mktemp("plain") / "ada", answer.files), CHAPTER)
 
 
@@ -280,30 +280,32 @@ def stub_file(released: bytes) -> bytes:
 )
 @pytest.mark.parametrize("envelope", FOLDERS)
 def test_a_folder_is_graded_like_the_plain_answer(
-    envelope: str, answer: Answer, plain: Submission, tmp_path: Path
+    envelope: str, answer: Answer, plain_answer: Submission, tmp_path: Path
 ) -> None:
-    _expect_same(read_submission(write(tmp_path / "ada", FOLDERS[envelope](answer)), CHAPTER), plain)
+    _expect_same(read_submission(write(tmp_path / "ada", FOLDERS[envelope](answer)), CHAPTER), plain_answer)
 
 
 @pytest.mark.parametrize("change", NOTEBOOKS)
 @pytest.mark.parametrize("location", ["alone", "in its folder"])
 def test_a_notebook_is_graded_like_the_plain_answer(
-    change: str, location: str, answer: Answer, plain: Submission, tmp_path: Path
+    change: str, location: str, answer: Answer, plain_answer: Submission, tmp_path: Path
 ) -> None:
     notebook = {BOOK: answer.notebook(NOTEBOOKS[change])}
     folder = write(tmp_path / "ada", notebook if location == "alone" else {**answer.released, **notebook})
-    _expect_same(read_submission(folder, CHAPTER), plain)
+    _expect_same(read_submission(folder, CHAPTER), plain_answer)
 
 
 @pytest.mark.parametrize("name", ARCHIVES)
-def test_a_file_is_graded_like_the_plain_answer(name: str, answer: Answer, plain: Submission, tmp_path: Path) -> None:
+def test_a_file_is_graded_like_the_plain_answer(
+    name: str, answer: Answer, plain_answer: Submission, tmp_path: Path
+) -> None:
     (tmp_path / name).write_bytes(ARCHIVES[name](answer))
-    _expect_same(read_submission(tmp_path / name, CHAPTER), plain)
+    _expect_same(read_submission(tmp_path / name, CHAPTER), plain_answer)
 
 
 @pytest.mark.parametrize("name", DOWNLOADS)
 def test_a_download_contains_the_plain_answer_of_its_student(
-    name: str, answer: Answer, plain: Submission, tmp_path: Path
+    name: str, answer: Answer, plain_answer: Submission, tmp_path: Path
 ) -> None:
     (tmp_path / "roster.csv").write_text(ROSTER)
     (tmp_path / "scratch").mkdir()
@@ -312,7 +314,7 @@ def test_a_download_contains_the_plain_answer_of_its_student(
     assert collected.unmatched == ()
     assert next(iter(collected.submissions)) == "jdoe3"
     for path in collected.submissions.values():
-        _expect_same(read_submission(path, CHAPTER), plain)
+        _expect_same(read_submission(path, CHAPTER), plain_answer)
 
 
 def _package(submission: Submission) -> dict[str, bytes]:
@@ -320,16 +322,16 @@ def _package(submission: Submission) -> dict[str, bytes]:
     return {str(file.path): file.data for file in files if file.path.parts[0] == "my_robot_package"}
 
 
-def _expect_same(submission: Submission, plain: Submission) -> None:
+def _expect_same(submission: Submission, plain_answer: Submission) -> None:
     assert submission.packages is not None
-    assert plain.packages is not None
-    assert _package(submission) == _package(plain)
+    assert plain_answer.packages is not None
+    assert _package(submission) == _package(plain_answer)
     if submission.notebook is not None:  # its cells also write the packages that the chapter shows
-        assert submission.graded_sha256 == plain.graded_sha256
+        assert submission.graded_sha256 == plain_answer.graded_sha256
 
 
 def test_a_link_outside_of_the_packages_is_left_out_and_named(
-    answer: Answer, plain: Submission, tmp_path: Path
+    answer: Answer, plain_answer: Submission, tmp_path: Path
 ) -> None:
     folder = write(tmp_path / "ada", answer.files)
     (folder / "latest").symlink_to("/etc/passwd")
@@ -337,7 +339,7 @@ def test_a_link_outside_of_the_packages_is_left_out_and_named(
     (folder / ".venv" / "bin" / "python").symlink_to("/usr/bin/python3")
     os.mkfifo(folder / "pipe")
     submission = read_submission(folder, CHAPTER)
-    _expect_same(submission, plain)
+    _expect_same(submission, plain_answer)
     assert submission.unused == ("latest is a symbolic link", "pipe is not a regular file")
 
 

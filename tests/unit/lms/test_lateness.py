@@ -130,7 +130,7 @@ CANVAS = """Student,ID,SIS Login ID,Section,02 Nodes (55)
 
 
 @pytest.fixture
-def graded(tmp_path: Path, make_result: MakeResult) -> Path:
+def results_folder(tmp_path: Path, make_result: MakeResult) -> Path:
     """Write results with 4 of 10 points each, and the known times of their submissions."""
     for student in ("jane", "zoe", "bob"):
         write_json(tmp_path / "results" / student / "result.json", make_result(student).to_json())
@@ -158,30 +158,30 @@ def cells(folder: Path, key: str, name: str) -> dict[str, str]:
     "`--late-floor 40` leaves 40 % in any case",
     "If nothing says how late a submission is, it has no mark, is listed, and the exit status is 1.",
 )
-def test_export_applies_the_table_of_extensions_and_names_students_without_a_known_time(graded: Path) -> None:
+def test_export_applies_the_table_of_extensions_and_names_students_without_a_known_time(results_folder: Path) -> None:
     options = ("--due", "2026-05-04T18:00+02:00", "--late-per-day", "10", "--grace", "1", "--late-floor", "40")
-    completed = export(graded, *options)
+    completed = export(results_folder, *options)
     assert completed.exit_code == 1
     assert "Left out: jane: it is late, and nothing says by how much" in completed.output
     # zoe's time has no zone, so it is that of --due: 1 day and 23 hours late. bob came in time, in another zone.
-    assert cells(graded, "SIS Login ID", "02 Nodes (55)") == {"jane": "", "zoe": "3.20", "bob": "4.00"}
+    assert cells(results_folder, "SIS Login ID", "02 Nodes (55)") == {"jane": "", "zoe": "3.20", "bob": "4.00"}
 
-    (graded / "extensions.csv").write_text(
+    (results_folder / "extensions.csv").write_text(
         'student,days,until,submitted\nzoe,1,,\njane,,2026-05-08,2026-05-09 12:00\n"Roe, Bob",,2026-05-01T12:00Z,\n'
     )
-    completed = export(graded, *options, "--extensions", str(graded / "extensions.csv"))
+    completed = export(results_folder, *options, "--extensions", str(results_folder / "extensions.csv"))
     assert completed.exit_code == 0, completed.output
-    assert cells(graded, "SIS Login ID", "02 Nodes (55)") == {"jane": "3.60", "zoe": "3.60", "bob": "2.40"}
+    assert cells(results_folder, "SIS Login ID", "02 Nodes (55)") == {"jane": "3.60", "zoe": "3.60", "bob": "2.40"}
 
 
-def test_a_csv_file_has_the_late_days_and_the_mark_beside_the_score(graded: Path) -> None:
-    completed = export(graded, "--due", "2026-05-04T18:00+00:00", "--late-per-day", "10", form="csv")
+def test_a_csv_file_has_the_late_days_and_the_mark_beside_the_score(results_folder: Path) -> None:
+    completed = export(results_folder, "--due", "2026-05-04T18:00+00:00", "--late-per-day", "10", form="csv")
     assert completed.exit_code == 1
-    assert cells(graded, "student", "late_days") == {"bob": "0", "jane": "", "zoe": "2"}
-    assert cells(graded, "student", "mark") == {"bob": "4.0", "jane": "", "zoe": "3.2"}
-    assert set(cells(graded, "student", "score").values()) == {"4.0"}
-    assert export(graded, form="csv").exit_code == 0
-    assert "late_days" not in (graded / "out.csv").read_text()
+    assert cells(results_folder, "student", "late_days") == {"bob": "0", "jane": "", "zoe": "2"}
+    assert cells(results_folder, "student", "mark") == {"bob": "4.0", "jane": "", "zoe": "3.2"}
+    assert set(cells(results_folder, "student", "score").values()) == {"4.0"}
+    assert export(results_folder, form="csv").exit_code == 0
+    assert "late_days" not in (results_folder / "out.csv").read_text()
 
 
 @pytest.mark.parametrize(
@@ -198,12 +198,14 @@ def test_a_csv_file_has_the_late_days_and_the_mark_beside_the_score(graded: Path
         ("student,days\nzoe,1\nzoe,2\n", "extensions.csv, line 3: zoe is also in .*, line 2: remove"),
     ],
 )
-def test_a_wrong_table_of_extensions_is_an_error_that_names_the_line(graded: Path, text: str, reason: str) -> None:
-    (graded / "extensions.csv").write_text(text)
-    completed = export(graded, "--extensions", str(graded / "extensions.csv"))
+def test_a_wrong_table_of_extensions_is_an_error_that_names_the_line(
+    results_folder: Path, text: str, reason: str
+) -> None:
+    (results_folder / "extensions.csv").write_text(text)
+    completed = export(results_folder, "--extensions", str(results_folder / "extensions.csv"))
     with pytest.raises(UsageError, match=reason):
         raise completed.exception or AssertionError(completed.output)
-    assert not (graded / "out.csv").exists()
+    assert not (results_folder / "out.csv").exists()
 
 
 @pytest.mark.parametrize(
@@ -213,16 +215,20 @@ def test_a_wrong_table_of_extensions_is_an_error_that_names_the_line(graded: Pat
         (("--due", "tomorrow"), "--due: 'tomorrow' is not a time in ISO 8601"),
     ],
 )
-def test_options_that_contradict_each_other_are_an_error(graded: Path, options: tuple[str, ...], reason: str) -> None:
-    assert reason in str(export(graded, *options).exception)
+def test_options_that_contradict_each_other_are_an_error(
+    results_folder: Path, options: tuple[str, ...], reason: str
+) -> None:
+    assert reason in str(export(results_folder, *options).exception)
 
 
-def test_late_options_are_an_error_where_no_mark_would_change(graded: Path) -> None:
-    assert "--format csv, canvas, moodle, not junit" in str(export(graded, "--grace", "1", form="junit").exception)
+def test_late_options_are_an_error_where_no_mark_would_change(results_folder: Path) -> None:
+    assert "--format csv, canvas, moodle, not junit" in str(
+        export(results_folder, "--grace", "1", form="junit").exception
+    )
 
 
-def test_a_dry_run_shows_the_marks_of_late_submissions(graded: Path) -> None:
-    completed = export(graded, "--due", "2026-05-04T18:00+02:00", "--late-per-day", "10", "--dry-run")
+def test_a_dry_run_shows_the_marks_of_late_submissions(results_folder: Path) -> None:
+    completed = export(results_folder, "--due", "2026-05-04T18:00+02:00", "--late-per-day", "10", "--dry-run")
     assert ["zoe", "3.20"] in [line.split() for line in completed.output.splitlines()]
-    assert not (graded / "out.csv").exists()
-    assert json.loads((graded / "results" / "handed_in.json").read_text())["late"] == ["jane"]
+    assert not (results_folder / "out.csv").exists()
+    assert json.loads((results_folder / "results" / "handed_in.json").read_text())["late"] == ["jane"]

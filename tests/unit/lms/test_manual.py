@@ -32,7 +32,7 @@ GRADEBOOK = """Student,ID,SIS Login ID,Section,09 Assessment (77)
 
 
 @pytest.fixture
-def assessed(tmp_path: Path, make_result: MakeResult, make_check: MakeCheck) -> Path:
+def results_folder(tmp_path: Path, make_result: MakeResult, make_check: MakeCheck) -> Path:
     """Write results of 09 in which each student has all 46 points that programs give."""
     for student in ("zoe@x.edu", "jane@x.edu"):
         check = CheckResult.of(make_check("all", "Everything works.", 46, "nodes"), Outcome.PASSED)
@@ -75,56 +75,66 @@ def test_the_cells_that_a_person_grades_are_those_of_the_courses_notebook() -> N
     ],
 )
 def test_the_points_of_a_person_are_added_so_that_all_of_52_can_be_reached(
-    assessed: Path, form: str, roster: str, name: str, marks: list[str]
+    results_folder: Path, form: str, roster: str, name: str, marks: list[str]
 ) -> None:
-    completed = with_points(assessed, "student,q2-answer\nzoe@x.edu,6\njane@x.edu,4.5\n", form, roster)
+    completed = with_points(results_folder, "student,q2-answer\nzoe@x.edu,6\njane@x.edu,4.5\n", form, roster)
     assert completed.exit_code == 0, completed.output
-    assert column(assessed / "out.csv", name) == marks
+    assert column(results_folder / "out.csv", name) == marks
 
 
 @pytest.mark.promise("with `--roster`, by anything in the roster")
-def test_students_are_named_by_anything_in_the_roster(assessed: Path) -> None:
-    completed = with_points(assessed, "student,q2-answer\nZoë  müller,6\nParticipant 102,0\nBob Roe,\n")
+def test_students_are_named_by_anything_in_the_roster(results_folder: Path) -> None:
+    completed = with_points(results_folder, "student,q2-answer\nZoë  müller,6\nParticipant 102,0\nBob Roe,\n")
     assert completed.exit_code == 0, completed.output
-    assert column(assessed / "out.csv", "Grade") == ["52.00", "46.00", ""]
+    assert column(results_folder / "out.csv", "Grade") == ["52.00", "46.00", ""]
 
 
 @pytest.mark.promise("A student who has not been marked yet has no mark, is listed, and the exit status is 1.")
-def test_a_student_who_has_not_been_marked_yet_gets_no_mark_and_is_listed(assessed: Path) -> None:
+def test_a_student_who_has_not_been_marked_yet_gets_no_mark_and_is_listed(results_folder: Path) -> None:
     for text in ("student,q2-answer\nzoe@x.edu,6\n", "student,q2-answer\nzoe@x.edu,6\njane@x.edu,\n"):
-        completed = with_points(assessed, text)
+        completed = with_points(results_folder, text)
         assert completed.exit_code == 1
         assert "Left out: jane@x.edu: A person has not marked q2-answer yet." in completed.output
-        assert column(assessed / "out.csv", "Grade") == ["52.00", "", ""]
+        assert column(results_folder / "out.csv", "Grade") == ["52.00", "", ""]
 
 
-def test_points_and_the_comment_of_a_person_are_on_the_feedback_page_and_in_the_csv(assessed: Path) -> None:
-    (assessed / "manual.csv").write_text(
+def test_points_and_the_comment_of_a_person_are_on_the_feedback_page_and_in_the_csv(results_folder: Path) -> None:
+    (results_folder / "manual.csv").write_text(
         "student,q2-answer,q2-answer comment\nzoe@x.edu,4,<Where> is the QoS?\njane@x.edu,6,\n"
     )
-    manual = ("--manual", str(assessed / "manual.csv"))
-    assert export(assessed, "csv", *manual).exit_code == 0
-    assert column(assessed / "out.csv", "check q2-answer") == ["6.0", "4.0"]
-    assert column(assessed / "out.csv", "max_score") == ["52.0", "52.0"]
-    pages = ["export", str(assessed / "results"), "--format", "html", "--out", str(assessed / "pages"), *manual]
+    manual = ("--manual", str(results_folder / "manual.csv"))
+    assert export(results_folder, "csv", *manual).exit_code == 0
+    assert column(results_folder / "out.csv", "check q2-answer") == ["6.0", "4.0"]
+    assert column(results_folder / "out.csv", "max_score") == ["52.0", "52.0"]
+    pages = [
+        "export",
+        str(results_folder / "results"),
+        "--format",
+        "html",
+        "--out",
+        str(results_folder / "pages"),
+        *manual,
+    ]
     assert CliRunner().invoke(group, pages).exit_code == 0
-    page = (assessed / "pages" / "zoe@x.edu" / "feedback.html").read_text(encoding="utf-8")
+    page = (results_folder / "pages" / "zoe@x.edu" / "feedback.html").read_text(encoding="utf-8")
     assert "&lt;Where&gt; is the QoS?" in page
     assert "of 52 points" in page
 
 
 @pytest.mark.promise("`--manual` works here, too: students who have not been marked yet are left out.")
-def test_the_zip_of_feedback_has_the_points_of_a_person_and_leaves_out_students_without_them(assessed: Path) -> None:
-    completed = with_points(assessed, "student,q2-answer\nzoe@x.edu,6\n", "moodle-feedback")
+def test_the_zip_of_feedback_has_the_points_of_a_person_and_leaves_out_students_without_them(
+    results_folder: Path,
+) -> None:
+    completed = with_points(results_folder, "student,q2-answer\nzoe@x.edu,6\n", "moodle-feedback")
     assert completed.exit_code == 1
     assert "Left out: jane@x.edu: A person has not marked q2-answer yet." in completed.output
-    with zipfile.ZipFile(assessed / "out.csv") as archive:
+    with zipfile.ZipFile(results_folder / "out.csv") as archive:
         assert archive.namelist() == ["Zoë Müller_101_assignsubmission_file_/feedback.html"]
         assert "of 52 points" in archive.read(archive.namelist()[0]).decode()
 
 
-def test_without_the_option_the_missing_points_are_named(assessed: Path) -> None:
-    completed = export(assessed, "csv")
+def test_without_the_option_the_missing_points_are_named(results_folder: Path) -> None:
+    completed = export(results_folder, "csv")
     assert completed.exit_code == 0
     assert "09_assessment has 6 points that a person gives (q2-answer), which are missing here" in completed.output
 
@@ -151,13 +161,13 @@ def test_without_the_option_the_missing_points_are_named(assessed: Path) -> None
     ],
 )
 def test_a_wrong_table_of_points_is_an_error_that_names_the_line_and_writes_nothing(
-    assessed: Path, text: str, reason: str
+    results_folder: Path, text: str, reason: str
 ) -> None:
-    completed = with_points(assessed, text)
+    completed = with_points(results_folder, text)
     assert isinstance(completed.exception, UsageError)
     with pytest.raises(UsageError, match=reason):
         raise completed.exception
-    assert not (assessed / "out.csv").exists()
+    assert not (results_folder / "out.csv").exists()
 
 
 def test_an_assignment_without_manual_cells_accepts_no_table_of_points(tmp_path: Path, make_result: MakeResult) -> None:
@@ -168,30 +178,38 @@ def test_an_assignment_without_manual_cells_accepts_no_table_of_points(tmp_path:
 
 
 @pytest.mark.promise("`--dry-run` writes nothing and lists")
-def test_a_dry_run_lists_the_marks_and_writes_nothing(assessed: Path, make_result: MakeResult) -> None:
-    write_json(assessed / "results" / "eve" / "result.json", make_result("eve", assignment="09_assessment").to_json())
+def test_a_dry_run_lists_the_marks_and_writes_nothing(results_folder: Path, make_result: MakeResult) -> None:
+    write_json(
+        results_folder / "results" / "eve" / "result.json", make_result("eve", assignment="09_assessment").to_json()
+    )
     text = WORKSHEET.replace("jane@x.edu,Submitted,,", "jane@x.edu,Submitted,12.00,")
-    (assessed / "worksheet.csv").write_text(text, encoding="utf-8")
-    (assessed / "manual.csv").write_text("student,q2-answer\nzoe@x.edu,6\njane@x.edu,3\neve,1\n")
-    before = sorted(assessed.rglob("*"))
-    options = ("--roster", str(assessed / "worksheet.csv"), "--manual", str(assessed / "manual.csv"), "--dry-run")
-    completed = export(assessed, "moodle", *options)
+    (results_folder / "worksheet.csv").write_text(text, encoding="utf-8")
+    (results_folder / "manual.csv").write_text("student,q2-answer\nzoe@x.edu,6\njane@x.edu,3\neve,1\n")
+    before = sorted(results_folder.rglob("*"))
+    options = (
+        "--roster",
+        str(results_folder / "worksheet.csv"),
+        "--manual",
+        str(results_folder / "manual.csv"),
+        "--dry-run",
+    )
+    completed = export(results_folder, "moodle", *options)
     assert completed.exit_code == 1
     rows = [line.split() for line in completed.output.splitlines()]
     assert ["zoe@x.edu", "52.00"] in rows
     assert ["jane@x.edu", "12.00", "49.00"] in rows
     assert "Nothing was written." in completed.output
-    assert sorted(assessed.rglob("*")) == before
+    assert sorted(results_folder.rglob("*")) == before
     for form in ("csv", "html", "gradescope", "junit", "markdown"):
-        completed = export(assessed, form, *options)
-        assert (completed.exit_code, sorted(assessed.rglob("*"))) == (0, before), form
+        completed = export(results_folder, form, *options)
+        assert (completed.exit_code, sorted(results_folder.rglob("*"))) == (0, before), form
         assert ["zoe@x.edu", "52"] in [line.split() for line in completed.output.splitlines()]
 
 
-def test_points_of_a_person_give_no_mark_to_an_ungraded_result(assessed: Path, make_result: MakeResult) -> None:
+def test_points_of_a_person_give_no_mark_to_an_ungraded_result(results_folder: Path, make_result: MakeResult) -> None:
     broken = make_result("jane@x.edu", assignment="09_assessment", status=Status.NOT_GRADED, checks=())
-    write_json(assessed / "results" / "jane@x.edu" / "result.json", broken.to_json())
-    completed = with_points(assessed, "student,q2-answer\nzoe@x.edu,6\njane@x.edu,6\n")
+    write_json(results_folder / "results" / "jane@x.edu" / "result.json", broken.to_json())
+    completed = with_points(results_folder, "student,q2-answer\nzoe@x.edu,6\njane@x.edu,6\n")
     assert completed.exit_code == 1
     assert "Left out: jane@x.edu: not graded" in completed.output
-    assert column(assessed / "out.csv", "Grade") == ["52.00", "", ""]
+    assert column(results_folder / "out.csv", "Grade") == ["52.00", "", ""]

@@ -95,7 +95,7 @@ class Machine:
 
 
 @pytest.fixture(scope="module")
-def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def course_copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the course and of the grader. Each test keeps its results elsewhere, and leaves the copy usable."""
     root = tmp_path_factory.mktemp("course")
     for name in ("autograder", "sim", "assets/worlds", f"chapters/{CHAPTER}"):
@@ -107,8 +107,8 @@ def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def machine(copied: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Machine:
-    copy = Machine(copied)
+def machine(course_copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Machine:
+    copy = Machine(course_copy)
     module = copy.root / "autograder/notebook/kept_results.py"
     course = Course(copy.root, "a-copy", "A copy", checks="autograder/checks", worlds="assets/worlds")
     monkeypatch.setattr(course_paths, "ROOT", copy.root)

@@ -22,7 +22,7 @@ signal.pause()
 
 
 @pytest.fixture
-def ws(tmp_path: Path) -> Path:
+def workspace(tmp_path: Path) -> Path:
     return tmp_path
 
 
@@ -31,79 +31,85 @@ def is_alive(pid: int) -> bool:
     return stat.exists() and stat.read_text().rpartition(")")[2].split()[0] != "Z"
 
 
-def test_a_command_runs_to_its_end_and_prints_both_its_streams(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    shell("echo out; echo error >&2", workspace=ws)
+def test_a_command_runs_to_its_end_and_prints_both_its_streams(
+    workspace: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shell("echo out; echo error >&2", workspace=workspace)
     assert capsys.readouterr().out == "out\nerror\n"
 
 
-def test_a_failed_command_shows_its_exit_status(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    shell("exit 3", workspace=ws)
+def test_a_failed_command_shows_its_exit_status(workspace: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shell("exit 3", workspace=workspace)
     assert capsys.readouterr().out == "[exit status 3]\n"
 
 
 def test_a_command_that_does_not_end_is_interrupted_after_its_time(
-    ws: Path, capsys: pytest.CaptureFixture[str]
+    workspace: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    shell("trap 'echo interrupted; exit 0' INT; echo up; while true; do sleep 0.1; done", seconds=1.0, workspace=ws)
+    shell(
+        "trap 'echo interrupted; exit 0' INT; echo up; while true; do sleep 0.1; done", seconds=1.0, workspace=workspace
+    )
     assert capsys.readouterr().out == "up\n[Ctrl-C after 1 s]\ninterrupted\n"
 
 
-def test_a_built_workspace_is_sourced(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (ws / "install").mkdir()
-    (ws / "install" / "local_setup.bash").write_text("export WORD=sourced\n")
-    shell("echo $WORD", workspace=ws)
+def test_a_built_workspace_is_sourced(workspace: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (workspace / "install").mkdir()
+    (workspace / "install" / "local_setup.bash").write_text("export WORD=sourced\n")
+    shell("echo $WORD", workspace=workspace)
     assert capsys.readouterr().out == "sourced\n"
 
 
-def test_a_build_of_unwritten_files_is_not_run(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_build_of_unwritten_files_is_not_run(workspace: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name in ("mine", "given"):
-        (ws / "src" / name).mkdir(parents=True)
-    (ws / "src" / "mine" / "setup.py").write_text(f"raise NotImplementedError('{STILL_TO_BE_WRITTEN}')\n")
+        (workspace / "src" / name).mkdir(parents=True)
+    (workspace / "src" / "mine" / "setup.py").write_text(f"raise NotImplementedError('{STILL_TO_BE_WRITTEN}')\n")
     for command in ("colcon build", "X=1 colcon --log-level error build --packages-select given mine | tail -n 1"):
-        shell(f"true && {command}", workspace=ws)
+        shell(f"true && {command}", workspace=workspace)
         output = capsys.readouterr().out
         assert (
             output
             == "src/mine/setup.py is still to be written: replace the line raise NotImplementedError(...) with yours.\n"
         )
     for command in ("echo colcon build --packages-select given", "echo colcon test"):
-        shell(command, workspace=ws)
+        shell(command, workspace=workspace)
         assert capsys.readouterr().out == command.removeprefix("echo ") + "\n"
 
 
 def test_a_command_runs_without_pythondontwritebytecode(
-    ws: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    workspace: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
-    shell('echo "[$PYTHONDONTWRITEBYTECODE]"', workspace=ws)
+    shell('echo "[$PYTHONDONTWRITEBYTECODE]"', workspace=workspace)
     assert capsys.readouterr().out == "[]\n"
 
 
-def test_the_courses_own_commands_are_found(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    shell("ros2 --help | head -1", workspace=ws)
+def test_the_courses_own_commands_are_found(workspace: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shell("ros2 --help | head -1", workspace=workspace)
     assert "usage: ros2" in capsys.readouterr().out
 
 
 def test_the_block_begins_after_the_awaited_text_and_ctrl_c_ends_the_command(
-    ws: Path, capsys: pytest.CaptureFixture[str]
+    workspace: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with running("echo $$; echo ready; sleep 600", until="ready", workspace=ws):
+    with running("echo $$; echo ready; sleep 600", until="ready", workspace=workspace):
         pid = int(capsys.readouterr().out.split()[0])
         assert is_alive(pid)
     assert not is_alive(pid)
 
 
-def test_a_block_that_starts_without_the_awaited_text_reports_it(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    with running("echo up; sleep 600", until=["up", "ready", "set"], seconds=0.5, workspace=ws):
+def test_a_block_that_starts_without_the_awaited_text_reports_it(
+    workspace: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with running("echo up; sleep 600", until=["up", "ready", "set"], seconds=0.5, workspace=workspace):
         assert capsys.readouterr().out == "up\n[not printed within 0.5 s: 'ready', 'set']\n"
-    with running("echo up; exit 3", until="ready", workspace=ws):
+    with running("echo up; exit 3", until="ready", workspace=workspace):
         pass
     assert capsys.readouterr().out == "up\n[exit status 3]\n"
 
 
-def test_a_block_that_raises_leaves_nothing_running(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_block_that_raises_leaves_nothing_running(workspace: Path, capsys: pytest.CaptureFixture[str]) -> None:
     def fail() -> None:
-        with running("echo $$; sleep 600", until="\n", workspace=ws):
+        with running("echo $$; sleep 600", until="\n", workspace=workspace):
             raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
@@ -112,22 +118,22 @@ def test_a_block_that_raises_leaves_nothing_running(ws: Path, capsys: pytest.Cap
 
 
 def test_a_command_that_ignores_ctrl_c_is_killed_and_reported(
-    ws: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    workspace: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(terminal, "STOP_SECONDS", 0.5)
-    with running(STUBBORN, until="up", workspace=ws):
+    with running(STUBBORN, until="up", workspace=workspace):
         pass
     assert "after Ctrl-C: killed]" in capsys.readouterr().out
 
 
 def test_no_command_runs_while_the_notebook_is_graded(
-    ws: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    workspace: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(GRADING_VARIABLE, "1")
-    shell(f"touch {ws / 'one'}", workspace=ws)
-    with running(f"touch {ws / 'two'}", workspace=ws):
+    shell(f"touch {workspace / 'one'}", workspace=workspace)
+    with running(f"touch {workspace / 'two'}", workspace=workspace):
         pass
-    assert list(ws.iterdir()) == []
+    assert list(workspace.iterdir()) == []
     assert capsys.readouterr().out == 2 * f"{terminal.NOT_WHILE_GRADING}\n"
 
 

@@ -53,7 +53,7 @@ def recording() -> Recording:
 
 
 @pytest.fixture
-def saved(recording: Recording, tmp_path: Path) -> Path:
+def saved_path(recording: Recording, tmp_path: Path) -> Path:
     path = tmp_path / "run.npz"
     recording.save(path)
     return path
@@ -76,17 +76,17 @@ def test_a_failed_lidar_leaves_no_scan_in_the_recording(recording: Recording) ->
     assert recording.scans[1].ranges.shape == (0, 0)
 
 
-def test_a_saved_recording_loads_to_the_same_bits(recording: Recording, saved: Path) -> None:
-    loaded = load_recording(saved)
+def test_a_saved_recording_loads_to_the_same_bits(recording: Recording, saved_path: Path) -> None:
+    loaded = load_recording(saved_path)
     assert loaded.sha256() == recording.sha256()
     assert loaded.events == recording.events
     assert loaded.simulation.robots == recording.simulation.robots
-    assert saved.stat().st_size < 120_000
+    assert saved_path.stat().st_size < 120_000
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_replay_computes_every_state_again(recording: Recording, saved: Path, engine: Any) -> None:
-    states = list(replay(load_recording(saved), engine=engine))
+def test_a_replay_computes_every_state_again(recording: Recording, saved_path: Path, engine: Any) -> None:
+    states = list(replay(load_recording(saved_path), engine=engine))
     poses = [[(r.pose.x, r.pose.y, r.pose.theta) for r in state.robots] for state in states]
     np.testing.assert_array_equal(np.array(poses), recording.poses)
     assert [state.time_ns for state in states] == recording.times_ns.tolist()
@@ -148,39 +148,41 @@ def test_a_missing_file_and_a_file_of_another_kind_are_named(tmp_path: Path) -> 
         ("tick", "soon"),
     ],
 )
-def test_a_recording_that_no_run_can_produce_is_refused(saved: Path, field: str, change: object) -> None:
-    with np.load(saved) as file:
+def test_a_recording_that_no_run_can_produce_is_refused(saved_path: Path, field: str, change: object) -> None:
+    with np.load(saved_path) as file:
         arrays = dict(file)
     header = json.loads(arrays["header"].tobytes())
     description = json.loads(header["simulation"])
     description[field] = change
     header["simulation"] = json.dumps(description)
     arrays["header"] = np.frombuffer(json.dumps(header).encode(), dtype=np.uint8)
-    np.savez(saved, **arrays)
+    np.savez(saved_path, **arrays)
     with pytest.raises(RecordingError, match="the description of the run is damaged"):
-        load_recording(saved)
+        load_recording(saved_path)
 
 
 @pytest.mark.parametrize("column", ["poses", "times_ns", "scan0_ranges"])
-def test_a_recording_whose_columns_do_not_match_is_refused(saved: Path, column: str) -> None:
-    with np.load(saved) as file:
+def test_a_recording_whose_columns_do_not_match_is_refused(saved_path: Path, column: str) -> None:
+    with np.load(saved_path) as file:
         arrays = dict(file)
     arrays[column] = arrays[column][:-1]
-    np.savez(saved, **arrays)
+    np.savez(saved_path, **arrays)
     with pytest.raises(RecordingError, match=r"the column .* has the shape"):
-        load_recording(saved)
+        load_recording(saved_path)
 
 
 @settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(share=st.floats(0, 1), value=st.integers(0, 255), cut=st.booleans())
-def test_a_damaged_file_is_a_recording_error_and_nothing_else(saved: Path, share: float, value: int, cut: bool) -> None:
-    data = bytearray(saved.read_bytes())
+def test_a_damaged_file_is_a_recording_error_and_nothing_else(
+    saved_path: Path, share: float, value: int, cut: bool
+) -> None:
+    data = bytearray(saved_path.read_bytes())
     offset = int(share * (len(data) - 1))
     if cut:
         del data[offset:]
     else:
         data[offset] = value
-    damaged = saved.with_name("damaged.npz")
+    damaged = saved_path.with_name("damaged.npz")
     damaged.write_bytes(data)
     try:
         rows = len(load_recording(damaged))

@@ -52,7 +52,7 @@ def test_every_started_program_has_an_explicit_working_folder() -> None:
 
 
 @pytest.fixture
-def trapped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def import_mark(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Enter a folder in which every module leaves a mark when it is imported; return the path of the mark."""
     mark = tmp_path / "imported"
     folder = tmp_path / "submission"
@@ -64,16 +64,16 @@ def trapped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_the_list_of_fonts_is_made_without_modules_of_the_present_folder(
-    trapped: Path, monkeypatch: pytest.MonkeyPatch
+    import_mark: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(trapped.parent / "cache"))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(import_mark.parent / "cache"))
     cache = warm_caches.fonts.__wrapped__()
     assert cache is not None
-    assert cache.is_relative_to(trapped.parent / "cache")
-    assert not trapped.exists()
+    assert cache.is_relative_to(import_mark.parent / "cache")
+    assert not import_mark.exists()
 
 
-def test_the_doctor_starts_a_node_without_modules_of_the_present_folder(trapped: Path) -> None:
+def test_the_doctor_starts_a_node_without_modules_of_the_present_folder(import_mark: Path) -> None:
     finding = doctor_ros.start(System(), find())
     assert finding.state == "a node starts, publishes and stops"
-    assert not trapped.exists()
+    assert not import_mark.exists()

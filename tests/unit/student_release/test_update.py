@@ -42,7 +42,7 @@ def release(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def newer(tmp_path: Path) -> Path:
+def newer_release(tmp_path: Path) -> Path:
     files = {name: f"{text}, mended" for name, text in FIRST.items() if "gone" not in name and "03_" not in name}
     cells = {"title": "# Nodes", "new": "a hint", "old": "no mistake", "exercise": "# YOUR CODE HERE, please"}
     return write_release(tmp_path / "newer", {**files, "sim/added.py": "new"}, cells, "2")
@@ -63,10 +63,10 @@ def write(release: Path, answer: str) -> None:
 
 
 @pytest.mark.promise("The command replaces everything that they have not changed, down to single cells of a notebook,")
-def test_unchanged_files_become_those_of_the_later_release(release: Path, newer: Path) -> None:
-    update_release(release, newer)
-    for name in read_manifest(newer).files:
-        assert (release / name).read_bytes() == (newer / name).read_bytes(), name
+def test_unchanged_files_become_those_of_the_later_release(release: Path, newer_release: Path) -> None:
+    update_release(release, newer_release)
+    for name in read_manifest(newer_release).files:
+        assert (release / name).read_bytes() == (newer_release / name).read_bytes(), name
     assert not (release / "sim/gone.py").exists()
     assert read_manifest(release).version == "2"
 
@@ -76,9 +76,9 @@ def test_unchanged_files_become_those_of_the_later_release(release: Path, newer:
     "It keeps files and cells in `chapters` that they wrote.",
     "The command lists each file there that it did not update",
 )
-def test_files_and_cells_that_a_student_wrote_are_kept(release: Path, newer: Path) -> None:
+def test_files_and_cells_that_a_student_wrote_are_kept(release: Path, newer_release: Path) -> None:
     write(release, "my answer")
-    update = update_release(release, newer)
+    update = update_release(release, newer_release)
     assert (update.kept, update.set_aside) == ([GIVEN], {})
     assert NOTEBOOK in update.written
     assert [(cell.id, cell.source) for cell in read(release).cells] == [
@@ -92,40 +92,40 @@ def test_files_and_cells_that_a_student_wrote_are_kept(release: Path, newer: Pat
     assert (release / "chapters/02_nodes/ws/src/robot/node.py").read_text() == "to do, mended"
 
 
-def test_kept_files_and_cells_are_kept_at_the_next_update(release: Path, newer: Path) -> None:
+def test_kept_files_and_cells_are_kept_at_the_next_update(release: Path, newer_release: Path) -> None:
     write(release, "my answer")
-    update_release(release, newer)
+    update_release(release, newer_release)
     before = [cell.source for cell in read(release).cells]
-    assert update_release(release, newer).kept == [GIVEN]
+    assert update_release(release, newer_release).kept == [GIVEN]
     assert [cell.source for cell in read(release).cells] == before
 
 
 @pytest.mark.promise(
     "your version is kept with the suffix `.yours`", "Elsewhere, it keeps a file that they changed beside the new one."
 )
-def test_a_changed_file_of_the_course_is_set_aside(release: Path, newer: Path) -> None:
+def test_a_changed_file_of_the_course_is_set_aside(release: Path, newer_release: Path) -> None:
     (release / "sim/world.py").write_text("mine")
     (release / "sim/world.py.yours").write_text("of the update before")
-    update = update_release(release, newer)
+    update = update_release(release, newer_release)
     assert update.set_aside == {"sim/world.py": "sim/world.py.yours1"}
     assert (release / "sim/world.py").read_text() == "one, mended"
     assert (release / "sim/world.py.yours").read_text() == "of the update before"
     assert (release / "sim/world.py.yours1").read_text() == "mine"
     assert "sim/world.py" in update.written
-    assert not update_release(release, newer).written
+    assert not update_release(release, newer_release).written
 
 
-def test_a_chapter_that_is_missing_in_the_later_release_stays(release: Path, newer: Path) -> None:
-    update_release(release, newer)
+def test_a_chapter_that_is_missing_in_the_later_release_stays(release: Path, newer_release: Path) -> None:
+    update_release(release, newer_release)
     other = "chapters/03_interfaces/notes.md"
     assert (release / other).is_file()
     assert other in read_manifest(release).files  # a release after that can still update it
 
 
 def test_an_older_release_and_a_folder_that_is_not_a_release_are_rejected(
-    release: Path, newer: Path, tmp_path: Path
+    release: Path, newer_release: Path, tmp_path: Path
 ) -> None:
     with pytest.raises(UsageError, match="has version 1, but the release here is newer, 2"):
-        update_release(newer, release)
+        update_release(newer_release, release)
     with pytest.raises(UsageError, match="is not a release of the course"):
         update_release(release, tmp_path)

@@ -30,7 +30,7 @@ def workspace(tmp_path: Path) -> Workspace:
 
 
 @pytest.fixture
-def ordered(monkeypatch: pytest.MonkeyPatch) -> list[TestRun]:
+def ordered_runs(monkeypatch: pytest.MonkeyPatch) -> list[TestRun]:
     """The ordered runs; each is reported to pass."""
     orders: list[TestRun] = []
 
@@ -44,47 +44,49 @@ def ordered(monkeypatch: pytest.MonkeyPatch) -> list[TestRun]:
 
 @pytest.mark.parametrize("checks", [("slow",), ("limits_pass", "limits_right", "slow")], ids=len)
 def test_only_the_runs_that_a_check_needs_are_executed(
-    workspace: Workspace, ordered: list[TestRun], checks: tuple[str, ...]
+    workspace: Workspace, ordered_runs: list[TestRun], checks: tuple[str, ...]
 ) -> None:
     examination = Examination(workspace, 1, frozenset(checks))
     assert set(examination.runs) == {
         (LIMITS, purpose) for purpose in ("second", "reworded", "backwards", "step", "smooth")
     }
-    assert {order.files for order in ordered} == {(LIMITS,)}
-    assert len(ordered) == 6
+    assert {order.files for order in ordered_runs} == {(LIMITS,)}
+    assert len(ordered_runs) == 6
 
 
-def test_all_checks_together_run_every_faulty_version(workspace: Workspace, ordered: list[TestRun]) -> None:
+def test_all_checks_together_run_every_faulty_version(workspace: Workspace, ordered_runs: list[TestRun]) -> None:
     examination = Examination(workspace, 1, frozenset(FILES))
     assert {purpose for _, purpose in examination.runs} == {fault.id for fault in faults()} | {
         "second",
         "reworded",
         "backwards",
     }
-    assert [order.files[0] for order in ordered[:3]] == [LIMITS, GUARD, LAUNCH]
-    assert [order.files[0] for order in ordered if order.sniffed] == [GUARD]
+    assert [order.files[0] for order in ordered_runs[:3]] == [LIMITS, GUARD, LAUNCH]
+    assert [order.files[0] for order in ordered_runs if order.sniffed] == [GUARD]
 
 
-def test_one_check_that_looks_at_all_files_runs_all_of_them(workspace: Workspace, ordered: list[TestRun]) -> None:
+def test_one_check_that_looks_at_all_files_runs_all_of_them(workspace: Workspace, ordered_runs: list[TestRun]) -> None:
     for check in ("as_given", "colcon", "linters", "ends"):
         assert set(Examination(workspace, 1, frozenset((check,))).trial) == {LIMITS, GUARD, LAUNCH}
 
 
-def test_a_run_does_not_depend_on_which_other_runs_are_made(workspace: Workspace, ordered: list[TestRun]) -> None:
+def test_a_run_does_not_depend_on_which_other_runs_are_made(workspace: Workspace, ordered_runs: list[TestRun]) -> None:
     def versions(*checks: str) -> list[TestRun]:
-        ordered.clear()
+        ordered_runs.clear()
         assert Examination(workspace, 1, frozenset(checks)).runs
-        return list(ordered)
+        return list(ordered_runs)
 
     few_runs = versions("limits_pass", "limits_right", "stop")
     many_runs = versions("limits_pass", "limits_right", "stop", "slow", "refused")
     assert all(order in many_runs for order in few_runs)
 
 
-def test_correct_and_faulty_versions_are_shuffled_for_each_seed(workspace: Workspace, ordered: list[TestRun]) -> None:
+def test_correct_and_faulty_versions_are_shuffled_for_each_seed(
+    workspace: Workspace, ordered_runs: list[TestRun]
+) -> None:
     orders = {tuple(Examination(workspace, seed, frozenset(FILES)).runs) for seed in range(5)}
     assert len(orders) == 5
-    assert len(ordered) > 5 * len(faults())
+    assert len(ordered_runs) > 5 * len(faults())
 
 
 Verdict = Callable[[TestRun, str], bool]  # whether a test, by its name, fails in a run
