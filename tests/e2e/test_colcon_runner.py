@@ -72,7 +72,7 @@ def build(workspace: Workspace, profile: str | None) -> tuple[int | None, str]:
         return process.returncode, process.output
 
 
-def builds(scratch: Path, packages: list[list[str]]) -> list[dict[str, Any]]:
+def build_both_ways(scratch: Path, packages: list[list[str]]) -> list[dict[str, Any]]:
     """Build packages, each with its lines, started and forked; return the outcome of each build."""
     workspace = Workspace(scratch / "ws", environment.find(), scratch / "home")
     for package, *lines in packages:
@@ -111,7 +111,7 @@ def digests(folder: Path) -> dict[str, list[Any]]:
 
 
 def test_reference_packages_are_installed_alike_by_a_forked_and_a_started_colcon() -> None:
-    started, forked = in_worker_sandbox(builds, [["my_robot_package"], ["my_robot_bringup"], ["speed_guard"]])
+    started, forked = in_worker_sandbox(build_both_ways, [["my_robot_package"], ["my_robot_bringup"], ["speed_guard"]])
     assert (started["status"], forked["status"]) == (0, 0), forked["output"]
     assert len(started["installed"]) > 100
     assert forked["installed"] == started["installed"]
@@ -119,7 +119,7 @@ def test_reference_packages_are_installed_alike_by_a_forked_and_a_started_colcon
 
 
 def test_a_setup_py_sees_the_same_in_a_forked_and_a_started_colcon() -> None:
-    outcomes = in_worker_sandbox(builds, [["speed_guard", SPY]])
+    outcomes = in_worker_sandbox(build_both_ways, [["speed_guard", SPY]])
     for outcome in outcomes:
         assert outcome["status"] == 0, outcome["output"]
         assert "a line on stderr" in outcome["output"]
@@ -153,7 +153,7 @@ def test_a_setup_py_sees_the_same_in_a_forked_and_a_started_colcon() -> None:
     ],
 )
 def test_a_failing_setup_py_is_reported_alike_by_a_forked_and_a_started_colcon(line: str) -> None:
-    started, forked = in_worker_sandbox(builds, [["speed_guard", "import os, sys", line]])
+    started, forked = in_worker_sandbox(build_both_ways, [["speed_guard", "import os, sys", line]])
     assert started["status"] != 0
     assert forked["status"] == started["status"]
     assert relevant_lines(forked["output"]) ^ relevant_lines(started["output"]) == set()

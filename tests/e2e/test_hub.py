@@ -66,7 +66,7 @@ def submit(student: User, *, flawed: bool) -> list[str]:
     return report.split()
 
 
-def outside_the_hub(student: User, *arguments: str) -> str:
+def run_outside_the_hub(student: User, *arguments: str) -> str:
     """Run autograder as the student, as after a login by SSH; return its output."""
     command = [str(Path(sys.executable).with_name("autograder")), *arguments]
     environment = {"PATH": os.defpath, "HOME": str(student.hub.homes / student.name)}
@@ -87,7 +87,7 @@ def check_a_class(hub: Hub, *, with_reference: bool) -> None:
     folder, domain, can_write = submit(ben, flawed=True)
     assert (folder, can_write) == (ASSIGNMENT, "False")
     assert ben.in_terminal("printenv ROS_DOMAIN_ID") == domain
-    assert outside_the_hub(ben, "ros", "printenv", "ROS_DOMAIN_ID") == domain
+    assert run_outside_the_hub(ben, "ros", "printenv", "ROS_DOMAIN_ID") == domain
     assert ben.in_terminal("type -t autograder ros2 colcon | sort -u") == "file"
     assert ada.in_terminal("printenv ROS_DOMAIN_ID") != domain
     if with_reference:

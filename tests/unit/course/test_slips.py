@@ -220,11 +220,11 @@ def slip(course: Path, file: str, text: str | None, replacement: str) -> Callabl
 def test_a_slip_is_reported_with_its_file_and_line(
     course: Path, check: CheckCourse, file: str, text: str | None, replacement: str, line: str, message: str
 ) -> None:
-    undo = slip(course, file, text, replacement)
+    revert = slip(course, file, text, replacement)
     try:
         output = check()
     finally:
-        undo()
+        revert()
     reported_file = course / file if file == "course.yaml" else file
     assert f"\n{reported_file}:{line}: {message}" in output
     assert output.endswith(f"\n{END} 1")

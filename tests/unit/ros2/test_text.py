@@ -43,9 +43,9 @@ def test_nested_interfaces_unfold_below_their_field() -> None:
 
 
 def test_comments_can_be_kept_everywhere_or_nowhere() -> None:
-    every = list(unfold("a_msgs/msg/Outer", INTERFACES.__getitem__, nested_comments=True))
-    assert "\t# Hidden." in every
-    assert "\tfloat64 x # metres" in every
+    with_all_comments = list(unfold("a_msgs/msg/Outer", INTERFACES.__getitem__, nested_comments=True))
+    assert "\t# Hidden." in with_all_comments
+    assert "\tfloat64 x # metres" in with_all_comments
     without_comments = list(unfold("a_msgs/msg/Outer", INTERFACES.__getitem__, comments=False))
     assert without_comments[0] == "Inner inner"
     assert "string<=5 name 'a # b'" in without_comments
