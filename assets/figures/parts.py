@@ -1,6 +1,6 @@
-"""Draw the parts of the autograder and a submission's way through them: `python assets/figures/parts.py`.
+"""Draw the parts of the autograder and a submission's path through them: `python assets/figures/parts.py`.
 
-`parts.yaml` says what is drawn. The same text gives the same bytes.
+`parts.yaml` contains the parts. The same text gives the same bytes.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ import yaml
 HERE = Path(__file__).parent
 SOURCE, PICTURE = HERE / "parts.yaml", HERE / "parts.svg"
 
-# In pixels: the distance of two boxes' corners, and a box.
+# In pixels: the distance between the corners of neighbouring boxes, and the size of a box.
 COLUMN, ROW = 192, 92
 WIDTH, HEIGHT = 164, 64
 MARGIN = 14
 STEP = 9  # the radius of a step's number
 HEAD = f"""<svg xmlns="http://www.w3.org/2000/svg" width="%d" height="%d" viewBox="0 0 %d %d" font-family="sans-serif">
-<title>The parts of the autograder and a submission's way through them</title>
+<title>The parts of the autograder and a submission's path through them</title>
 <style>
 text {{ font-size: 11px; fill: #222 }} .name {{ font-size: 13px; font-weight: bold }}
 .sandbox {{ font-size: 10px; fill: #a33b00; font-style: italic }}
@@ -34,7 +34,7 @@ text {{ font-size: 11px; fill: #222 }} .name {{ font-size: 13px; font-weight: bo
 
 
 def svg(source: Mapping[str, Any]) -> str:
-    """Return the picture of what `parts.yaml` says."""
+    """Return the picture of the content of `parts.yaml`."""
     packages, way = source["packages"], source["way"]
     columns, rows = (1 + max(part["at"][axis] for part in packages.values()) for axis in (0, 1))
     below = MARGIN + rows * ROW
@@ -43,14 +43,14 @@ def svg(source: Mapping[str, Any]) -> str:
     lines += [_arrow(*(packages[name]["at"] for name in arrow.split(" -> "))) for arrow in source["arrows"]]
     for name, part in packages.items():
         lines += _box(name, part)
-    x, y = _corner((columns - 1, 2))  # no box stands below the last one of the first rows
-    lines.append(_text(x, y + 14, "A submission's way", "name"))
+    x, y = _corner((columns - 1, 2))  # no box is below the last one of the first rows
+    lines.append(_text(x, y + 14, "A submission's steps", "name"))
     for number, step in enumerate(way, start=1):
         y += 44
         lines += _step(x + STEP, y - 4, number)
         lines += [_text(x + 24, y, step["step"], "name"), _text(x + 24, y + 15, step["does"])]
     lines.append(_text(x, y + 48, "in italics: runs in the sandbox", "sandbox"))
-    lines.append(_text(MARGIN, below + 8, "In one module each", "name"))
+    lines.append(_text(MARGIN, below + 8, "Single modules", "name"))
     numbers = {step["module"]: number for number, step in enumerate(way, start=1) if "module" in step}
     for index, (name, does) in enumerate(source["modules"].items()):
         x, y = MARGIN + 20 + index % 3 * 310, below + 30 + index // 3 * 20

@@ -1,4 +1,4 @@
-"""Makes robot.png, the README's picture: the reference controller drives a minute in the lab.
+"""Draws robot.png, the README's picture: the reference controller drives for a minute in the world `lab`.
 
 .venv/bin/python assets/figures/robot.py
 """

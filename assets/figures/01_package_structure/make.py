@@ -1,4 +1,4 @@
-"""Draw the figures of chapter 01_package_structure into its folder: run this file, or name another folder to it."""
+"""Draw the figures of chapter 01_package_structure into its folder, or into the folder given as argument."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MONO = {"family": "DejaVu Sans Mono", "fontsize": 9, "va": "center", "color": LI
 PLAIN = {"fontsize": 9, "va": "center", "color": LIGHT.ink}
 ROW = 0.5
 
-# Each file of a package, and who reads it.
+# Each file of a package, and the tools that read it.
 TREE = (
     ("square_dance/", ()),
     ("  package.xml", ("rosdep", "colcon")),
@@ -39,7 +39,7 @@ READERS = {
     "pytest": ("colcon test", "runs the tests", 9.8),
 }
 
-# What setup.py and setup.cfg send where.
+# The files that setup.py and setup.cfg install, and their destinations.
 MOVES = (
     ("square_dance/nodes/dancer.py", "packages=find_packages(...)", "lib/python3.X/site-packages/square_dance/..."),
     ("dancer = square_dance.nodes.dancer:main", "entry_points, and setup.cfg", "lib/square_dance/dancer"),
@@ -57,29 +57,29 @@ def readers() -> Figure:
     for row, (name, _) in enumerate(TREE):
         ys[name] = 10 * ROW - row * ROW
         ax.text(0.2, ys[name], name, **MONO)
-    for key, (title, what, place) in READERS.items():
-        y = 10 * ROW - place * ROW
+    for key, (title, description, row) in READERS.items():
+        y = 10 * ROW - row * ROW
         _box(ax, 9.0, y, 5.8, 0.78)
         ax.text(9.25, y + 0.16, title, **(PLAIN | {"weight": "bold", "color": LIGHT.robot}))
-        ax.text(9.25, y - 0.18, what, **PLAIN)
-        for name, who in TREE:
-            if key in who:
+        ax.text(9.25, y - 0.18, description, **PLAIN)
+        for name, tools in TREE:
+            if key in tools:
                 start = 0.35 + 0.137 * len(name)
                 ax.plot([start, 5.6, 8.95], [ys[name], ys[name], y], color=LIGHT.robot, lw=1.0, alpha=0.6)
     return figure
 
 
 def installed() -> Figure:
-    """Return what goes from src to install, and which line of setup.py or setup.cfg sends it there."""
+    """Return the files that go from src to install, each with the line of setup.py or setup.cfg that installs it."""
     figure, ax = _canvas(9.4, 3.6, (0.0, 20.0), (-0.5, 6.9 * 0.72))
     top = 6.2 * 0.72
     for x, text in ((0.2, "in src/square_dance"), (7.3, "is sent by"), (12.1, "to install/square_dance")):
         ax.text(x, top + 0.1, text, **(PLAIN | {"weight": "bold"}))
-    for row, (source, how, target) in enumerate(MOVES):
+    for row, (source, setting, target) in enumerate(MOVES):
         y = top - 0.72 * (row + 1)
         ax.text(0.2, y, source, **(MONO | {"fontsize": 8}))
         _box(ax, 7.1, y, 4.2, 0.5)
-        ax.text(7.3, y, how, **(PLAIN | {"color": LIGHT.robot}))
+        ax.text(7.3, y, setting, **(PLAIN | {"color": LIGHT.robot}))
         ax.annotate("", (12.0, y), (11.35, y), arrowprops={"arrowstyle": "->", "color": LIGHT.robot})
         ax.text(12.1, y, target, **(MONO | {"fontsize": 8}))
     return figure
@@ -108,7 +108,7 @@ def _box(ax: Axes, x: float, y: float, width: float, height: float) -> None:
 
 
 def main(folder: Path = FOLDER) -> None:
-    """Write each figure as SVG; the same code writes the same bytes."""
+    """Write each figure as SVG. The same code writes the same bytes."""
     folder.mkdir(parents=True, exist_ok=True)
     with matplotlib.rc_context(dict(STYLE)):
         for name, draw in (("readers", readers), ("installed", installed)):

@@ -22,7 +22,7 @@ WALLS = (((0.72, -0.62), (0.72, 0.38)), ((-0.5, 0.62), (0.45, 0.62)))
 
 
 def sector() -> Figure:
-    """Return the forward sector seen from above: which beams look forward, and which walls count."""
+    """Return the forward sector seen from above, with the beams in it and the walls that count."""
     figure = Figure(figsize=(7.6, 4.82), facecolor=LIGHT.paper)
     ax = figure.add_axes((0.01, 0.01, 0.98, 0.98))
     ax.set(xlim=(-1.72, 2.0), ylim=(-1.18, 1.18), aspect="equal")
@@ -45,7 +45,7 @@ def sector() -> Figure:
 
 
 def _beam(ax: Axes, bearing: float) -> None:
-    """Draw one beam to the first wall, or to nowhere; the ones that count are strong."""
+    """Draw one beam to the first wall, or at full length. Beams that count are drawn more strongly."""
     reach = min([1.0, *(r for r in (_range(wall, bearing) for wall in WALLS) if r is not None)])
     counts = abs(math.remainder(bearing, math.tau)) <= math.radians(HALF_SECTOR) + 1e-9
     colour, alpha = (LIGHT.hit, 1.0) if counts else (LIGHT.muted, 0.35)
@@ -63,8 +63,8 @@ def _range(wall: tuple[tuple[float, float], tuple[float, float]], bearing: float
     if abs(det) < 1e-12:
         return None
     distance = (start[1] * along[0] - start[0] * along[1]) / det
-    place = (ray[0] * start[1] - ray[1] * start[0]) / det
-    return float(distance) if distance > 0 and 0 <= place <= 1 else None
+    fraction = (ray[0] * start[1] - ray[1] * start[0]) / det
+    return float(distance) if distance > 0 and 0 <= fraction <= 1 else None
 
 
 def _labels(ax: Axes) -> None:
@@ -78,7 +78,7 @@ def _labels(ax: Axes) -> None:
 
 
 def main(folder: Path = FOLDER) -> None:
-    """Write each figure as SVG; the same code writes the same bytes."""
+    """Write each figure as SVG. The same code writes the same bytes."""
     folder.mkdir(parents=True, exist_ok=True)
     with matplotlib.rc_context(dict(STYLE)):
         sector().savefig(folder / "sector.svg", metadata={"Date": None, "Creator": None})

@@ -13,11 +13,11 @@ from matplotlib.patches import FancyBboxPatch
 from sim.view.theme import LIGHT, STYLE
 
 FOLDER = Path(__file__).parents[3] / "chapters" / "03_interfaces" / "figures"
-CLIENT, SERVER = 0.0, 6.0  # where the two life lines stand
+CLIENT, SERVER = 0.0, 6.0  # the positions of the two lifelines
 
 
 def generation() -> Figure:
-    """Return how a text becomes something that Python can import and DDS can carry."""
+    """Return the steps from a message definition to a Python class and its DDS type support."""
     figure, ax = _canvas(9.0, 2.5)
     _box(ax, 0.0, 0.0, 2.3, "RobotStatus.msg", "a text", LIGHT.robot)
     _box(ax, 3.4, 0.0, 2.6, "rosidl generators", "CMake calls them\nin colcon build", LIGHT.muted)
@@ -31,7 +31,7 @@ def generation() -> Figure:
 
 
 def action() -> Figure:
-    """Return what passes between the two ends of an action, from top to bottom."""
+    """Return the messages between the client and the server of an action, from top to bottom."""
     figure, ax = _canvas(7.6, 4.6)
     for x, name in ((CLIENT, "client"), (SERVER, "server")):
         ax.text(x, 0.55, name, ha="center", color=LIGHT.ink, fontsize=11, weight="bold")
@@ -45,9 +45,9 @@ def action() -> Figure:
         (-5.2, "cancel accepted", False, LIGHT.hit),
         (-6.6, "status CANCELED, and the result: 0.9 m", False, LIGHT.robot),
     )
-    for y, text, there, colour in messages:
+    for y, text, to_server, colour in messages:
         ends = ((CLIENT + 0.05, y), (SERVER - 0.05, y))
-        _arrow(ax, *(ends if there else ends[::-1]), colour)
+        _arrow(ax, *(ends if to_server else ends[::-1]), colour)
         ax.text((CLIENT + SERVER) / 2, y + 0.13, text, ha="center", va="bottom", color=colour, fontsize=9)
     ax.add_patch(FancyBboxPatch((SERVER - 0.1, -6.6), 0.2, 5.5, boxstyle="square,pad=0", fc=LIGHT.robot, ec="none"))
     ax.text(SERVER + 0.3, -3.8, "execute(goal_handle)\nruns all this time", va="center", color=LIGHT.ink, fontsize=9)
@@ -75,7 +75,7 @@ def _arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float], colou
 
 
 def main(folder: Path = FOLDER) -> None:
-    """Write each figure as SVG; the same code writes the same bytes."""
+    """Write each figure as SVG. The same code writes the same bytes."""
     folder.mkdir(parents=True, exist_ok=True)
     with matplotlib.rc_context(dict(STYLE)):
         for draw in (generation, action):

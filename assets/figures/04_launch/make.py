@@ -17,7 +17,7 @@ MONO = "DejaVu Sans Mono"
 
 
 def groups() -> Figure:
-    """Return two robots from one file: what each group pushes, and the one topic that they share."""
+    """Return two robots from one launch file: the namespace of each group, and the topic that both share."""
     figure = Figure(figsize=(8.6, 3.5), facecolor=LIGHT.paper)
     ax = figure.add_axes((0.01, 0.01, 0.98, 0.98))
     ax.set(xlim=(0, 8.6), ylim=(0, 3.5))
@@ -66,7 +66,7 @@ def _arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float], colou
 
 
 def main(folder: Path = FOLDER) -> None:
-    """Write each figure as SVG; the same code writes the same bytes."""
+    """Write each figure as SVG. The same code writes the same bytes."""
     folder.mkdir(parents=True, exist_ok=True)
     with matplotlib.rc_context(dict(STYLE)):
         groups().savefig(folder / "groups.svg", metadata={"Date": None, "Creator": None})

@@ -23,7 +23,7 @@ TOP, STEP, HEIGHT = 3.55, 0.95, 0.7
 
 
 def mutation() -> Figure:
-    """Return how mutation testing goes: the same tests on the code, and on copies with one fault each."""
+    """Return the idea of mutation testing: the same tests run on the code, and on copies with one fault each."""
     figure = Figure(figsize=(8.2, 4.2), facecolor=LIGHT.paper)
     ax = figure.add_axes((0.01, 0.01, 0.98, 0.98))
     ax.set(xlim=(0, 8.2), ylim=(0, 4.2))
@@ -51,7 +51,7 @@ def _arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float]) -> No
 
 
 def main(folder: Path = FOLDER) -> None:
-    """Write each figure as SVG; the same code writes the same bytes."""
+    """Write each figure as SVG. The same code writes the same bytes."""
     folder.mkdir(parents=True, exist_ok=True)
     with matplotlib.rc_context(dict(STYLE)):
         mutation().savefig(folder / "mutation.svg", metadata={"Date": None, "Creator": None})

@@ -19,7 +19,7 @@ HALF_HEIGHT = 0.24
 
 @dataclass(frozen=True)
 class Box:
-    """A node, or the robot, with the place of its middle."""
+    """A node or the robot, with the position of its centre."""
 
     name: str
     x: float
@@ -87,7 +87,7 @@ def _arrow(ax: Axes, points: list[tuple[float, float]], colour: str) -> None:
 
 
 def main(folder: Path = FOLDER) -> None:
-    """Write each figure as SVG; the same code writes the same bytes."""
+    """Write each figure as SVG. The same code writes the same bytes."""
     folder.mkdir(parents=True, exist_ok=True)
     with matplotlib.rc_context(dict(STYLE)):
         graph().savefig(folder / "graph.svg", metadata={"Date": None, "Creator": None})

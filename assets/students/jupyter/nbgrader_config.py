@@ -1,4 +1,4 @@
-"""Tells nbgrader which course this is, and where the class exchanges its work: the folder that a hub names."""
+"""Configures nbgrader: the name of the course, and the exchange folder that a hub sets."""
 
 import os
 
