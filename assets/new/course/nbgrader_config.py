@@ -1,10 +1,9 @@
 """Configures nbgrader, with this folder as the course directory.
 
 The isolated grader (`autograder.lms.nbgrader`) computes the scores, and nbgrader records them. `NBGRADER_EXCHANGE`
-names the exchange folder of a class. Without it the folder is `.build/exchange`.
+sets the exchange folder of a class, which is `.build/exchange` by default.
 
-`nbgrader autograde` grades one submission after the other. These commands grade a class on all cores, and then record
-the results:
+`nbgrader autograde` grades one submission at a time. These commands grade a class on 8 cores and record the scores:
 
     autograder grade submitted --assignment ID --out .build/nbgrader/ID -j 8
     nbgrader autograde ID

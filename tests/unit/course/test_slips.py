@@ -76,7 +76,7 @@ SLIPS = [
         "4",
         "`MODULES` is a string, not a tuple: write MODULES = ('readings',)",
     ),
-    (SUITE, '("readings",)', '("reading",)', "4", "`MODULES` names 'reading', but there is no reading.py beside it"),
+    (SUITE, '("readings",)', '("reading",)', "4", "`MODULES` names 'reading', but reading.py does not exist beside it"),
     (
         SUITE,
         "MODULES",
@@ -126,8 +126,8 @@ SLIPS = [
     (READINGS, "import math", "import maths", "3", "cannot be imported: ModuleNotFoundError: No module named 'maths'"),
     (
         f"{CHECKS}/visible/hidden_titles.json",
-        "Of each scan",
-        "Of a scan",
+        "of each scan",
+        "of a scan",
         "1",
         "is out of date: run `autograder course tables`",
     ),
@@ -148,7 +148,7 @@ SLIPS = [
         "the metadata are invalid: `course` has an unknown key `hid`",
     ),
     (NOTEBOOK, '"nbformat": 4,', '"nbformat": 4', "331", "is not JSON: Expecting ',' delimiter"),
-    (NOTEBOOK, '"exercise": "exercise"', '"exercise": "exercises"', "313", "there is no cell 'exercises'"),
+    (NOTEBOOK, '"exercise": "exercise"', '"exercise": "exercises"', "313", "the notebook has no cell 'exercises'"),
     ("worlds/hall.yaml", None, "name: hall\nboxs: []\n", "2", "the world has no field 'boxs'. Did you mean 'boxes'?"),
 ]
 

@@ -10,7 +10,7 @@ from autograder.checks.chNEW_CHAPTER.support.robot import Robot
 
 @pytest.fixture(scope="session")
 def shared_robot(workspace: Workspace) -> Iterator[Shared[Robot]]:
-    """Keeps the robot that several checks share."""
+    """Provide the robot that several checks share."""
     with Shared(lambda: Robot(workspace)) as shared:
         yield shared
 

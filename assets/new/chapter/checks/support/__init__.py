@@ -1,1 +1,1 @@
-"""What the visible and the hidden checks of NEW_CHAPTER share."""
+"""Code that the visible and the hidden checks of NEW_CHAPTER share."""

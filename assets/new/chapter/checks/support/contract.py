@@ -1,4 +1,4 @@
-"""The names and numbers of the contract. The sentences themselves stand in the notebook."""
+"""The names and numbers in the requirements, whose sentences are in the notebook."""
 
 PACKAGE = "NEW_PACKAGE"
 EXECUTABLE = "NEW_NODE"

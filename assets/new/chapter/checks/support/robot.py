@@ -1,4 +1,4 @@
-"""The student's node in the harness: it is shown scans and asked what it published."""
+"""The student's node in the harness, which sends it scans and records what it publishes."""
 
 from collections.abc import Sequence
 
@@ -12,10 +12,10 @@ SECONDS = 0.1  # of ROS time, from one scan to the next
 
 
 class Robot(AutoHarness):
-    """The node between a lidar and whoever listens to `nearest`."""
+    """The node, with a publisher of `scan` and a subscription to `nearest`."""
 
     def __init__(self, workspace: Workspace, *arguments: str) -> None:
-        """Describe the node as it runs with command-line arguments, such as `--ros-args -p name:=value`."""
+        """Create the harness of the node with command-line arguments, such as `--ros-args -p name:=value`."""
         super().__init__(
             workspace,
             contract.PACKAGE,
@@ -26,18 +26,19 @@ class Robot(AutoHarness):
         )
 
     def answers(self, readings: Sequence[float]) -> list[float]:
-        """Show one scan, and return what the node published then."""
+        """Publish one scan, and return the readings that the node publishes in response."""
         scan = LaserScan(range_min=contract.RANGE_MIN, range_max=contract.RANGE_MAX, ranges=readings)
-        began = self.seconds
+        sent_at = self.seconds
         self.publish("/scan", scan)
         self.run(SECONDS)
-        return [received.message.data for received in self.messages("/nearest", since=began)]
+        return [received.message.data for received in self.messages("/nearest", since=sent_at)]
 
 
 def expect_nearest(robot: Robot, readings: Sequence[float], nearest: float) -> None:
-    """Fail the check unless the node answers a scan with this one reading."""
+    """Fail the check unless the node publishes exactly this reading for a scan."""
     answers = robot.answers(readings)
-    right = len(answers) == 1 and abs(answers[0] - nearest) < contract.TOLERANCE
+    is_correct = len(answers) == 1 and abs(answers[0] - nearest) < contract.TOLERANCE
     expect(
-        right, f"The nearest reading that counts was {nearest:.3f} m, and the node published {answers or 'nothing'}."
+        is_correct,
+        f"The nearest reading that counts was {nearest:.3f} m, but the node published {answers or 'nothing'}.",
     )

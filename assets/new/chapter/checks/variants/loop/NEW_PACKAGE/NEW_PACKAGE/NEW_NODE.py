@@ -1,4 +1,4 @@
-"""A right answer in another style: no function, one loop, and the publishing in __init__."""
+"""A correct answer in another style: no function, one loop, and a callback defined in __init__."""
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -10,10 +10,10 @@ from std_msgs.msg import Float32
 
 class Watch(Node):
     def __init__(self):
-        super().__init__('NEW_NODE')
-        say = self.create_publisher(Float32, 'nearest', 10)
+        super().__init__("NEW_NODE")
+        publisher = self.create_publisher(Float32, "nearest", 10)
 
-        def look(scan):
+        def on_scan(scan):
             best = None
             for reading in scan.ranges:
                 if reading < scan.range_min or reading > scan.range_max or reading != reading:
@@ -21,9 +21,9 @@ class Watch(Node):
                 if best is None or reading < best:
                     best = reading
             if best is not None:
-                say.publish(Float32(data=best))
+                publisher.publish(Float32(data=best))
 
-        self.create_subscription(LaserScan, 'scan', look, qos_profile_sensor_data)
+        self.create_subscription(LaserScan, "scan", on_scan, qos_profile_sensor_data)
 
 
 def main():
