@@ -1,5 +1,5 @@
-// Sorts and filters the table of a class. The fields of the form are the only state, which a browser restores when
-// somebody comes back from a student's page. Without this script, the table stays as it was written.
+// Sorts and filters the table of a class. The form fields are the only state. The browser restores them when the user
+// returns from a student's page. Without this script, the table stays unsorted and unfiltered.
 "use strict";
 const form = document.querySelector("form.filter");
 const { words, show, order } = form.elements;
@@ -17,19 +17,19 @@ function value(row, column) {
 }
 
 function update() {
-  const wanted = plain(words.value).split(/\s+/);
+  const terms = plain(words.value).split(/\s+/);
   const [column, direction] = order.value.split(" ").map(Number);
-  let shown = 0;
+  let count = 0;
   for (const row of rows) {
     const text = plain(row.textContent);
-    const chosen = !show.value || row.dataset.choices.split(" ").includes(show.value);
-    row.hidden = !(chosen && wanted.every(word => text.includes(word)));
-    shown += !row.hidden;
+    const matches = !show.value || row.dataset.choices.split(" ").includes(show.value);
+    row.hidden = !(matches && terms.every(term => text.includes(term)));
+    count += !row.hidden;
   }
   body.append(...[...rows].sort((one, other) => direction * compare(value(one, column), value(other, column))));
   headers.forEach(header => header.removeAttribute("aria-sort"));
   headers[column].setAttribute("aria-sort", direction > 0 ? "ascending" : "descending");
-  form.querySelector("output").textContent = `${shown} of ${rows.length}`;
+  form.querySelector("output").textContent = `${count} of ${rows.length}`;
 }
 
 for (const column of new Set([...order.options].map(option => parseInt(option.value)))) {

@@ -30,7 +30,7 @@ class Manifest:
     """The description of a student release.
 
     Attributes:
-        version: when it was made, in UTC, so that versions sort chronologically.
+        version: the time of its creation in UTC, so that versions sort chronologically.
         course: the folder with the newest release of the class, or an empty string.
         files: the digest of each file, by its path in the release.
         cells: for each notebook, the digest of each cell's text, by the cell's id.
@@ -71,13 +71,13 @@ class Update:
 
     Attributes:
         written: the files that were written.
-        kept: the files in `chapters/` that were not written, because the student has changed them.
-        set_aside: for each overwritten file elsewhere that the student had changed, the path of the student's copy.
+        skipped: the files in `chapters/` that were not written, because the student has changed them.
+        backups: for each overwritten file elsewhere that the student had changed, the path of the student's copy.
     """
 
     written: Sequence[str]
-    kept: Sequence[str]
-    set_aside: Mapping[str, str]
+    skipped: Sequence[str]
+    backups: Mapping[str, str]
 
 
 def update_release(release: Path, newer: Path) -> Update:
@@ -90,24 +90,24 @@ def update_release(release: Path, newer: Path) -> Update:
     if new.version < old.version:
         raise UsageError(f"{newer} has version {new.version}, but the release here is newer, {old.version}")
     written: list[str] = []
-    kept: list[str] = []
-    set_aside: dict[str, str] = {}
+    skipped: list[str] = []
+    backups: dict[str, str] = {}
     for name, digest in new.files.items():
         source, target = newer / name, release / name
         current = _digest(target.read_bytes()) if target.is_file() else None
-        changed = current not in (None, old.files.get(name))
+        is_changed = current not in (None, old.files.get(name))
         if current == digest:
             continue
-        if changed and name.startswith(f"{STUDENT_FOLDER}/"):
+        if is_changed and name.startswith(f"{STUDENT_FOLDER}/"):
             if name.endswith(".ipynb"):
                 merged = _merged(nbformat.read(target, 4), nbformat.read(source, 4), old.cells.get(name, {}))
                 write_atomically(target, nbformat.writes(merged).encode())
                 written.append(name)
             else:
-                kept.append(name)
+                skipped.append(name)
             continue
-        if changed:
-            set_aside[name] = str(_set_aside(target).relative_to(release))
+        if is_changed:
+            backups[name] = str(_back_up(target).relative_to(release))
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(source, target)
         written.append(name)
@@ -121,10 +121,10 @@ def update_release(release: Path, newer: Path) -> Update:
     files = {name: old.files[name] for name in others} | new.files
     cells = {name: old.cells[name] for name in others & old.cells.keys()} | new.cells
     write_json(release / MANIFEST, asdict(Manifest(new.version, new.course or old.course, files, cells)))
-    return Update(written, kept, set_aside)
+    return Update(written, skipped, backups)
 
 
-def _set_aside(file: Path) -> Path:
+def _back_up(file: Path) -> Path:
     """Copy a file to an unused name beside it, and return the copy's path."""
     names = (f"{file.name}.yours{number or ''}" for number in itertools.count())
     copy = next(path for path in map(file.with_name, names) if not path.exists())
@@ -132,24 +132,24 @@ def _set_aside(file: Path) -> Path:
     return copy
 
 
-def _merged(students: NotebookNode, released: NotebookNode, old: dict[str, str]) -> NotebookNode:
+def _merged(student_notebook: NotebookNode, released: NotebookNode, old_digests: dict[str, str]) -> NotebookNode:
     """Return a student's notebook in which the cells that the student has not changed are updated."""
     new = {cell.id: cell for cell in released.cells}
     cells = []
-    for cell in students.cells:
-        untouched = old.get(cell.id) == _digest(cell.source.encode())
-        if untouched and cell.id in new and cell.source != new[cell.id].source:
+    for cell in student_notebook.cells:
+        is_unchanged = old_digests.get(cell.id) == _digest(cell.source.encode())
+        if is_unchanged and cell.id in new and cell.source != new[cell.id].source:
             cells.append(new[cell.id])
-        elif not untouched or cell.id in new:
+        elif not is_unchanged or cell.id in new:
             cells.append(cell)
     previous_id = None
     for cell in released.cells:  # a new cell follows the same cell as in the release
-        if cell.id not in old:
-            index = next((number for number, each in enumerate(cells, start=1) if each.id == previous_id), len(cells))
+        if cell.id not in old_digests:
+            index = next((number for number, other in enumerate(cells, start=1) if other.id == previous_id), len(cells))
             cells.insert(index if previous_id else 0, cell)
         previous_id = cell.id
-    students.cells = cells
-    return students
+    student_notebook.cells = cells
+    return student_notebook
 
 
 def _files(release: Path) -> Iterator[Path]:

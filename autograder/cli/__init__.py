@@ -29,7 +29,7 @@ class Verbs(click.Group):
     """The verbs. Each is a command in a module of the same name, which is imported when the verb is called."""
 
     def main(self, *args: Any, **extra: Any) -> Any:
-        """Run a verb, and exit. Clean click's usage errors, because they may contain the name of a student's file."""
+        """Run a verb, and exit. Clean click's usage errors, which may contain the name of a student's file."""
         try:
             status = super().main(*args, **{**extra, "standalone_mode": False})
         except click.ClickException as error:

@@ -52,5 +52,5 @@ def _points(check: CheckChange) -> str:
     return f"{_number(check.before, 'not in the suite')} -> {_number(check.after, 'not in the suite')}"
 
 
-def _number(points: float | None, none: str = "no mark") -> str:
-    return none if points is None else f"{points:g}"
+def _number(points: float | None, missing: str = "no mark") -> str:
+    return missing if points is None else f"{points:g}"

@@ -27,14 +27,14 @@ def course() -> None:
 @click.option("--dry-run", is_flag=True, help="Write nothing. List what would be updated.")
 def sync(names: tuple[str, ...], dry_run: bool) -> None:
     """Copy the reference into notebooks, and the points of the suites into grade cells."""
-    chosen = chapters(names)
-    require_checks(chapter.assignment for chapter in chosen)
-    for chapter in chosen:
-        differed = sync_chapter(chapter, write=not dry_run)
-        for finding in differed if dry_run else ():
+    selected = chapters(names)
+    require_checks(chapter.assignment for chapter in selected)
+    for chapter in selected:
+        differences = sync_chapter(chapter, write=not dry_run)
+        for finding in differences if dry_run else ():
             echo(str(finding))
-        done = "to update" if dry_run else "updated"
-        echo(f"{chapter.assignment}: " + (f"{len(differed)} {done}" if differed else "unchanged"))
+        state = "to update" if dry_run else "updated"
+        echo(f"{chapter.assignment}: " + (f"{len(differences)} {state}" if differences else "unchanged"))
 
 
 @course.command()
@@ -46,9 +46,9 @@ def check(names: tuple[str, ...]) -> None:
     if there are problems.
     """
     if not (problems := list(broken_course_file())):
-        read = {chapter.assignment: read_chapter(chapter) for chapter in chapters(names)}
-        problems = [finding for each in read.values() for finding in each.findings]
-        problems += broken_course(read, whole=not names)
+        parsed = {chapter.assignment: read_chapter(chapter) for chapter in chapters(names)}
+        problems = [finding for chapter in parsed.values() for finding in chapter.findings]
+        problems += broken_course(parsed, whole=not names)
     for line in dict.fromkeys(map(str, problems)):
         echo(line)
     sys.exit(1 if problems else 0)

@@ -27,9 +27,9 @@ def doctor(try_escapes: bool, json_file: Path | None) -> None:
     findings = security.examine() if try_escapes else examine(System())
     echo(render(findings, verdicts=security.VERDICTS if try_escapes else VERDICTS))
     if json_file is not None:
-        write_json(json_file, [_plain(finding) for finding in findings])
+        write_json(json_file, [_as_json(finding) for finding in findings])
     sys.exit(0 if healthy(findings) else 1)
 
 
-def _plain(finding: Finding) -> dict[str, str]:
+def _as_json(finding: Finding) -> dict[str, str]:
     return {"name": finding.name, "status": finding.status.value, "found": finding.state, "mend": finding.fix}

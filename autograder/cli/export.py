@@ -12,7 +12,7 @@ from typing import Any
 import click
 
 from autograder import course_paths
-from autograder.cli.late_options import judge_class, late_options, read_policy
+from autograder.cli.late_options import class_lateness, late_options, read_policy
 from autograder.cli.options import json_option
 from autograder.cli.terminal import echo, on_line
 from autograder.cli.text_tables import table
@@ -31,7 +31,7 @@ _FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if fo
 _FEEDBACK = {f"{system}-feedback": system for system in SYSTEMS}  # the formats of feedback
 _WITH_LATENESS = ("csv", *SYSTEMS)
 
-Missed = list[tuple[str, str]]  # (student, reason) of those without a mark or feedback
+LeftOut = list[tuple[str, str]]  # pairs (student, reason), without a mark or feedback
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Plan:
     """The planned changes: the old and new cells of each student, and the students who are left out."""
 
     rows: Sequence[tuple[str, str, str]]
-    missed: Missed
+    left_out: LeftOut
     write: Callable[[], object]
 
 
@@ -85,7 +85,7 @@ def export(
     download: Path | None,
     dry_run: bool,
     json_file: Path | None,
-    **late: Any,
+    **late_arguments: Any,
 ) -> None:
     """Write stored RESULTS (a folder or a JSON file) as marks or feedback for other programs.
 
@@ -93,49 +93,53 @@ def export(
     usage.
     """
     stored: Sequence[Result] = exporters.load(results)
-    students = read_roster(roster) if roster is not None else None
-    if students is None and name in (*SYSTEMS, *_FEEDBACK):
+    student_table = read_roster(roster) if roster is not None else None
+    if student_table is None and name in (*SYSTEMS, *_FEEDBACK):
         raise UsageError(f"--format {name} needs --roster: the table that {_FEEDBACK.get(name, name).title()} exported")
-    if any(late.values()) and name not in _WITH_LATENESS:
+    if any(late_arguments.values()) and name not in _WITH_LATENESS:
         raise UsageError(f"marks of late submissions are for --format {', '.join(_WITH_LATENESS)}, not {name}")
-    find = student_finder({result.student for result in stored}, students)
-    stored, missed = _with_manual(stored, manual, find)
-    lateness = judge_class(read_policy(find, late), results, (result.student for result in stored))
-    if students is not None and name in SYSTEMS:
-        plan = _marks(stored, name, students, lateness, out)
-    elif students is not None and name in _FEEDBACK:
+    find_student = student_finder({result.student for result in stored}, student_table)
+    stored, left_out = _with_manual(stored, manual, find_student)
+    lateness = class_lateness(read_policy(find_student, late_arguments), results, (result.student for result in stored))
+    if student_table is not None and name in SYSTEMS:
+        plan = _marks(stored, name, student_table, lateness, out)
+    elif student_table is not None and name in _FEEDBACK:
         plan = _feedback(
-            [result for result in stored if result.student not in dict(missed)], name, students, download, out
+            [result for result in stored if result.student not in dict(left_out)], name, student_table, download, out
         )
     else:
-        plan = _results(stored, name, lateness if any(late.values()) else {}, out)
-    missed = list(dict((*plan.missed, *missed)).items())
+        plan = _results(stored, name, lateness if any(late_arguments.values()) else {}, out)
+    left_out = list(dict((*plan.left_out, *left_out)).items())
     if dry_run:
-        echo(table([(*row, dict(missed).get(row[0], "")) for row in plan.rows], ("student", "now", "new", "left out")))
+        echo(
+            table([(*row, dict(left_out).get(row[0], "")) for row in plan.rows], ("student", "now", "new", "left out"))
+        )
         echo(f"Nothing was written. Without --dry-run, {len(plan.rows)} results go to {out}.")
     else:
         written = plan.write()
         echo(f"{len(stored)} results: {written}")
-    for student, why in missed:
-        echo(f"Left out: {on_line(student)}: {on_line(why)}", err=True)
+    for student, reason in left_out:
+        echo(f"Left out: {on_line(student)}: {on_line(reason)}", err=True)
     if json_file is not None:
         write_json(json_file, {"results": len(stored), "format": name, "written": "" if dry_run else str(written)})
-    sys.exit(1 if missed else 0)
+    sys.exit(1 if left_out else 0)
 
 
-def _with_manual(stored: Sequence[Result], manual: Path | None, find: FindStudent) -> tuple[Sequence[Result], Missed]:
+def _with_manual(
+    stored: Sequence[Result], manual: Path | None, find_student: FindStudent
+) -> tuple[Sequence[Result], LeftOut]:
     """Return the results with manual points, and the students whose manual points are incomplete."""
     if manual is None:
         for assignment in sorted({result.assignment for result in stored} & _assignments()):
             if cells := manual_cells(assignment):
-                points = f"{sum(cells.values()):g} points that a person gives ({', '.join(cells)})"
-                echo(f"{assignment} has {points}, which are missing here: add them with --manual", err=True)
+                missing_points = f"{sum(cells.values()):g} manual points ({', '.join(cells)})"
+                echo(f"{assignment} has {missing_points}, which are missing here: add them with --manual", err=True)
         return stored, []
     assignment = one_assignment(stored)
     cells = manual_cells(assignment)
     if not cells:
-        raise UsageError(f"{assignment} has no cell that a person grades: leave out --manual")
-    return add_manual(stored, read_manual(manual, cells, find), cells)
+        raise UsageError(f"{assignment} has no manually graded cells: remove --manual")
+    return add_manual(stored, read_manual(manual, cells, find_student), cells)
 
 
 def _assignments() -> set[str]:
@@ -148,18 +152,18 @@ def _assignments() -> set[str]:
 
 def _marks(stored: Sequence[Result], system: str, roster: Roster, lateness: Mapping[str, Lateness], out: Path) -> Plan:
     """Plan a table for a learning management system."""
-    unclear = {student: each.unclear for student, each in lateness.items() if each.unclear}
-    kept = {student: None if each.unclear else each.kept for student, each in lateness.items()}
-    filled = mark_table(stored, system, roster, kept)
-    missed = [(r.student, r.status.words) for r in stored if r.status is not Status.GRADED]
-    missed += [*unclear.items(), *((student, f"not in {roster.path}") for student in filled.unknown)]
-    rows = [(result.student, *filled.marks.get(result.student, ("", ""))) for result in stored]
+    unclear = {student: late.unclear for student, late in lateness.items() if late.unclear}
+    kept_shares = {student: None if late.unclear else late.kept_share for student, late in lateness.items()}
+    mark_cells = mark_table(stored, system, roster, kept_shares)
+    left_out = [(r.student, r.status.words) for r in stored if r.status is not Status.GRADED]
+    left_out += [*unclear.items(), *((student, f"not in {roster.path}") for student in mark_cells.unknown)]
+    rows = [(result.student, *mark_cells.marks.get(result.student, ("", ""))) for result in stored]
 
     def write() -> Path:
-        filled.write(out)
+        mark_cells.write(out)
         return out
 
-    return Plan(rows, missed, write)
+    return Plan(rows, left_out, write)
 
 
 def _feedback(stored: Sequence[Result], name: str, roster: Roster, download: Path | None, out: Path) -> Plan:
@@ -173,28 +177,28 @@ def _feedback(stored: Sequence[Result], name: str, roster: Roster, download: Pat
     else:
         with unpacked(download) as folder:
             paths = canvas_paths(folder, roster, one_assignment(stored), students)
-    missed = [(r.student, r.status.words) for r in stored if r.status is Status.NOT_GRADED]
-    rows = [(student, "", paths.names.get(student, "")) for student in students]
+    left_out = [(r.student, r.status.words) for r in stored if r.status is Status.NOT_GRADED]
+    rows = [(student, "", paths.by_student.get(student, "")) for student in students]
 
     def write() -> Path:
         write_archive(graded, paths, out)
         return out
 
-    return Plan(rows, [*missed, *paths.left_out], write)
+    return Plan(rows, [*left_out, *paths.left_out], write)
 
 
 def _results(stored: Sequence[Result], name: str, lateness: Mapping[str, Lateness], out: Path) -> Plan:
     """Plan an export of results. A CSV file gets additional columns for late submissions."""
-    more = {result.student: _late_cells(result, lateness[result.student]) for result in stored if lateness}
-    missed = [(student, each.unclear) for student, each in lateness.items() if each.unclear]
-    rows = [(r.student, "", str(more[r.student]["mark"] if more else _score(r))) for r in stored]
-    options: dict[str, Any] = {"more": more} if more else {}
-    return Plan(rows, missed, partial(exporters.write, stored, name, out, **options))
+    extra_cells = {result.student: _late_cells(result, lateness[result.student]) for result in stored if lateness}
+    left_out = [(student, late.unclear) for student, late in lateness.items() if late.unclear]
+    rows = [(r.student, "", str(extra_cells[r.student]["mark"] if extra_cells else _score(r))) for r in stored]
+    options: dict[str, Any] = {"extra_cells": extra_cells} if extra_cells else {}
+    return Plan(rows, left_out, partial(exporters.write, stored, name, out, **options))
 
 
 def _late_cells(result: Result, late: Lateness) -> dict[str, str | float]:
     days = "" if late.unclear or late.days is None else late.days
-    mark = "" if late.unclear or result.status is not Status.GRADED else round(result.score * late.kept, 4)
+    mark = "" if late.unclear or result.status is not Status.GRADED else round(result.score * late.kept_share, 4)
     return {"late_days": days, "mark": mark}
 
 

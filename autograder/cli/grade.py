@@ -88,14 +88,14 @@ def grade(
     """
     suites.hidden(assignment)
     if dry_run:
-        with find_submissions(paths, assignment, roster) as (submissions, all_fit):
+        with find_submissions(paths, assignment, roster) as (submissions, all_match):
             jobs_to_do = [
                 Job(path, assignment, name, seed, out / name, Isolation(isolation))
                 for name, path in submissions.items()
             ]
-            sys.exit(0 if _preview(jobs_to_do, resume) and all_fit else 1)
+            sys.exit(0 if _preview(jobs_to_do, resume) and all_match else 1)
     with (
-        find_submissions(paths, assignment, roster, out=out) as (submissions, all_fit),
+        find_submissions(paths, assignment, roster, out=out) as (submissions, all_match),
         Progress(len(submissions)) as progress,
     ):
         earlier = EarlierMarks(out, submissions)
@@ -117,11 +117,11 @@ def grade(
             echo(f"\n{message}", err=True)
             sys.exit(INTERRUPTED)
     report(results, out, json_file)
-    if resume and (changed := earlier.changed(results)):
+    if resume and (changed_marks := earlier.changed(results)):
         echo("\nMarks that changed because of the suite or the submission:")
-        print_changes(changed)
+        print_changes(changed_marks)
     earlier.forget(results)
-    sys.exit(0 if all_fit and all(result.status is Status.GRADED for result in results) else 1)
+    sys.exit(0 if all_match and all(result.status is Status.GRADED for result in results) else 1)
 
 
 def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None:
@@ -148,10 +148,10 @@ def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None
         write_json(json_file, [result.to_json() for result in results])
 
 
-def _preview(submissions: Sequence[Job], resume: bool) -> bool:
+def _preview(jobs: Sequence[Job], resume: bool) -> bool:
     """Print the files of each submission to grade and the effect on its result. Return whether all are clear."""
     rows, all_clear = [], True
-    for job in submissions:
+    for job in jobs:
         effect = _effect(job, resume)
         try:
             preview = read_preview(job.path, job.assignment, job.isolation)
@@ -171,13 +171,13 @@ def _effect(job: Job, resume: bool) -> str:
     file = job.out / RESULT
     if not file.is_file():
         return "new"
-    if resume and (kept := stored(job)) is not None:
-        return f"keeps {score_text(kept)}"
+    if resume and (reusable := stored(job)) is not None:
+        return f"keeps {score_text(reusable)}"
     try:
-        (old,) = load(file)
+        (previous,) = load(file)
     except (UsageError, ValueError):
         return "replaces one that cannot be read"
-    return f"replaces {score_text(old)}"
+    return f"replaces {score_text(previous)}"
 
 
 def _not_used(names: Sequence[str]) -> str:

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import click
 
 from autograder.exceptions import UsageError
-from autograder.lms.lateness import Delivery, Lateness, LatePolicy, moment, read_extensions, zone_of
+from autograder.lms.lateness import Delivery, Lateness, LatePolicy, parse_time, read_extensions, zone_of
 from autograder.lms.tables import FindStudent
 from autograder.result.class_folder import COLLECTION_REPORT
 
@@ -67,13 +67,13 @@ def late_options(command: Command) -> Command:
     return command
 
 
-def read_policy(find: FindStudent, options: dict[str, Any]) -> LatePolicy:
+def read_policy(find_student: FindStudent, options: dict[str, Any]) -> LatePolicy:
     """Return the policy from the options. Raises UsageError if they conflict, or if a file or time is invalid."""
     if options["late_penalty"] and options["late_per_day"]:
         raise UsageError("--late-penalty is for all late submissions, --late-per-day for each day: give one of the two")
     text, extensions = options["due"], options["extensions"]
     try:
-        due, zone = (moment(text, None), zone_of(text)) if text else (None, None)
+        due, zone = (parse_time(text, None), zone_of(text)) if text else (None, None)
     except UsageError as error:
         raise UsageError(f"--due: {error}") from None
     return LatePolicy(
@@ -83,11 +83,11 @@ def read_policy(find: FindStudent, options: dict[str, Any]) -> LatePolicy:
         grace=timedelta(hours=options["grace"]),
         due=due,
         zone=zone,
-        extensions=read_extensions(extensions, find, zone) if extensions is not None else {},
+        extensions=read_extensions(extensions, find_student, zone) if extensions is not None else {},
     )
 
 
-def judge_class(policy: LatePolicy, results: Path, students: Iterable[str]) -> dict[str, Lateness]:
+def class_lateness(policy: LatePolicy, results: Path, students: Iterable[str]) -> dict[str, Lateness]:
     """Return the lateness of students' submissions, based on the times recorded by `autograder grade --roster`."""
     file = results / COLLECTION_REPORT
     report = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
@@ -96,8 +96,8 @@ def judge_class(policy: LatePolicy, results: Path, students: Iterable[str]) -> d
     for student in students:
         delay = timedelta(seconds=late_by[student]) if student in late_by else None
         try:
-            time = moment(times[student], policy.zone) if times.get(student) else None
+            time = parse_time(times[student], policy.zone) if times.get(student) else None
         except UsageError as error:
             raise UsageError(f"{file}: {error}") from None
-        by_student[student] = policy.judge(student, Delivery(student in late, delay, time))
+        by_student[student] = policy.lateness_of(student, Delivery(student in late, delay, time))
     return by_student

@@ -39,8 +39,8 @@ def notebooks(
     from autograder.ros import activate
 
     activate()
-    named = {Form.SOURCE: source, Form.SOLVED: solved, Form.RELEASED: released}
-    forms = [form for form, chosen in named.items() if chosen] or [Form.SOURCE]
+    requested = {Form.SOURCE: source, Form.SOLVED: solved, Form.RELEASED: released}
+    forms = [form for form, is_requested in requested.items() if is_requested] or [Form.SOURCE]
     to_run = [(chapter, form) for form in forms for chapter in chapters(assignments)]
 
     def run(chapter_and_form: tuple[Chapter, Form]) -> Execution:

@@ -36,10 +36,12 @@ from autograder.suite import suites
     "--mcap", is_flag=True, help="With --submission: also write the run's topics, for Foxglove and `ros2 bag`."
 )
 @click.option(
-    "--open/--no-open", "show", default=None, help="Open the page in a browser (default if there is a display)."
+    "--open/--no-open", "open_page", default=None, help="Open the page in a browser (default if there is a display)."
 )
 @isolation_option
-def replay(stored: Path, check: str, submission: Path | None, mcap: bool, show: bool | None, isolation: str) -> None:
+def replay(
+    stored: Path, check: str, submission: Path | None, mcap: bool, open_page: bool | None, isolation: str
+) -> None:
     """Show the check ID of the result at RESULT: its message, and its run in the player.
 
     RESULT is a result.json, or the folder of one student's result. The page is written to the folder replay/ID beside
@@ -47,7 +49,7 @@ def replay(stored: Path, check: str, submission: Path | None, mcap: bool, show: 
     """
     if mcap and submission is None:
         raise UsageError("--mcap needs --submission PATH: the stored run has no messages, only a new grading has")
-    original = _one(stored)
+    original = _single_result(stored)
     if check not in {each.id for each in original.checks}:
         known = ", ".join(each.id for each in original.checks)
         raise UsageError(f"{stored}: the result has no check {check!r}; it has: {known}")
@@ -60,11 +62,12 @@ def replay(stored: Path, check: str, submission: Path | None, mcap: bool, show: 
         echo(f"The run of {check!r}: {page}")
         for bag in _bags(Path(scratch), folder):
             echo(f"Its messages: {bag}")
-    if show if show is not None else bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+    has_display = bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    if has_display if open_page is None else open_page:
         webbrowser.open(page.resolve().as_uri())
 
 
-def _one(path: Path) -> Result:
+def _single_result(path: Path) -> Result:
     results = load(path)
     if len(results) != 1:
         raise UsageError(f"{path} contains {len(results)} results; use the folder of one student")
@@ -76,10 +79,12 @@ def _grade_again(
 ) -> Result:
     """Grade a check and its dependencies again with the seed of its result."""
     options = Options(only=suites.hidden(result.assignment).with_dependencies(check), recordings=recordings)
-    graded = grade_submission(Job(submission, result.assignment, result.student, result.seed, out, isolation, options))
-    if graded.status is Status.GRADED and graded.submission_sha256 != result.submission_sha256:
+    regraded = grade_submission(
+        Job(submission, result.assignment, result.student, result.seed, out, isolation, options)
+    )
+    if regraded.status is Status.GRADED and regraded.submission_sha256 != result.submission_sha256:
         echo(f"Note: {submission} differs from the graded submission, so the run may differ.", err=True)
-    return graded
+    return regraded
 
 
 def _bags(recordings: Path, out: Path) -> Iterator[Path]:

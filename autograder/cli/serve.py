@@ -34,12 +34,14 @@ def serve(settings: Path, data: Path, jobs: int, check: bool, seed: int, isolati
     The hub starts it: docs/serve.md has the lines for its configuration. It can be stopped or
     killed at any time without losing a submission.
     """
-    hub = read_settings(settings)
+    service_settings = read_settings(settings)
     if check:
-        for name, each in hub.assignments.items():
-            due = f"due at {each.due:%Y-%m-%d %H:%M %Z}" if each.due is not None else "never due"
-            counts = "best" if each.best_counts else "last"
-            echo(f"{name}: {due}, {each.tries_a_day} tries a day, shows {each.shown.value}, the {counts} one counts")
+        for name, rules in service_settings.assignments.items():
+            due = f"due at {rules.due:%Y-%m-%d %H:%M %Z}" if rules.due is not None else "never due"
+            counting = "best" if rules.best_counts else "last"
+            echo(
+                f"{name}: {due}, {rules.tries_a_day} tries a day, shows {rules.shown.value}, the {counting} one counts"
+            )
         return
     try:
         from autograder.lms.serve import service
@@ -48,4 +50,4 @@ def serve(settings: Path, data: Path, jobs: int, check: bool, seed: int, isolati
             raise
         raise UsageError("serve needs JupyterHub, which is not installed here: run `make hub-setup`") from None
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(message)s")
-    service.serve(hub, data, GradingOptions(jobs, seed, Isolation(isolation)), service.address(os.environ))
+    service.serve(service_settings, data, GradingOptions(jobs, seed, Isolation(isolation)), service.address(os.environ))

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 @roster_option
 @click.option(
     "--least",
+    "min_percent",
     type=click.FloatRange(0, 100),
     default=50.0,
     show_default=True,
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
 )
 @json_option
 def similar(
-    paths: tuple[Path, ...], assignment: str, out: Path, roster: Path | None, least: float, json_file: Path | None
+    paths: tuple[Path, ...], assignment: str, out: Path, roster: Path | None, min_percent: float, json_file: Path | None
 ) -> None:
     """List groups of submissions at PATHS with similar passages. Code from the student release is ignored.
 
@@ -60,25 +61,28 @@ def similar(
     def report_partial(student: str, reason: str) -> None:
         echo(f"Compared in part: {on_line(student)}: {reason}", err=True)
 
-    with tempfile.TemporaryDirectory() as name:
-        write_release(Path(name) / "given", (assignment,))
-        given = code(read_submission(Path(name) / "given" / course_paths.course().chapters / assignment, assignment))
-    with find_submissions(paths, assignment, roster, verb="compared") as (submissions, all_fit):
+    with tempfile.TemporaryDirectory() as scratch:
+        write_release(Path(scratch) / "given", (assignment,))
+        provided_code = code(
+            read_submission(Path(scratch) / "given" / course_paths.course().chapters / assignment, assignment)
+        )
+    with find_submissions(paths, assignment, roster, verb="compared") as (submissions, all_match):
         codes, all_read = _codes(submissions, assignment)
-    comparison = compare(codes, given, least / 100, report_partial)
-    for student in comparison.without_own:
+    comparison = compare(codes, provided_code, min_percent / 100, report_partial)
+    for student in comparison.without_own_code:
         echo(f"Not compared: {on_line(student)}: it contains no code of its own", err=True)
-    compared = len(codes) - len(comparison.without_own)
+    compared = len(codes) - len(comparison.without_own_code)
     if compared < 2:
         hint = "; for a download from an LMS, give its table of students with --roster" if roster is None else ""
-        raise AutograderError(f"nothing was compared: of {len(submissions)} submissions, {compared} has own code{hint}")
+        own_code = "1 contains code of its own" if compared else "0 contain code of their own"
+        raise AutograderError(f"nothing was compared: of {len(submissions)} submissions, {own_code}{hint}")
     for group in comparison.groups:
         echo(_sentence(group))
     groups = f"{len(comparison.groups)} {'group' if len(comparison.groups) == 1 else 'groups'}"
     echo(f"{compared} compared, {groups} to read (not a verdict): {write_page(comparison, out)}")
     if json_file is not None:
         write_json(json_file, [_as_json(group) for group in comparison.groups])
-    sys.exit(0 if all_fit and all_read else 1)
+    sys.exit(0 if all_match and all_read else 1)
 
 
 def _codes(submissions: Mapping[str, Path], assignment: str) -> tuple[dict[str, str], bool]:
@@ -108,4 +112,4 @@ def _sentence(group: Group) -> str:
     else:
         shares = [100 * max(pair.shares) for pair in group.pairs]
         percent = f"{min(shares):.0f} to {max(shares):.0f} %"
-    return f"{', '.join(others)} and {last}: {percent} of their own text alike"
+    return f"{', '.join(others)} and {last}: {percent} of their own text in common"

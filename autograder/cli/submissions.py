@@ -17,7 +17,7 @@ from autograder.lms.roster import read_roster
 from autograder.result.class_folder import COLLECTION_REPORT
 from autograder.result.model import write_json
 
-REPORTED = ("late", "late_by", "times", "older", "unmatched", "missing")  # for files from a download
+REPORT_FIELDS = ("late", "late_by", "times", "older", "unmatched", "missing")  # of `CollectedSubmissions`
 roster_option = click.option(
     "--roster",
     type=click.Path(path_type=Path, dir_okay=False, exists=True),
@@ -44,12 +44,12 @@ def find_submissions(
     with unpacked(paths[0]) as folder, TemporaryDirectory(prefix="attempts-") as scratch:
         collected = collect(folder, read_roster(roster), assignment, Path(scratch))
         _print_others(collected.unmatched, verb)
-        lists = {"Not submitted": collected.missing, "Late": collected.late, "Replaced": collected.older}
-        for title, names in lists.items():
+        names_by_label = {"Not submitted": collected.missing, "Late": collected.late, "Replaced": collected.older}
+        for label, names in names_by_label.items():
             if names:
-                echo(f"{title}: {', '.join(map(on_line, names))}")
+                echo(f"{label}: {', '.join(map(on_line, names))}")
         if out is not None:
-            report = {name: getattr(collected, name) for name in REPORTED}
+            report = {name: getattr(collected, name) for name in REPORT_FIELDS}
             write_json(out / COLLECTION_REPORT, report)
         yield collected.submissions, not collected.unmatched
 

@@ -8,7 +8,7 @@ import textwrap
 from collections.abc import Sequence
 
 from autograder.plain_text import visible
-from autograder.result.causes import causes, dearest
+from autograder.result.causes import causes, costliest_failure
 from autograder.result.model import Result, Status
 from autograder.suite import Outcome
 
@@ -17,10 +17,10 @@ def failure_summary(result: Result) -> str:
     """Return a sentence with the main reason for lost points: the failure that costs the most."""
     if result.status is not Status.GRADED or result.build is None or not result.build.ok:
         return result.diagnosis.sentence
-    first = dearest(causes(result.checks, result.diagnosis.sentence))
+    costliest = costliest_failure(causes(result.checks, result.diagnosis.sentence))
     failed = sum(check.outcome is Outcome.FAILED for check in result.checks)
     more = f" (and {failed - 1} more)" if failed > 1 else ""
-    return f"{first.message or first.title}{more}" if first else ""
+    return f"{costliest.message or costliest.title}{more}" if costliest else ""
 
 
 def table(rows: Sequence[Sequence[str]], headings: Sequence[str]) -> str:
@@ -32,15 +32,15 @@ def table(rows: Sequence[Sequence[str]], headings: Sequence[str]) -> str:
     cells = [list(headings), *([*(visible(text, line=True) for text in row[:-1]), visible(row[-1])] for row in rows)]
     widths = [max(map(len, column)) for column in zip(*(row[:-1] for row in cells), strict=True)]
     indent = sum(widths) + 2 * len(widths)
-    last = max(40, shutil.get_terminal_size((120, 24)).columns - indent)
+    last_width = max(40, shutil.get_terminal_size((120, 24)).columns - indent)
     lines = []
-    for index, (name, *between, text) in enumerate(cells):
-        wrapped = textwrap.wrap(text, last) or [""]
-        right = [each.rjust(width) for each, width in zip(between, widths[1:], strict=True)]
-        lines.append("  ".join([name.ljust(widths[0]), *right, wrapped[0]]).rstrip())
+    for index, (name, *middle, text) in enumerate(cells):
+        wrapped = textwrap.wrap(text, last_width) or [""]
+        right_aligned = [cell.rjust(width) for cell, width in zip(middle, widths[1:], strict=True)]
+        lines.append("  ".join([name.ljust(widths[0]), *right_aligned, wrapped[0]]).rstrip())
         lines += [" " * indent + line for line in wrapped[1:]]
         if index == 0:
-            lines.append("-" * (indent + min(last, 60)))
+            lines.append("-" * (indent + min(last_width, 60)))
     return "\n".join(lines)
 
 

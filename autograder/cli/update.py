@@ -20,12 +20,14 @@ def update(release: Path | None) -> None:
     Your work is kept: files and cells in `chapters` that you have changed or added. If you have changed a file of the
     course elsewhere, your version is kept with the suffix `.yours`.
     """
-    course = read_manifest(course_paths.ROOT).course
-    if release is None and not course:
-        raise UsageError("this release does not know where to find a newer one: unpack one and give its folder")
-    done = update_release(course_paths.ROOT, release or Path(course))
-    for name in done.kept:
+    newest_release = read_manifest(course_paths.ROOT).course
+    if release is None and not newest_release:
+        raise UsageError(
+            "this release does not record the folder of newer ones: unpack a newer one and give its folder"
+        )
+    outcome = update_release(course_paths.ROOT, release or Path(newest_release))
+    for name in outcome.skipped:
         echo(f"Kept unchanged: {name}")
-    for name, copy in done.set_aside.items():
+    for name, copy in outcome.backups.items():
         echo(f"You had changed {name}: your version is now {copy}.")
-    echo(f"{len(done.written)} files updated. This is now the release {read_manifest(course_paths.ROOT).version}.")
+    echo(f"{len(outcome.written)} files updated. This is now the release {read_manifest(course_paths.ROOT).version}.")

@@ -96,7 +96,7 @@ def verify(
     """
     if record and quick:
         raise click.UsageError("--record needs complete gradings: remove --quick")
-    began = time.monotonic()
+    started_at = time.monotonic()
     chapters = assignments or tuple(suites.graded_assignments())
     known = {*suites.graded_assignments()}.intersection(chapters)
     if problems := [finding for name in sorted(known) for finding in read_checks(name).findings]:
@@ -104,35 +104,40 @@ def verify(
             echo(line, err=True)
         sys.exit(1)
     all_cases = [] if mutants_only else [case for name in chapters for case in cases(name, quick=quick)]
-    chosen = [case for case in all_cases if not names or case.name in names]
+    selected = [case for case in all_cases if not names or case.name in names]
     generated = {} if quick or record else {name: generated_mutants(name) for name in chapters}
     mutants = {
-        chapter: [mutant for mutant in each.mutants if not names or mutant.id in names]
-        for chapter, each in generated.items()
+        chapter: [mutant for mutant in chapter_mutants.mutants if not names or mutant.id in names]
+        for chapter, chapter_mutants in generated.items()
     }
-    if not chosen and not any(mutants.values()):
-        raise click.UsageError(f"there is no submission called {' or '.join(names)}")
-    with Progress(len(chosen)) as progress, WorkerPool(Isolation(isolation), jobs) as workers:
+    if not selected and not any(mutants.values()):
+        raise click.UsageError(f"no submission is called {' or '.join(names)}")
+    with Progress(len(selected)) as progress, WorkerPool(Isolation(isolation), jobs) as workers:
 
         def show(verdict: Verdict) -> None:
             progress.show(verdict.result, _name(verdict), _marks(verdict))
 
-        verdicts = verify_cases(chosen, seed=seed, out=out, workers=workers, on_verdict=show)
+        verdicts = verify_cases(selected, seed=seed, out=out, workers=workers, on_verdict=show)
         chapter_results = [
             _run_mutants(
-                ChapterMutationResult(name, each, reasons(name, each)), mutants[name], bool(names), workers, seed, out
+                ChapterMutationResult(name, chapter_mutants, reasons(name, chapter_mutants)),
+                mutants[name],
+                bool(names),
+                workers,
+                seed,
+                out,
             )
-            for name, each in generated.items()
+            for name, chapter_mutants in generated.items()
             if mutants[name]
         ]
     if record:
         for chapter in dict.fromkeys(verdict.assignment for verdict in verdicts):
             echo(record_failures(chapter, verdicts), err=True)
         verdicts = compare_again(verdicts)
-    rows = [(_name(each), _marks(each), each.mismatch or "as expected") for each in verdicts]
+    rows = [(_name(verdict), _marks(verdict), verdict.mismatch or "as expected") for verdict in verdicts]
     echo("\n" + table(rows, HEADINGS))
     mutant_costs = () if quick else costs.costs(verdicts)
-    figures = summary(verdicts, time.monotonic() - began) | counts(chapters) | costs.counts(mutant_costs)
+    figures = summary(verdicts, time.monotonic() - started_at) | counts(chapters) | costs.counts(mutant_costs)
     echo("\n" + "  ".join(f"{name} {value}" for name, value in figures.items()))
     document = {
         "summary": figures,
@@ -152,12 +157,12 @@ def verify(
 def _run_mutants(
     chapter: ChapterMutationResult,
     mutants: Sequence[GeneratedMutant],
-    named: bool,
+    are_named: bool,
     workers: WorkerPool,
     seed: int,
     out: Path,
 ) -> ChapterMutationResult:
-    """Grade the mutants of a chapter. Those that may survive are only graded if they were `named`."""
+    """Grade the mutants of a chapter. Those that may survive are only graded if `are_named` is set."""
 
     def show(result: MutantResult) -> None:
         if not result.killed:
@@ -165,14 +170,15 @@ def _run_mutants(
             echo(f"{chapter.assignment} mutant {result.id} {outcome}")
 
     cache = out / chapter.assignment / "mutants.jsonl"
-    skipped = {} if named else chapter.reasons
+    skipped = {} if are_named else chapter.reasons
     to_grade = [mutant for mutant in mutants if mutant.id not in skipped]
     results = run_mutants(chapter.assignment, to_grade, workers, seed=seed, cache=cache, on_result=show)
     survivors = tuple(MutantResult(mutant.id, "", 0.0, "") for mutant in mutants if mutant.id in skipped)
-    done = replace(chapter, results=results + survivors)
-    killed = sum(result.killed for result in done.results)
-    echo(f"{chapter.assignment}: {killed} of {len(mutants)} mutants killed, {len(done.unexplained)} without a reason")
-    return done
+    completed = replace(chapter, results=results + survivors)
+    killed = sum(result.killed for result in completed.results)
+    unexplained = len(completed.unexplained)
+    echo(f"{chapter.assignment}: {killed} of {len(mutants)} mutants killed, {unexplained} without a reason")
+    return completed
 
 
 def _name(verdict: Verdict) -> str:

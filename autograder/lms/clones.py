@@ -26,7 +26,7 @@ def assignment_of(names: Sequence[str], folder: str, course_id: str, accounts: C
     Args:
         names: the names of the clones.
         folder: the name of the folder that contains them.
-        course_id: the course's own name of the assignment, used as a last resort.
+        course_id: the course's name of the assignment, used as a last resort.
         accounts: the accounts on the roster.
     """
     count = Counter(prefix for name in names for prefix in prefixes(name))

@@ -78,7 +78,7 @@ def collect(folder: Path, roster: Roster, assignment: str, scratch: Path) -> Col
     students = [student for student in roster.students if student.id in newest]
     times = {student.id: max(item.time for item in newest[student.id]) for student in students}
     return CollectedSubmissions(
-        {student.id: _together(newest[student.id], assignment, scratch) for student in students},
+        {student.id: _submission_path(newest[student.id], assignment, scratch) for student in students},
         tuple(student.id for student in students if student.late or any(item.late for item in newest[student.id])),
         tuple(item.listed_name for name, items in submitted.items() for item in items if item not in newest[name]),
         tuple(unmatched),
@@ -146,7 +146,7 @@ def _with_account(item: DownloadedItem, prefix: str | None, accounts: Set[str]) 
     name = item.path.name
     if prefix is not None:
         return replace(item, keys=(("github", account_in(name, prefix)),))
-    candidates = [account for each in prefixes(name) if (account := account_in(name, each)) in accounts]
+    candidates = [account for start in prefixes(name) if (account := account_in(name, start)) in accounts]
     if not candidates:
         return item
     doubt = (
@@ -164,14 +164,14 @@ def _newest(items: Sequence[DownloadedItem]) -> list[DownloadedItem]:
     return [item for item in attempt if item not in replaced]
 
 
-def _together(attempt: Sequence[DownloadedItem], assignment: str, scratch: Path) -> Path:
+def _submission_path(attempt: Sequence[DownloadedItem], assignment: str, scratch: Path) -> Path:
     """Return the path of an attempt. A folder that contains only an archive or a notebook is replaced by that file."""
     if len(attempt) > 1:
         folder = Path(tempfile.mkdtemp(dir=scratch))
         for number, item in enumerate(attempt):
-            target = folder / item.own_name
+            target = folder / item.original_name
             if target.exists():
-                target = folder / f"{number} {item.own_name}"
+                target = folder / f"{number} {item.original_name}"
             if item.path.is_dir():
                 shutil.copytree(item.path, target, symlinks=True)
             else:
@@ -180,7 +180,7 @@ def _together(attempt: Sequence[DownloadedItem], assignment: str, scratch: Path)
     path = attempt[0].path
     if path.is_file():
         return path
-    inside = [child for child in path.iterdir() if not is_ignored(child.name)]
-    if len(inside) == 1 and (is_archive(inside[0].name) or is_notebook(inside[0].name)):
-        return inside[0]
+    children = [child for child in path.iterdir() if not is_ignored(child.name)]
+    if len(children) == 1 and (is_archive(children[0].name) or is_notebook(children[0].name)):
+        return children[0]
     return submission_in(path, assignment)

@@ -44,7 +44,7 @@ TAR = {
 class FeedbackPaths:
     """The path of each student's feedback in the zip, and pairs (student, reason) of those without one."""
 
-    names: Mapping[str, str]
+    by_student: Mapping[str, str]
     left_out: tuple[tuple[str, str], ...]
 
 
@@ -54,15 +54,15 @@ def moodle_paths(roster: Roster, students: Iterable[str]) -> FeedbackPaths:
     if "identifier" not in columns:
         raise UsageError(f"{roster.path}: the column 'identifier' is missing; give the grading worksheet of Moodle")
     rows = {student.id: dict(zip(columns, roster.rows[student.row], strict=False)) for student in roster.students}
-    names, left_out = {}, []
+    by_student, left_out = {}, []
     for student in students:
         number = normalized(rows.get(student, {}).get("identifier", "")).removeprefix(PARTICIPANT)
         if number.isascii() and number.isdigit():
             name = FORBIDDEN.sub(" ", rows[student].get("full name", ""))[:MAX_NAME].strip() or PARTICIPANT.strip()
-            names[student] = f"{name}_{number}_assignsubmission_file_/{feedback.PAGE}"
+            by_student[student] = f"{name}_{number}_assignsubmission_file_/{feedback.PAGE}"
         else:
             left_out.append((student, f"{roster.path.name} has no identifier `Participant NUMBER` for this student"))
-    return FeedbackPaths(names, tuple(left_out))
+    return FeedbackPaths(by_student, tuple(left_out))
 
 
 def canvas_paths(folder: Path, roster: Roster, assignment: str, students: Iterable[str]) -> FeedbackPaths:
@@ -71,21 +71,21 @@ def canvas_paths(folder: Path, roster: Roster, assignment: str, students: Iterab
     Args:
         folder: the unpacked download of the submissions.
         roster: the exported gradebook.
-        assignment: the course's own name of the assignment.
+        assignment: the course's name of the assignment.
         students: the students who get feedback.
     """
     newest = newest_items(folder, roster, assignment)
-    names, left_out = {}, []
+    by_student, left_out = {}, []
     for student in students:
         recognized = [item.path.name for item in newest.get(student, ()) if _is_recognized(item)]
         ranked = sorted((rank, name) for name in recognized if (rank := _rank(name)) is not None)
         if ranked:
-            names[student] = ranked[0][1]
+            by_student[student] = ranked[0][1]
         else:
             left_out.append(
                 (student, "the download has no page, archive or notebook of this student that Canvas accepts again")
             )
-    return FeedbackPaths(names, tuple(left_out))
+    return FeedbackPaths(by_student, tuple(left_out))
 
 
 def write_archive(results: Collection[Result], paths: FeedbackPaths, out: Path) -> None:
@@ -95,7 +95,7 @@ def write_archive(results: Collection[Result], paths: FeedbackPaths, out: Path) 
         written = Path(scratch) / "feedback.zip"
         with zipfile.ZipFile(written, "w", zipfile.ZIP_DEFLATED) as archive:
             for result in results:
-                if (name := paths.names.get(result.student)) is not None:
+                if (name := paths.by_student.get(result.student)) is not None:
                     archive.writestr(_member(name), _feedback_file(name, result, Path(scratch)))
         written.replace(out)
 
@@ -111,18 +111,20 @@ def _feedback_file(name: str, result: Result, scratch: Path) -> bytes:
     """Return a result's feedback as a file of the type that its name indicates. `scratch` gets temporary files."""
     if is_notebook(name):
         return _notebook(result, scratch)
-    low, page = name.casefold(), feedback.write(result, scratch, artifacts=result.folder).read_bytes()
-    if low.endswith(".zip"):
+    lower_name, page = name.casefold(), feedback.write(result, scratch, artifacts=result.folder).read_bytes()
+    if lower_name.endswith(".zip"):
         return _zip(page)
-    mode = next((mode for ending, mode in TAR.items() if low.endswith(ending)), None)
+    mode = next((mode for ending, mode in TAR.items() if lower_name.endswith(ending)), None)
     return page if mode is None else _tar(page, mode)
 
 
 def _rank(name: str) -> int | None:
     """Return how suitable a file of this name is for feedback, 0 being the best, or None if it is not."""
-    low = name.casefold()
+    lower_name = name.casefold()
     kinds = ((".html", ".htm"), (".zip",), tuple(TAR))
-    return next((rank for rank, endings in enumerate(kinds) if low.endswith(endings)), 3 if is_notebook(name) else None)
+    return next(
+        (rank for rank, endings in enumerate(kinds) if lower_name.endswith(endings)), 3 if is_notebook(name) else None
+    )
 
 
 def _is_recognized(item: DownloadedItem) -> bool:

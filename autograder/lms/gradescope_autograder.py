@@ -18,7 +18,7 @@ from autograder.run.sandbox import Isolation
 from autograder.suite import suites
 
 SCRIPTS = course_paths.ROOT / "assets" / "gradescope"  # the zip preserves their executable bits
-# What grading requires in addition to the course with its hidden checks and reference.
+# The parts that grading requires in addition to the course.
 COPIED = ("autograder", "sim", "assets", "pyproject.toml", "requirements.lock", "Makefile")
 
 

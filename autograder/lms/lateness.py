@@ -3,7 +3,7 @@
 The deadline is `until` in the student's row of the table of extensions, or the due time plus the `days` of the row.
 
 The submission time is `submitted` in that row, the time in the download, or the due time plus the delay in Moodle's
-table, whichever is known first. Without a time, a submission is late if the system says so.
+table, whichever is known first. Without a time, a submission is late if the system marks it as late.
 
 Within the grace period, no marks are deducted. After it, the delay is counted from the deadline, and a started day
 counts as a whole day. The floor is applied last.
@@ -48,12 +48,12 @@ class Lateness:
     """The effect of lateness on a submission.
 
     Attributes:
-        kept: the share of its marks that it keeps, 0 to 1.
+        kept_share: the share of its marks that it keeps, 0 to 1.
         days: the number of late days, or None if the system only says that it is late.
         unclear: a sentence with the reason if the effect cannot be determined, or an empty string.
     """
 
-    kept: float = 1.0
+    kept_share: float = 1.0
     days: int | None = 0
     unclear: str = ""
 
@@ -80,7 +80,7 @@ class LatePolicy:
     zone: tzinfo | None = None
     extensions: Mapping[str, Extension] = field(default_factory=dict)
 
-    def judge(self, student: str, delivery: Delivery) -> Lateness:
+    def lateness_of(self, student: str, delivery: Delivery) -> Lateness:
         """Return the lateness of a student's submission."""
         extension = self.extensions.get(student, Extension())
         deadline = extension.until or (None if self.due is None else self.due + extension.days)
@@ -96,7 +96,7 @@ class LatePolicy:
         if self.per_day or self.grace or student in self.extensions:
             is_timed = submitted is not None or delivery.late_by is not None
             missing = "--due" if is_timed else f"the time in the column {SUBMITTED!r} of --extensions"
-            return Lateness(unclear=f"it is late, and nothing says by how much: give {missing}")
+            return Lateness(unclear=f"it is late, but by how much is unknown: give {missing}")
         return self._deduct(self.flat, None)
 
     def _late_by(self, delay: timedelta) -> Lateness:
@@ -109,13 +109,13 @@ class LatePolicy:
         return Lateness(max(self.floor, 100.0 - lost, 0.0) / 100, days)
 
 
-def read_extensions(path: Path, find: FindStudent, zone: tzinfo | None) -> dict[str, Extension]:
+def read_extensions(path: Path, find_student: FindStudent, zone: tzinfo | None) -> dict[str, Extension]:
     """Read the extensions of students: a CSV file with the columns `student`, and `days`, `until` or both.
 
     The column `submitted` gives a submission time that the system does not know. Raises UsageError, with the line, if
     all of these columns are missing, a row has both days and a deadline, or a cell is not a number of days or a time.
     """
-    rows = read_rows(path, (), find, one_of=(DAYS, UNTIL, SUBMITTED))
+    rows = read_rows(path, (), find_student, one_of=(DAYS, UNTIL, SUBMITTED))
     return {row.student: _extension(row, zone) for row in rows}
 
 
@@ -124,19 +124,19 @@ def _extension(row: Row, zone: tzinfo | None) -> Extension:
     if days and until:
         raise row.error(f"it has both {DAYS} and {UNTIL}: remove one")
     try:
-        extra = timedelta(days=float(days or 0))
+        extra_days = timedelta(days=float(days or 0))
     except (ValueError, OverflowError):
-        extra = timedelta(days=-1)
-    if not timedelta() <= extra <= MAX_DAYS * DAY:
+        extra_days = timedelta(days=-1)
+    if not timedelta() <= extra_days <= MAX_DAYS * DAY:
         raise row.error(f"{days!r} is not a number of days from 0 to {MAX_DAYS}")
     try:
-        deadline = moment(until, zone) if until else None
-        return Extension(extra, deadline, moment(submitted, zone) if submitted else None)
+        deadline = parse_time(until, zone) if until else None
+        return Extension(extra_days, deadline, parse_time(submitted, zone) if submitted else None)
     except UsageError as error:
         raise row.error(str(error)) from None
 
 
-def moment(text: str, zone: tzinfo | None) -> datetime:
+def parse_time(text: str, zone: tzinfo | None) -> datetime:
     """Return the time of an ISO 8601 text. A day without a time means its end.
 
     Args:
@@ -153,7 +153,7 @@ def moment(text: str, zone: tzinfo | None) -> datetime:
 
 
 def zone_of(text: str) -> tzinfo | None:
-    """Return the time zone in an ISO 8601 time, or None. Raises UsageError like `moment`."""
+    """Return the time zone in an ISO 8601 time, or None. Raises UsageError like `parse_time`."""
     return _parsed(text).tzinfo
 
 

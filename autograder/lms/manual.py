@@ -45,7 +45,7 @@ def manual_cells(assignment: str) -> dict[str, float]:
     return {str(graded_cell["grade_id"]): float(graded_cell["points"]) for graded_cell in graded}
 
 
-def read_manual(path: Path, cells: Mapping[str, float], find: FindStudent) -> ManualMarks:
+def read_manual(path: Path, cells: Mapping[str, float], find_student: FindStudent) -> ManualMarks:
     """Read the manual points for the cells of an assignment.
 
     Raises UsageError, with the line, if a column is missing, a student is unknown or repeated, or points are not a
@@ -53,10 +53,10 @@ def read_manual(path: Path, cells: Mapping[str, float], find: FindStudent) -> Ma
     """
     return {
         row.student: {
-            name: ManualMark(_points(row, name, most), row.cells.get(name + COMMENT, ""))
-            for name, most in cells.items()
+            name: ManualMark(_points(row, name, max_points), row.cells.get(name + COMMENT, ""))
+            for name, max_points in cells.items()
         }
-        for row in read_rows(path, tuple(cells), find)
+        for row in read_rows(path, tuple(cells), find_student)
     }
 
 
@@ -68,39 +68,39 @@ def add_manual(
     The result of such a student is unclear: it has no mark, and its sentence says which points are missing. Raises
     UsageError if a student has points above 0 but no result.
     """
-    strangers = sorted(
+    without_result = sorted(
         student
         for student in marks.keys() - {result.student for result in results}
         if any(mark.points for mark in marks[student].values())
     )
-    if strangers:
-        raise UsageError(f"points for {', '.join(strangers)} without a result: grade a submission first")
-    added = [_added(result, marks.get(result.student, {}), cells) for result in results]
-    pairs = zip(results, added, strict=True)
-    return added, [(new.student, new.diagnosis.sentence) for old, new in pairs if old.status is not new.status]
+    if without_result:
+        raise UsageError(f"points for {', '.join(without_result)} without a result: grade a submission first")
+    new_results = [_with_marks(result, marks.get(result.student, {}), cells) for result in results]
+    pairs = zip(results, new_results, strict=True)
+    return new_results, [(new.student, new.diagnosis.sentence) for old, new in pairs if old.status is not new.status]
 
 
-def _added(result: Result, marks: Mapping[str, ManualMark], cells: Mapping[str, float]) -> Result:
+def _with_marks(result: Result, marks: Mapping[str, ManualMark], cells: Mapping[str, float]) -> Result:
     if result.status is not Status.GRADED:
         return result
     missing = [name for name in cells if name not in marks or marks[name].points is None]
     if missing:
-        sentence = f"A person has not marked {', '.join(missing)} yet."
+        sentence = f"Not marked yet: {', '.join(missing)}."
         return replace(result, status=Status.UNCLEAR, diagnosis=Diagnosis(Kind.UNCLEAR, sentence))
-    checks = [_check(name, most, marks[name]) for name, most in cells.items()]
-    most = math.fsum((result.max_score, *cells.values()))
-    return replace(result, checks=(*result.checks, *checks), max_score=most)
+    checks = [_check(name, max_points, marks[name]) for name, max_points in cells.items()]
+    max_points = math.fsum((result.max_score, *cells.values()))
+    return replace(result, checks=(*result.checks, *checks), max_score=max_points)
 
 
-def _check(name: str, most: float, mark: ManualMark) -> CheckResult:
+def _check(name: str, max_points: float, mark: ManualMark) -> CheckResult:
     points = mark.points or 0.0
     return CheckResult(
         id=name,
-        title=f"A person marked {name}." + (f" {mark.comment}" if mark.comment else ""),
+        title=f"{name} was marked by hand." + (f" {mark.comment}" if mark.comment else ""),
         group=name,
         points=points,
-        max_points=most,
-        outcome=Outcome.PASSED if points == most else Outcome.FAILED,
+        max_points=max_points,
+        outcome=Outcome.PASSED if points == max_points else Outcome.FAILED,
         message="",
         hints=(),
         doc=None,
@@ -109,7 +109,7 @@ def _check(name: str, most: float, mark: ManualMark) -> CheckResult:
     )
 
 
-def _points(row: Row, name: str, most: float) -> float | None:
+def _points(row: Row, name: str, max_points: float) -> float | None:
     text = row.cells[name]
     if not text:
         return None
@@ -117,6 +117,6 @@ def _points(row: Row, name: str, most: float) -> float | None:
         points = float(text)
     except ValueError:
         raise row.error(f"{text!r} is not a number of points for {name}; write 4.5, not 4,5") from None
-    if not 0 <= points <= most:
-        raise row.error(f"{text} points for {name}: the points must be from 0 to {most:g}")
+    if not 0 <= points <= max_points:
+        raise row.error(f"{text} points for {name}: the points must be from 0 to {max_points:g}")
     return points

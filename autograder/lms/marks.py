@@ -45,7 +45,7 @@ class MarkTable:
 
 
 def mark_table(
-    results: Sequence[Result], system: str, roster: Roster, kept: Mapping[str, float | None] = {}
+    results: Sequence[Result], system: str, roster: Roster, kept_shares: Mapping[str, float | None] = {}
 ) -> MarkTable:
     """Return the table of a system with the marks of one assignment.
 
@@ -55,7 +55,7 @@ def mark_table(
         results: the results of one assignment.
         system: a key of `SYSTEMS`.
         roster: the table that the system exported.
-        kept: the share of the marks, 0 to 1, that students with late submissions keep; None for no mark.
+        kept_shares: the share of the marks, 0 to 1, that students with late submissions keep; None for no mark.
 
     Raises:
         UsageError: the table lacks a column, or the results belong to several assignments.
@@ -65,12 +65,12 @@ def mark_table(
     shares = {
         name: result.percent / 100 * share
         for name, result in graded.items()
-        if (share := kept.get(name, 1.0)) is not None
+        if (share := kept_shares.get(name, 1.0)) is not None
     }
     known = {student.id for student in roster.students}
     unknown = tuple(sorted(result.student for result in results if result.student not in known))
-    most = next((result.max_score for result in graded.values()), 0.0)
-    rows, marks = SYSTEMS[system](roster, shares, most, assignment)
+    max_points = next((result.max_score for result in graded.values()), 0.0)
+    rows, marks = SYSTEMS[system](roster, shares, max_points, assignment)
     return MarkTable(rows, marks, unknown)
 
 
@@ -79,7 +79,7 @@ def one_assignment(results: Sequence[Result]) -> str:
     assignments = {result.assignment for result in results}
     if len(assignments) != 1:
         raise UsageError(
-            f"a table holds the marks of one assignment, but these belong to {', '.join(sorted(assignments))}"
+            f"a table contains the marks of one assignment, but these belong to {', '.join(sorted(assignments))}"
         )
     return assignments.pop()
 
@@ -87,7 +87,7 @@ def one_assignment(results: Sequence[Result]) -> str:
 Filled = tuple[Rows, dict[str, tuple[str, str]]]
 
 
-def _moodle(roster: Roster, shares: Mapping[str, float], most: float, assignment: str) -> Filled:
+def _moodle(roster: Roster, shares: Mapping[str, float], max_points: float, assignment: str) -> Filled:
     # The last column is not used here, but Moodle rejects a worksheet without it.
     columns = _columns(roster, ("identifier", "grade", "maximum grade", "last modified (grade)"))
     grade, maximum = columns["grade"], columns["maximum grade"]
@@ -100,7 +100,7 @@ def _moodle(roster: Roster, shares: Mapping[str, float], most: float, assignment
     return [list(roster.headings), *rows], marks
 
 
-def _canvas(roster: Roster, shares: Mapping[str, float], most: float, assignment: str) -> Filled:
+def _canvas(roster: Roster, shares: Mapping[str, float], max_points: float, assignment: str) -> Filled:
     columns = _columns(roster, ("student", "id"))
     points = next((row for row in roster.rows if normalized(row[0]) == CANVAS_POINTS), None)
     title = normalized(assignment.replace("_", " "))
@@ -113,12 +113,12 @@ def _canvas(roster: Roster, shares: Mapping[str, float], most: float, assignment
     name_columns = [index for name, index in columns.items() if name in CANVAS_NAMES]
     heading = assignment if column is None else roster.headings[column]
     if column is not None and points is not None:
-        most = _number(points[column], roster)
-    cells = [row[column] if column is not None else _points(most) if row is points else "" for row in roster.rows]
+        max_points = _number(points[column], roster)
+    cells = [row[column] if column is not None else _points(max_points) if row is points else "" for row in roster.rows]
     marks = {}
     for student in roster.students:
         if student.id in shares:
-            marks[student.id] = cells[student.row], _points(shares[student.id] * most)
+            marks[student.id] = cells[student.row], _points(shares[student.id] * max_points)
             cells[student.row] = marks[student.id][1]
     rows = [[*(row[index] for index in name_columns), cell] for row, cell in zip(roster.rows, cells, strict=True)]
     return [[*(roster.headings[index] for index in name_columns), heading], *rows], marks
@@ -127,15 +127,15 @@ def _canvas(roster: Roster, shares: Mapping[str, float], most: float, assignment
 SYSTEMS = {"canvas": _canvas, "moodle": _moodle}
 
 
-def _columns(roster: Roster, needed: tuple[str, ...]) -> dict[str, int]:
+def _columns(roster: Roster, required: tuple[str, ...]) -> dict[str, int]:
     columns = {normalized(heading): index for index, heading in enumerate(roster.headings)}
-    missing = [name for name in needed if name not in columns]
+    missing = [name for name in required if name not in columns]
     if missing:
         raise UsageError(f"{roster.path}: the column {missing[0]!r} is missing; use the table that the system exported")
     width = len(roster.headings)
-    short = [number for number, row in enumerate(roster.rows, start=2) if len(row) < width]
-    if short:
-        raise UsageError(f"{roster.path}: row {short[0]} has fewer columns than the headings")
+    short_rows = [number for number, row in enumerate(roster.rows, start=2) if len(row) < width]
+    if short_rows:
+        raise UsageError(f"{roster.path}: row {short_rows[0]} has fewer columns than the headings")
     return columns
 
 

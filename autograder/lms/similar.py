@@ -59,74 +59,77 @@ class Comparison:
     """The groups of a class, most similar first, and the students without any code of their own."""
 
     groups: tuple[Group, ...]
-    without_own: Names
+    without_own_code: Names
 
 
 def compare(
-    codes: Mapping[str, str], given: str, least: float, in_part: Callable[[str, str], None] = lambda name, part: None
+    codes: Mapping[str, str],
+    provided: str,
+    min_share: float,
+    on_partial: Callable[[str, str], None] = lambda name, part: None,
 ) -> Comparison:
     """Return the groups of students with similar texts. Each student is in one group at most.
 
     Args:
         codes: the text of each student.
-        given: the text that the course provides.
-        least: the share of a student's own text, 0 to 1, that must also be in the other text to put a pair into one
+        provided: the text that the course provides.
+        min_share: the share of a student's own text, 0 to 1, that must also be in the other text to put a pair into one
             group. Groups are chains of similar pairs, so the two ends of a chain may be less similar.
-        in_part: called with each student whose text is only compared in part, and a description of the part.
+        on_partial: called with each student whose text is only compared in part, and a description of the part.
     """
-    given_fingerprint = _fingerprint(_dense(given))
+    provided_fingerprint = _fingerprint(_dense(provided))
     fingerprints: dict[Names, CodeFingerprint] = {}
-    for text, names in _by_text(codes, in_part).items():
+    for text, names in _by_text(codes, on_partial).items():
         fingerprint = fingerprints[names] = _fingerprint(text)
-        fingerprint.hashes -= given_fingerprint.hashes
-        positions = {key: where for key, where in fingerprint.hash_idx.items() if key in fingerprint.hashes}
+        fingerprint.hashes -= provided_fingerprint.hashes
+        positions = {key: position for key, position in fingerprint.hash_idx.items() if key in fingerprint.hashes}
         fingerprint.hash_idx = positions
         fingerprint.token_coverage = get_token_coverage(positions, MIN_MATCH_TOKENS, len(fingerprint.filtered_code))
-    own = {names: fingerprint for names, fingerprint in fingerprints.items() if fingerprint.hashes}
-    links = sorted(_links(own, least), key=lambda pair: (-max(pair.shares), pair.names))
-    groups = _with_texts(_joined(links), own)
-    return Comparison(groups, tuple(name for names in fingerprints if names not in own for name in names))
+    with_own_code = {names: fingerprint for names, fingerprint in fingerprints.items() if fingerprint.hashes}
+    links = sorted(_links(with_own_code, min_share), key=lambda pair: (-max(pair.shares), pair.names))
+    groups = _with_texts(_joined(links), with_own_code)
+    return Comparison(groups, tuple(name for names in fingerprints if names not in with_own_code for name in names))
 
 
-def _by_text(codes: Mapping[str, str], in_part: Callable[[str, str], None]) -> dict[str, Names]:
+def _by_text(codes: Mapping[str, str], on_partial: Callable[[str, str], None]) -> dict[str, Names]:
     """Return the students of each text to compare."""
     students: dict[str, Names] = {}
     for name, code in codes.items():
         dense = _dense(code)
         if len(dense) > MAX_CHARACTERS:
-            in_part(name, f"the first {MAX_CHARACTERS:,} characters of its code; please check the rest yourself")
+            on_partial(name, f"the first {MAX_CHARACTERS:,} characters of its code; please check the rest yourself")
         text = dense[:MAX_CHARACTERS]
         students[text] = (*students.get(text, ()), name)
     return students
 
 
-def _links(prints: Fingerprints, least: float) -> Iterable[Pair]:
+def _links(fingerprints: Fingerprints, min_share: float) -> Iterable[Pair]:
     """Yield the pairs of similar texts, and one pair for each text that several students have."""
-    for names in prints:
+    for names in fingerprints:
         if len(names) > 1:
             yield Pair((names[:1], names[1:]), (1.0, 1.0))
-    for one, two in combinations(prints, 2):
-        _, shares, _ = compare_files(prints[one], prints[two])
-        if max(shares) >= least and max(shares) > 0:
-            yield Pair((one, two), (min(1.0, shares[0]), min(1.0, shares[1])))
+    for first, second in combinations(fingerprints, 2):
+        _, shares, _ = compare_files(fingerprints[first], fingerprints[second])
+        if max(shares) >= min_share and max(shares) > 0:
+            yield Pair((first, second), (min(1.0, shares[0]), min(1.0, shares[1])))
 
 
 def _joined(links: Iterable[Pair]) -> list[Group]:
     """Join pairs into groups, most similar first. A pair that is already in one group is omitted."""
     group_of: dict[str, Group] = {}
     for link in links:
-        one, two = (group_of.get(names[0], Group(names, ())) for names in link.names)
-        if one.names == two.names:
+        first, second = (group_of.get(names[0], Group(names, ())) for names in link.names)
+        if first.names == second.names:
             continue
-        joined = Group((*one.names, *two.names), (*one.pairs, *two.pairs, link))
+        joined = Group((*first.names, *second.names), (*first.pairs, *second.pairs, link))
         group_of.update(dict.fromkeys(joined.names, joined))
     return list(dict.fromkeys(group_of.values()))
 
 
-def _with_texts(groups: Sequence[Group], prints: Fingerprints) -> tuple[Group, ...]:
+def _with_texts(groups: Sequence[Group], fingerprints: Fingerprints) -> tuple[Group, ...]:
     """Return the groups in order, with the texts of the most similar pairs."""
     ranked = sorted((pair for group in groups for pair in group.pairs), key=_rank)
-    with_texts = {pair: _with_highlights(pair, prints) for pair in ranked[:MAX_PAIRS]}
+    with_texts = {pair: _with_highlights(pair, fingerprints) for pair in ranked[:MAX_PAIRS]}
     ordered = sorted(groups, key=lambda group: min(map(_rank, group.pairs)))
     return tuple(
         Group(tuple(sorted(group.names)), tuple(with_texts.get(pair, pair) for pair in sorted(group.pairs, key=_rank)))
@@ -138,9 +141,11 @@ def _rank(pair: Pair) -> tuple[float, tuple[Names, Names]]:
     return -max(pair.shares), pair.names
 
 
-def _with_highlights(pair: Pair, prints: Fingerprints) -> Pair:
-    together = pair.names[0] + pair.names[1]  # students with the same text
-    first, second = (prints[together] if together in prints else prints[names] for names in pair.names)
+def _with_highlights(pair: Pair, fingerprints: Fingerprints) -> Pair:
+    all_names = pair.names[0] + pair.names[1]  # students with the same text
+    first, second = (
+        fingerprints[all_names] if all_names in fingerprints else fingerprints[names] for names in pair.names
+    )
     _, _, slices = compare_files(first, second)
     return Pair(pair.names, pair.shares, (_marked(first.raw_code, slices[0]), _marked(second.raw_code, slices[1])))
 

@@ -68,7 +68,7 @@ class DownloadedItem:
 
     Attributes:
         path: its path.
-        name: the student's name for it; empty if it is the name of the path.
+        name: the name that the student gave it; empty if it is the name of the path.
         doubt: the reason if the student is ambiguous, or an empty string.
         keys: identities of the student, for `Roster.find`.
         order: sort key for a student's items; a larger one is newer.
@@ -91,13 +91,13 @@ class DownloadedItem:
     time: str = ""
 
     @property
-    def own_name(self) -> str:
-        """The student's name for it."""
+    def original_name(self) -> str:
+        """The name that the student gave it."""
         return self.name or self.path.name
 
     @property
     def listed_name(self) -> str:
-        """The system's name for it."""
+        """The name that the system gave it."""
         return (self.name if self.system == "sakai" and self.path.is_dir() else "") or self.path.name
 
 
@@ -198,20 +198,20 @@ def _brightspace_keys(name: str) -> IdentityKeys:
 
 
 def _members(path: Path) -> list[IdentityKeys]:
-    """Return the keys of each member in a Sakai name: `Doe, Jane(jdoe3); Roe, Bob(broe)`."""
-    whole = path.name if path.is_dir() else path.name.partition(f"_{ATTACHMENTS}_")[0].removesuffix(f"_{TEXT}")
+    """Return the keys of each group member in a Sakai name: `Doe, Jane(jdoe3); Roe, Bob(broe)`."""
+    member_names = path.name if path.is_dir() else path.name.partition(f"_{ATTACHMENTS}_")[0].removesuffix(f"_{TEXT}")
     if (
         not path.is_dir() and path.name.count(f"_{ATTACHMENTS}_") > 1
     ):  # one is part of a student's name or a file's name
         return []
     members: list[IdentityKeys] = []
-    for member in whole.split("; "):
-        name, bracket, account = member.rpartition("(")
+    for entry in member_names.split("; "):
+        name, bracket, account = entry.rpartition("(")
         if not (bracket and account.endswith(")") and "," in name):
             return []
         kinds = ("id", "login", "number", "email")
         members.append((*((kind, account[:-1]) for kind in kinds), ("name", name)))
-    return members if whole != path.name or path.is_dir() else []
+    return members if member_names != path.name or path.is_dir() else []
 
 
 def _without_doubtful_groups(items: list[DownloadedItem]) -> list[DownloadedItem]:
@@ -251,9 +251,9 @@ def resubmitted(items: Sequence[DownloadedItem]) -> list[DownloadedItem]:
     for item in items:
         if item.system != "canvas":
             continue
-        match = VERSION.fullmatch(item.own_name)
+        match = VERSION.fullmatch(item.original_name)
         if match is None:
-            versions.setdefault(item.own_name, {})[0] = item
+            versions.setdefault(item.original_name, {})[0] = item
         else:
             versions.setdefault(match["stem"] + match["ending"], {})[int(match["version"])] = item
     return [
@@ -285,7 +285,7 @@ def read_metadata(folder: Path) -> tuple[list[DownloadedItem], list[tuple[str, s
 
 def _downloaded_items(folder: Path, entry: dict[str, Any]) -> Iterator[DownloadedItem]:
     kinds = {":sid": "number", ":email": "email", ":name": "name"}
-    for person in entry[":submitters"]:
-        keys: IdentityKeys = tuple((kind, str(person[key])) for key, kind in kinds.items() if person.get(key))
+    for student in entry[":submitters"]:
+        keys: IdentityKeys = tuple((kind, str(student[key])) for key, kind in kinds.items() if student.get(key))
         time = str(entry.get(":created_at", ""))
         yield DownloadedItem(folder, keys, (time,), time=time)

@@ -41,11 +41,13 @@ def student_finder(known: Collection[str], roster: Roster | None) -> FindStudent
     return find
 
 
-def read_rows(path: Path, needed: Collection[str], find: FindStudent, *, one_of: Collection[str] = ()) -> list[Row]:
+def read_rows(
+    path: Path, required: Collection[str], find_student: FindStudent, *, one_of: Collection[str] = ()
+) -> list[Row]:
     """Read the rows of a table. Empty rows and unknown columns are ignored.
 
     Raises UsageError, with the file and line, if the file cannot be read, lacks the column `student`, a column in
-    `needed` or all columns in `one_of`, or has a row with an unknown or repeated student or the wrong number of cells.
+    `required` or all columns in `one_of`, or has a row with an unknown or repeated student or a wrong number of cells.
     """
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
@@ -54,19 +56,19 @@ def read_rows(path: Path, needed: Collection[str], find: FindStudent, *, one_of:
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise UsageError(f"{path}: cannot be read as CSV in UTF-8: {error}") from None
     if not lines:
-        raise UsageError(f"{path}: the table is empty; its columns are {', '.join((STUDENT, *needed))}")
-    (first, number), *rest = lines
-    headings = [normalized(cell) for cell in first]
-    for name in (STUDENT, *needed):
+        raise UsageError(f"{path}: the table is empty; its columns are {', '.join((STUDENT, *required))}")
+    (heading_row, number), *rest = lines
+    headings = [normalized(cell) for cell in heading_row]
+    for name in (STUDENT, *required):
         if headings.count(name) != 1:
             problem = "is missing" if name not in headings else "occurs twice"
-            line = "; ".join(first)
+            line = "; ".join(heading_row)
             raise UsageError(
                 f"{path}, line {number}: the column {name!r} {problem}; commas separate columns, not {line!r}"
             )
     if one_of and not set(one_of) & set(headings):
         raise UsageError(f"{path}, line {number}: it needs one of the columns {', '.join(one_of)}")
-    rows = [_row(headings, cells, f"{path}, line {number}", find) for cells, number in rest]
+    rows = [_row(headings, cells, f"{path}, line {number}", find_student) for cells, number in rest]
     seen: dict[str, Row] = {}
     for row in rows:
         if row.student in seen:
@@ -75,11 +77,11 @@ def read_rows(path: Path, needed: Collection[str], find: FindStudent, *, one_of:
     return rows
 
 
-def _row(headings: list[str], line: list[str], location: str, find: FindStudent) -> Row:
+def _row(headings: list[str], line: list[str], location: str, find_student: FindStudent) -> Row:
     if len(line) != len(headings):
         raise UsageError(f"{location}: {len(line)} cells, but {len(headings)} headings")
     cells = {heading: cell.strip() for heading, cell in zip(headings, line, strict=True)}
-    student = find(cells[STUDENT])
+    student = find_student(cells[STUDENT])
     if student is None:
         raise UsageError(
             f"{location}: {cells[STUDENT]!r} matches no student or several; give the name of a result's folder"

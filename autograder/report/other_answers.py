@@ -22,11 +22,11 @@ class OtherAnswer:
     """A correct answer in another style.
 
     Attributes:
-        differs: how it differs from the answer of most students, in a few sentences.
+        difference: how it differs from the answer of most students, in a few sentences.
         files: the path and the text of each file that differs.
     """
 
-    differs: str
+    difference: str
     files: tuple[tuple[str, str], ...]
 
 
@@ -45,18 +45,18 @@ def other_answers(assignment: str) -> tuple[OtherAnswer, ...]:
     except (ValueError, yaml.YAMLError) as error:
         raise UsageError(f"{path} cannot be read as YAML: {error}") from None
     if not isinstance(texts, dict) or not all(isinstance(text, str) for pair in texts.items() for text in pair):
-        raise UsageError(f"{path}: write the name of a variant, a colon and what differs in it, for each variant")
-    return tuple(_answer(folder, name, differs) for name, differs in texts.items())
+        raise UsageError(f"{path}: for each variant, write its name, a colon and how it differs")
+    return tuple(_answer(folder, name, difference) for name, difference in texts.items())
 
 
-def _answer(folder: Path, name: str, differs: str) -> OtherAnswer:
+def _answer(folder: Path, name: str, difference: str) -> OtherAnswer:
     known = sorted(variant.name for variant in folder.iterdir() if variant.is_dir())
     if name not in known:
         raise UsageError(
             f"{folder / SHOWN} names {name!r}, which is not a variant; the variants are: {', '.join(known)}"
         )
     paths = sorted(path for path in (folder / name).rglob("*") if path.is_file())
-    return OtherAnswer(differs, tuple((path.relative_to(folder / name).as_posix(), _text(path)) for path in paths))
+    return OtherAnswer(difference, tuple((path.relative_to(folder / name).as_posix(), _text(path)) for path in paths))
 
 
 def _text(path: Path) -> str:

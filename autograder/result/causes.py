@@ -1,7 +1,7 @@
-"""Groups failures by their causes: a student fixes the cause first, and runs the checks again.
+"""Groups failures by their causes. A student fixes the cause first, and runs the checks again.
 
-A check names other checks whose failure probably causes its own (`CheckResult.after`). Checks with the same reason also
-have one cause: a build that failed, or a program that crashed.
+A check names other checks whose failure probably causes its own (`CheckResult.after`). Checks with the same message
+also have the same cause, such as a failed build or a crashed program.
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ from dataclasses import dataclass
 from autograder.result.model import CheckResult
 from autograder.suite import Outcome
 
-FAILED_AS_WELL = "These failed as well; mend the first and run again:"
+FAILED_AS_WELL = "These also failed. Fix the one above first, then run again:"
 MAX_NAMED = 3  # titles in the line about unchecked behaviour
 
 
 @dataclass(frozen=True)
 class Cause:
-    """A check, and those that did not pass because it did not.
+    """A check, and the checks that did not pass because of it.
 
     Attributes:
-        check: the check that failed first. A check that passed is no cause.
-        failed: the checks that failed as well.
+        check: the check that failed first, or a check that passed, which has no consequences.
+        failed: the checks that also failed.
         unchecked: the checks that could not be checked.
     """
 
@@ -43,7 +43,7 @@ class Cause:
 
     @property
     def not_checked(self) -> str:
-        """The line about checks that could not run, or an empty string. It names a few and counts many."""
+        """The line about checks that could not run, or an empty string. It names a few checks, but only counts many."""
         if not self.unchecked:
             return ""
         few = " ".join(check.title for check in self.unchecked)
@@ -51,53 +51,53 @@ class Cause:
 
     @property
     def unnamed(self) -> tuple[str, ...]:
-        """The titles of checks that could not run, if they are too many for the line."""
+        """The titles of the checks that could not run, if there are too many for the line."""
         titles = tuple(check.title for check in self.unchecked)
         return titles if len(titles) > MAX_NAMED else ()
 
 
 def causes(checks: Sequence[CheckResult], diagnosis: str = "") -> tuple[Cause, ...]:
-    """Group the checks of a result by their causes, in the order of the causes; each check is in one of them.
+    """Group the checks of a result by their causes, in the order of the causes. Each check is in one group.
 
     Args:
         checks: the results of checks.
-        diagnosis: the sentence about the failure of the program, which a check may give as its reason.
+        diagnosis: the sentence about the failure of the program, which may also be the message of a check.
     """
-    places = {check.id: place for place, check in reversed(list(enumerate(checks)))}
-    first = [_first(place, checks, places) for place in range(len(checks))]
-    reasons: dict[str, int] = {}  # the places of the checks that gave a reason first
-    for place in sorted(set(first)):
-        check = checks[place]
-        shared = check.outcome is Outcome.NOT_CHECKED or (
+    indices = {check.id: index for index, check in reversed(list(enumerate(checks)))}
+    cause_of = [_cause_of(index, checks, indices) for index in range(len(checks))]
+    first_with: dict[str, int] = {}  # for each message, the index of the first check with it
+    for index in sorted(set(cause_of)):
+        check = checks[index]
+        is_shared = check.outcome is Outcome.NOT_CHECKED or (
             check.outcome is Outcome.FAILED and check.message == diagnosis
         )
-        if shared and reasons.setdefault(check.message, place) != place:
-            first = [reasons[check.message] if other == place else other for other in first]
-    members: dict[int, list[CheckResult]] = {place: [] for place in sorted(set(first))}
-    for place, check in enumerate(checks):
-        if first[place] != place:
-            members[first[place]].append(check)
+        if is_shared and first_with.setdefault(check.message, index) != index:
+            cause_of = [first_with[check.message] if other == index else other for other in cause_of]
+    consequences_of: dict[int, list[CheckResult]] = {index: [] for index in sorted(set(cause_of))}
+    for index, check in enumerate(checks):
+        if cause_of[index] != index:
+            consequences_of[cause_of[index]].append(check)
     return tuple(
         Cause(
-            checks[place],
-            tuple(check for check in came if check.outcome is Outcome.FAILED),
-            tuple(check for check in came if check.outcome is Outcome.NOT_CHECKED),
+            checks[index],
+            tuple(check for check in consequences if check.outcome is Outcome.FAILED),
+            tuple(check for check in consequences if check.outcome is Outcome.NOT_CHECKED),
         )
-        for place, came in members.items()
+        for index, consequences in consequences_of.items()
     )
 
 
-def dearest(all_causes: Sequence[Cause]) -> CheckResult | None:
-    """Return the check that failed and costs most points, with all that came with it; None if none failed."""
+def costliest_failure(all_causes: Sequence[Cause]) -> CheckResult | None:
+    """Return the failed check that costs the most points, including its consequences; None if no check failed."""
     failed = [cause for cause in all_causes if cause.check.outcome is Outcome.FAILED]
     return max(failed, key=lambda cause: cause.lost).check if failed else None
 
 
-def _first(place: int, checks: Sequence[CheckResult], places: Mapping[str, int]) -> int:
-    """Return the place of the check from which a failure came: the check's own if it passed, or came from none."""
-    seen: set[int] = set()
-    while checks[place].outcome is not Outcome.PASSED and place not in seen:
-        seen.add(place)
-        earlier = (places[name] for name in checks[place].after if name in places)
-        place = next((other for other in earlier if checks[other].outcome is not Outcome.PASSED), place)
-    return place
+def _cause_of(index: int, checks: Sequence[CheckResult], indices: Mapping[str, int]) -> int:
+    """Return the index of the check that caused a failure: the check's own if it passed, or if no other caused it."""
+    visited: set[int] = set()
+    while checks[index].outcome is not Outcome.PASSED and index not in visited:
+        visited.add(index)
+        earlier = (indices[name] for name in checks[index].after if name in indices)
+        index = next((other for other in earlier if checks[other].outcome is not Outcome.PASSED), index)
+    return index

@@ -79,7 +79,7 @@ def test_consequences_unfold_below_their_cause(
     expect(also).to_be_hidden()
     expect(page.get_by_text("Not checked: It stands still where it is blind.")).to_be_visible()
     page.screenshot(path=screenshots / f"feedback-folded-{width}.png", full_page=True)
-    page.get_by_text("These failed as well; mend the first and run again: 3").click()
+    page.get_by_text("These also failed. Fix the one above first, then run again: 3").click()
     expect(also).to_be_visible()
     page.get_by_text("1 check did not pass with").get_by_role("link").click()
     expect(page.locator("#check-first")).to_be_in_viewport()

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from autograder import course_paths
-from autograder.lms.hub.trial import Hub, running
+from autograder.lms.hub.trial import Hub, running_hub
 from autograder.lms.hub.users import MARK, remove_users
 from autograder.ros.environment import find, without_wheel_bootstrap
 from tests.e2e.test_hub import check_a_class, shared_folder
@@ -83,6 +83,6 @@ def hub_of_the_guide(shared_folder: Path) -> Iterator[tuple[Hub, str]]:
 def test_the_commands_of_the_guide_make_a_hub_for_a_class(shared_folder: Path) -> None:
     with (
         hub_of_the_guide(shared_folder) as (hub, serve),
-        running(shared_folder, ("bash", "-c", f'{serve} "$@"', "hub")) as url,
+        running_hub(shared_folder, ("bash", "-c", f'{serve} "$@"', "hub")) as url,
     ):
         check_a_class(replace(hub, url=url), with_reference=True)

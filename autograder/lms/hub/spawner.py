@@ -21,7 +21,7 @@ class NoServerError(Exception):
     """All ROS domains of this machine are in use. The hub shows the message to the user."""
 
     jupyterhub_message = (
-        f"All {len(DOMAINS)} ROS domains of this machine are in use. A server that is stopped gives its domain back: "
+        f"All {len(DOMAINS)} ROS domains of this machine are in use. A server that stops frees its domain: "
         "try again later, or ask your instructor."
     )
 

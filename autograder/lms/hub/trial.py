@@ -28,7 +28,7 @@ from autograder.lms.hub.users import temporary_users
 
 STUDENTS = ("ada", "ben", "cleo")
 TEACHER = "teacher"
-START_SECONDS = 300.0  # a deadline for the hub, not an expectation
+START_SECONDS = 300.0  # the maximum time until the hub responds
 PROXY = course_paths.ROOT / "assets" / "hub"  # contains package.json and npm's lock file
 CONFIGURATION = """\
 from pathlib import Path
@@ -126,7 +126,7 @@ def serving(folder: Path, course: Path, port: int = 0) -> Iterator[Hub]:
     )
     with temporary_users(homes, hub.password, groups):
         _make_course_directory(homes / hub.teacher, hub.teacher)
-        with running(state, (sys.executable, "-m", "jupyterhub", "-f", str(configuration)), port) as url:
+        with running_hub(state, (sys.executable, "-m", "jupyterhub", "-f", str(configuration)), port) as url:
             yield replace(hub, url=url)
 
 
@@ -144,7 +144,7 @@ def _make_course_directory(home: Path, owner: str) -> None:
 
 
 @contextmanager
-def running(state: Path, command: Sequence[str], port: int = 0) -> Iterator[str]:
+def running_hub(state: Path, command: Sequence[str], port: int = 0) -> Iterator[str]:
     """Run JupyterHub, and yield its address once it responds.
 
     Args:
@@ -188,12 +188,12 @@ def _wait(hub: subprocess.Popen[bytes], url: str, log: Path) -> None:
 def _free_ports(count: int) -> list[int]:
     with ExitStack() as stack:
         sockets = [stack.enter_context(socket.create_server(("127.0.0.1", 0))) for _ in range(count)]
-        return [int(each.getsockname()[1]) for each in sockets]
+        return [int(server.getsockname()[1]) for server in sockets]
 
 
 def _run(folder: Path, *command: str) -> None:
     bin_folder = str(Path(sys.executable).parent)
     environment = {**os.environ, "PATH": os.pathsep.join([bin_folder, os.environ.get("PATH", os.defpath)])}
-    done = subprocess.run(command, cwd=folder, env=environment, check=False)
-    if done.returncode != 0:
-        raise UsageError(f"{' '.join(command)} failed with exit status {done.returncode}: its output is above")
+    completed = subprocess.run(command, cwd=folder, env=environment, check=False)
+    if completed.returncode != 0:
+        raise UsageError(f"{' '.join(command)} failed with exit status {completed.returncode}: its output is above")

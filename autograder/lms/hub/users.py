@@ -21,7 +21,7 @@ MARK = "made by make hub"  # the comment (GECOS field) of each user that this mo
 def temporary_users(homes: Path, password: str, groups: Mapping[str, Sequence[str]]) -> Iterator[None]:
     """Create groups and their users, with home folders in `homes`. Afterwards, remove them with all their processes.
 
-    What a killed trial left behind is removed first.
+    Users and groups that a killed trial left behind are removed first.
 
     Raises:
         UsageError: another user has one of the names.
@@ -67,7 +67,7 @@ def _kill_processes(uid: int) -> None:
 
 
 def _run(*command: str, text: str = "") -> None:
-    done = subprocess.run(command, cwd="/", input=text, text=True, capture_output=True, check=False)
+    completed = subprocess.run(command, cwd="/", input=text, text=True, capture_output=True, check=False)
     # 12: userdel found no mail spool or home folder to remove
-    if done.returncode not in (0, 12):
-        raise UsageError(f"{' '.join(command)}: {done.stderr.strip() or done.returncode}")
+    if completed.returncode not in (0, 12):
+        raise UsageError(f"{' '.join(command)}: {completed.stderr.strip() or completed.returncode}")

@@ -46,8 +46,8 @@ def grade_outputs(points: float, page: PageView, group: GroupView, *, first: boo
     ]
     for picture in group.pictures:
         if picture.uri is not None:
-            shown = {"image/png": picture.uri.partition(",")[2], "text/plain": clean(picture.caption)}
-            outputs.append(new_output("display_data", shown, metadata={"image/png": {"alt": clean(picture.caption)}}))
+            data = {"image/png": picture.uri.partition(",")[2], "text/plain": clean(picture.caption)}
+            outputs.append(new_output("display_data", data, metadata={"image/png": {"alt": clean(picture.caption)}}))
     return outputs
 
 

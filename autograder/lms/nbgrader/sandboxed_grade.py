@@ -111,7 +111,7 @@ class SandboxedGrade(NbGraderPreprocessor):
             if abs(view.max_points - max_points) > 1e-6:
                 raise GraderError(
                     f"{result.assignment}: the cell of group {name!r} is worth {max_points:g} points, but its checks "
-                    f"{view.max_points:g}: run `nbgrader generate_assignment` again"
+                    f"are worth {view.max_points:g}: run `nbgrader generate_assignment` again"
                 )
             points = min(max(round(view.points, 4), 0.0), max_points)
             cell.outputs = grade_outputs(points, page, view, first=cell is graded[0])

@@ -1,4 +1,4 @@
-"""Hands in what students submit through nbgrader's exchange.
+"""Hands in the submissions that students make through nbgrader's exchange.
 
 A submission is a folder STUDENT+ASSIGNMENT+TIME+RANDOM in the course's folder of the exchange. It belongs to the
 student, who can still change it. Therefore a process with the student's own rights packs it, without following links.
@@ -59,9 +59,9 @@ def find_submissions(inbound: Path) -> Iterator[ExchangeSubmission]:
     if not inbound.exists():
         return
     for entry in sorted(os.scandir(inbound), key=lambda each: each.name):
-        student, plus, rest = entry.name.partition("+")
+        student, separator, rest = entry.name.partition("+")
         status = entry.stat(follow_symlinks=False)
-        if not plus or not stat.S_ISDIR(status.st_mode) or not os.path.lexists(Path(entry.path, LAST_FILE)):
+        if not separator or not stat.S_ISDIR(status.st_mode) or not os.path.lexists(Path(entry.path, LAST_FILE)):
             continue
         try:
             owner = pwd.getpwuid(status.st_uid)
@@ -128,18 +128,18 @@ class Exchange:
                     LOG.warning("%s", sentence)
             await asyncio.sleep(POLL_SECONDS)
 
-    async def _hand_in(self, new: ExchangeSubmission) -> None:
-        service, name = self._service, new.folder.name
-        if new.assignment not in service.settings.assignments or name in self._logged:
+    async def _hand_in(self, submission: ExchangeSubmission) -> None:
+        service, name = self._service, submission.folder.name
+        if submission.assignment not in service.settings.assignments or name in self._logged:
             return
-        if service.store.with_key(new.student, new.key) is not None:
+        if service.store.with_key(submission.student, submission.key) is not None:
             return
         try:
-            service.require_try_left(new.student, new.assignment, new.at)
-            answer = await asyncio.to_thread(pack, new)
+            service.require_try_left(submission.student, submission.assignment, submission.at)
+            answer = await asyncio.to_thread(pack, submission)
         except (Refused, UsageError, OSError) as error:
             self._logged.add(name)
             LOG.warning("%s in the exchange is not graded: %s", name, getattr(error, "sentence", error))
             return
-        service.store.receive(new.student, new.assignment, new.key, answer, new.at)
+        service.store.receive(submission.student, submission.assignment, submission.key, answer, submission.at)
         await service.grader.notify()

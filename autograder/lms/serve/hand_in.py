@@ -34,14 +34,16 @@ class HandIn:
         return self.mark is None or self.mark.status is not Status.NOT_GRADED
 
 
-def counting(own: Sequence[HandIn], *, best: bool) -> HandIn | None:
+def counted_hand_in(hand_ins: Sequence[HandIn], *, best: bool) -> HandIn | None:
     """Return the hand-in that counts, or None if none has a mark yet.
 
     Args:
-        own: a student's hand-ins of one assignment, in the order of their arrival.
+        hand_ins: a student's hand-ins of one assignment, in the order of their arrival.
         best: whether the one with the most points counts (the later one of two equal ones), or else the last one.
     """
-    graded = [(each.mark.points, each) for each in own if each.mark is not None and each.mark.status is Status.GRADED]
+    graded = [
+        (each.mark.points, each) for each in hand_ins if each.mark is not None and each.mark.status is Status.GRADED
+    ]
     if not graded:
         return None
     return max(graded, key=lambda pair: (pair[0], pair[1].number))[1] if best else graded[-1][1]

@@ -22,7 +22,7 @@ from tornado.web import Application, HTTPError, RequestHandler, stream_request_b
 
 from autograder.grade.store import RESULT
 from autograder.lms.serve import pages
-from autograder.lms.serve.hand_in import HandIn, counting
+from autograder.lms.serve.hand_in import HandIn, counted_hand_in
 from autograder.lms.serve.settings import AssignmentSettings, Shown
 from autograder.lms.serve.shared import Refused, Service
 from autograder.notebook.handing_in import MAX_ANSWER
@@ -93,7 +93,7 @@ class HubUserHandler(HubOAuthenticated, RequestHandler):
         """Return the settings of an assignment. Raises Refused if the service has none for it."""
         settings = self.service.settings.assignments.get(name)
         if settings is None:
-            raise Refused(404, "There is no such assignment here.")
+            raise Refused(404, "This assignment does not exist here.")
         return settings
 
     def require_instructor(self) -> None:
@@ -114,7 +114,7 @@ class NotFoundHandler(HubUserHandler):
     """The handler of all other paths."""
 
     async def prepare(self) -> None:
-        raise Refused(404, "There is no such page.")
+        raise Refused(404, "This page does not exist.")
 
 
 class HomeHandler(HubUserHandler):
@@ -122,9 +122,9 @@ class HomeHandler(HubUserHandler):
 
     def get(self) -> None:
         """Send the page."""
-        service, own = self.service, self.service.store.of_student(self.student)
-        positions = {hand_in.number: self.queue_position(hand_in) for hand_in in own if hand_in.mark is None}
-        sections = pages.sections(service.settings, own, positions, self.student, service.now())
+        service, hand_ins = self.service, self.service.store.of_student(self.student)
+        positions = {hand_in.number: self.queue_position(hand_in) for hand_in in hand_ins if hand_in.mark is None}
+        sections = pages.sections(service.settings, hand_ins, positions, self.student, service.now())
         zone = str(service.settings.zone)
         self.finish(pages.home(self.student, sections, teaches=self.is_instructor, prefix=service.prefix, zone=zone))
 
@@ -136,7 +136,7 @@ class FeedbackHandler(HubUserHandler):
         """Send instructors the whole page, and the student the parts that the settings allow."""
         hand_in = self.service.store.with_number(int(number))
         if hand_in is None:
-            raise Refused(404, "There is no such hand-in.")
+            raise Refused(404, "This hand-in does not exist.")
         if hand_in.student != self.student and not self.is_instructor:
             raise Refused(403, "This is another student's feedback.")
         if hand_in.mark is None:
@@ -181,7 +181,7 @@ class ResultsHandler(HubUserHandler):
         by_student: dict[str, list[HandIn]] = {}
         for hand_in in store.of_assignment(assignment):
             by_student.setdefault(hand_in.student, []).append(hand_in)
-        counted = filter(None, (counting(own, best=best) for own in by_student.values()))
+        counted = filter(None, (counted_hand_in(hand_ins, best=best) for hand_ins in by_student.values()))
         self.set_header("Content-Type", "application/json")
         self.set_header("Content-Disposition", f'attachment; filename="{assignment}-results.json"')
         self.write("[")

@@ -11,7 +11,7 @@ from datetime import datetime
 from pathlib import Path
 
 from autograder.lms.serve import visible
-from autograder.lms.serve.hand_in import HandIn, counting
+from autograder.lms.serve.hand_in import HandIn, counted_hand_in
 from autograder.lms.serve.settings import AssignmentSettings, Settings, Shown
 from autograder.report.feedback import PAGE
 from autograder.report.feedback.pages import environment
@@ -44,7 +44,7 @@ class Section:
 
 
 def sections(
-    settings: Settings, own: Sequence[HandIn], positions: Mapping[int, str], student: str, now: datetime
+    settings: Settings, all_hand_ins: Sequence[HandIn], positions: Mapping[int, str], student: str, now: datetime
 ) -> list[Section]:
     """Return a student's assignments, with the hand-ins of each.
 
@@ -52,7 +52,7 @@ def sections(
     """
     student_sections = []
     for name, rules in settings.assignments.items():
-        hand_ins = [hand_in for hand_in in own if hand_in.assignment == name]
+        hand_ins = [hand_in for hand_in in all_hand_ins if hand_in.assignment == name]
         due = rules.due_of(student)
         student_sections.append(
             Section(
@@ -68,19 +68,23 @@ def sections(
 
 
 def rows(
-    settings: Settings, rules: AssignmentSettings, own: Sequence[HandIn], positions: Mapping[int, str], shown: Shown
+    settings: Settings,
+    rules: AssignmentSettings,
+    hand_ins: Sequence[HandIn],
+    positions: Mapping[int, str],
+    shown: Shown,
 ) -> tuple[Row, ...]:
     """Return a student's hand-ins of an assignment, the newest first, with points if they are shown."""
     sees_points = shown in (Shown.EVERYTHING, Shown.POINTS)
-    counts = counting(own, best=rules.best_counts) if sees_points else None
+    counted = counted_hand_in(hand_ins, best=rules.best_counts) if sees_points else None
     table_rows = []
-    for hand_in in reversed(own):
+    for hand_in in reversed(hand_ins):
         at = hand_in.at.astimezone(settings.zone).strftime(TIME)
         if hand_in.mark is None:
             table_rows.append(Row(hand_in, at, positions[hand_in.number]))
         else:
             points = points_text(hand_in) if sees_points else ""
-            table_rows.append(Row(hand_in, at, hand_in.mark.status.words, points, hand_in == counts))
+            table_rows.append(Row(hand_in, at, hand_in.mark.status.words, points, hand_in == counted))
     return tuple(table_rows)
 
 
@@ -91,9 +95,11 @@ def points_text(hand_in: HandIn) -> str:
     return f"{hand_in.mark.points:g} of {hand_in.mark.max_points:g}"
 
 
-def home(student: str, content: Sequence[Section], *, teaches: bool, prefix: str, zone: str) -> str:
+def home(student: str, student_sections: Sequence[Section], *, teaches: bool, prefix: str, zone: str) -> str:
     """Return a student's page. For instructors, it has links to the pages of the class."""
-    return _render("serve_home.html.j2", student=student, sections=content, teaches=teaches, prefix=prefix, zone=zone)
+    return _render(
+        "serve_home.html.j2", student=student, sections=student_sections, teaches=teaches, prefix=prefix, zone=zone
+    )
 
 
 def class_page(
@@ -106,11 +112,11 @@ def class_page(
     best = settings.assignments[assignment].best_counts
     student_rows = []
     for student in sorted({hand_in.student for hand_in in hand_ins}):
-        own = [hand_in for hand_in in hand_ins if hand_in.student == student]
-        counted = counting(own, best=best) or own[-1]
+        student_hand_ins = [hand_in for hand_in in hand_ins if hand_in.student == student]
+        counted = counted_hand_in(student_hand_ins, best=best) or student_hand_ins[-1]
         state = "waits" if counted.mark is None else counted.mark.status.words
         at = counted.at.astimezone(settings.zone).strftime(TIME)
-        student_rows.append((student, len(own), Row(counted, at, state, points_text(counted))))
+        student_rows.append((student, len(student_hand_ins), Row(counted, at, state, points_text(counted))))
     graded = sum(hand_in.mark is not None for hand_in in hand_ins)
     values = {"assignment": assignment, "rows": student_rows, "waiting": waiting, "prefix": prefix}
     return _render("serve_class.html.j2", **values, graded=graded, form=form)

@@ -26,15 +26,17 @@ def in_order(
     for answer in sorted(waiting, key=lambda each: each.number):
         answers.setdefault(answer.student, deque()).append(answer)
     turn = 1 + max(turns.values(), default=0)  # of the students with a running grading
-    last = {**turns, **dict.fromkeys(busy, turn)}
-    heap = [(last.get(student, 0), own[0].number, student) for student, own in answers.items()]
+    last_turns = {**turns, **dict.fromkeys(busy, turn)}
+    heap = [
+        (last_turns.get(student, 0), student_answers[0].number, student) for student, student_answers in answers.items()
+    ]
     heapq.heapify(heap)
     while heap:
         *_, student = heapq.heappop(heap)
-        yield (own := answers[student]).popleft()
+        yield (student_answers := answers[student]).popleft()
         turn += 1
-        if own:
-            heapq.heappush(heap, (turn, own[0].number, student))
+        if student_answers:
+            heapq.heappush(heap, (turn, student_answers[0].number, student))
 
 
 def next_turn(waiting: Iterable[HandIn], turns: Mapping[str, int], busy: Collection[str]) -> HandIn | None:

@@ -98,7 +98,7 @@ def read_settings(path: Path) -> Settings:
         entries = read.fields(fields["assignments"], "assignments", (), names)
         assignments = {name: _assignment(read, name, node, zone) for name, node in entries.items()}
         if not assignments:
-            raise bad(path, fields["assignments"], "there is no assignment", f"Name one, such as {names[0]}")
+            raise bad(path, fields["assignments"], "no assignment is configured", f"Name one, such as {names[0]}")
         return Settings(assignments, instructors, zone, _exchange(read, fields.get("exchange")))
     except WorldError as error:  # from `Reader`, which also reads the simulator's files
         raise UsageError(str(error)) from None
@@ -163,7 +163,7 @@ def _time(read: Reader, node: yaml.Node, label: str, zone: tzinfo) -> datetime:
         time = datetime.fromisoformat(text)
     except ValueError:
         raise bad(read.path, node, f"{label} is {text!r}", "Give a time such as 2026-10-12 23:59") from None
-    if len(text) <= len("2026-10-12"):  # Python would read a date as its first moment, but people mean its last
+    if len(text) <= len("2026-10-12"):  # Python reads a date as its start, but people mean its end
         raise bad(read.path, node, f"{label} has no time of day", f"Write {text} 23:59")
     return time if time.tzinfo is not None else time.replace(tzinfo=zone)
 
@@ -185,7 +185,7 @@ def _zone(read: Reader, node: yaml.Node | None) -> tzinfo:
     try:
         return zoneinfo.ZoneInfo(name)
     except (OSError, ValueError, KeyError):  # a folder, a path outside the database, or an unknown name
-        raise bad(read.path, node, f"there is no time zone {name!r}", "Give one such as Europe/Berlin") from None
+        raise bad(read.path, node, f"unknown time zone {name!r}", "Give one such as Europe/Berlin") from None
 
 
 def _text(read: Reader, node: yaml.Node, label: str) -> str:

@@ -49,6 +49,6 @@ class Service:
 
     def tries_left(self, student: str, assignment: str, at: datetime) -> int:
         """Return how often a student can still hand in an assignment on the day of this time."""
-        own = self.store.of_student(student)
-        times = [each.at for each in own if each.assignment == assignment and each.costs_a_try]
+        hand_ins = self.store.of_student(student)
+        times = [hand_in.at for hand_in in hand_ins if hand_in.assignment == assignment and hand_in.costs_a_try]
         return self.settings.tries_left(assignment, times, at)

@@ -20,7 +20,7 @@ from autograder.result.model import Status
 FILE = "hand-ins.sqlite3"
 GRADINGS = "gradings"
 VERSION = 1
-PATIENCE = 10.0  # s to wait for the file, which a killed process may still hold
+LOCK_TIMEOUT = 10.0  # s to wait for the file, which a killed process may still lock
 _TABLES = (
     """CREATE TABLE hand_in (
         number INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -50,7 +50,7 @@ class Store:
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
             (folder / GRADINGS).mkdir(exist_ok=True)
             self._gradings = folder / GRADINGS
-            self._database = sqlite3.connect(folder / FILE, timeout=PATIENCE, isolation_level=None)
+            self._database = sqlite3.connect(folder / FILE, timeout=LOCK_TIMEOUT, isolation_level=None)
             self._database.execute("PRAGMA locking_mode = EXCLUSIVE")
             self._database.execute("PRAGMA journal_mode = WAL")
             self._database.execute("PRAGMA synchronous = FULL")

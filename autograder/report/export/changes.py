@@ -54,12 +54,14 @@ def changes(old: Sequence[Result], new: Sequence[Result]) -> tuple[Change, ...]:
     return tuple(changed)
 
 
-def _by_student(results: Sequence[Result], which: str) -> dict[tuple[str, str], Result]:
+def _by_student(results: Sequence[Result], label: str) -> dict[tuple[str, str], Result]:
     by_student: dict[tuple[str, str], Result] = {}
     for result in results:
         key = (result.assignment, result.student)
         if key in by_student:
-            raise UsageError(f"the {which} results hold {key[1]!r} twice for {key[0]}; use the folder of one grading")
+            raise UsageError(
+                f"the {label} results contain {key[1]!r} twice for {key[0]}; use the folder of one grading"
+            )
         by_student[key] = result
     return by_student
 

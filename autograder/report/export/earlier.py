@@ -38,8 +38,8 @@ class EarlierMarks:
 
     def changed(self, results: Sequence[Result]) -> tuple[Change, ...]:
         """Return the changes in marks, or in the points of a check, compared with the earlier results."""
-        again = [result for result in results if _key(result) in self._marks]
-        return changes([self._marks[_key(result)] for result in again], again)
+        regraded = [result for result in results if _key(result) in self._marks]
+        return changes([self._marks[_key(result)] for result in regraded], regraded)
 
     def forget(self, results: Iterable[Result]) -> None:
         """Delete the earlier marks of graded submissions. If the grader failed, they are kept for the next grading."""

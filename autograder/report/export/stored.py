@@ -43,8 +43,8 @@ def per_student(results: Sequence[Result], out: Path) -> list[tuple[Result, Path
     pairs: dict[str, tuple[Result, Path]] = {}
     for result in results:
         student = result.student
-        if why := why_not_a_folder(student):
-            raise UsageError(f"{why}; or use a format without folders")
+        if problem := why_not_a_folder(student):
+            raise UsageError(f"{problem}; or use a format without folders")
         if student in pairs:
             raise UsageError(f"the student {student!r} has two results; export one assignment at a time")
         pairs[student] = (result, out / student)
@@ -63,5 +63,5 @@ def _read(file: Path) -> tuple[Result, ...]:
 
 
 def _folder(result: Result, beside: Path) -> Path:
-    own = beside / result.student
-    return own if own.is_dir() else beside
+    own_folder = beside / result.student
+    return own_folder if own_folder.is_dir() else beside

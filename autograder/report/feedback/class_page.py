@@ -27,20 +27,20 @@ class Choice:
     Attributes:
         number: its index among the choices.
         group: its heading.
-        words: its label.
-        places: the indices of the results that it shows.
+        label: its label.
+        indices: the indices of the results that it shows.
     """
 
     number: int
     group: str
-    words: str
-    places: frozenset[int]
+    label: str
+    indices: frozenset[int]
 
 
 def choices(results: Sequence[Result]) -> tuple[Choice, ...]:
     """Return the choices that show some of the results, but not all. Checks are ordered by their failures."""
     marks: dict[str, set[int]] = {"Not graded": set(), "Less than half": set(), "Full marks": set()}
-    missed: dict[tuple[str, str], set[int]] = {}
+    missed_by: dict[tuple[str, str], set[int]] = {}
     titles: dict[tuple[str, str], str] = {}
     for index, result in enumerate(results):
         if result.status is not Status.GRADED:
@@ -52,13 +52,14 @@ def choices(results: Sequence[Result]) -> tuple[Choice, ...]:
         for check in result.checks:
             if check.outcome is not Outcome.PASSED:
                 key = result.assignment, check.id
-                missed.setdefault(key, set()).add(index)
+                missed_by.setdefault(key, set()).add(index)
                 titles.setdefault(key, check.title)
-    checks = [(titles[key], places) for key, places in sorted(missed.items(), key=lambda item: -len(item[1]))]
-    possible = [("Marks", *item) for item in marks.items()] + [("Missed a check", *item) for item in checks]
-    useful = [choice for choice in possible if 0 < len(choice[2]) < len(results)]
+    checks = [(titles[key], indices) for key, indices in sorted(missed_by.items(), key=lambda item: -len(item[1]))]
+    all_choices = [("Marks", *item) for item in marks.items()] + [("Missed a check", *item) for item in checks]
+    useful_choices = [choice for choice in all_choices if 0 < len(choice[2]) < len(results)]
     return tuple(
-        Choice(number, group, words, frozenset(places)) for number, (group, words, places) in enumerate(useful)
+        Choice(number, group, label, frozenset(indices))
+        for number, (group, label, indices) in enumerate(useful_choices)
     )
 
 

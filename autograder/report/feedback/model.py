@@ -9,7 +9,7 @@ from pathlib import Path
 from autograder.diagnosis import Kind
 from autograder.plain_text import clean
 from autograder.report.feedback.pictures import Picture, read_picture
-from autograder.result.causes import Cause, causes, dearest
+from autograder.result.causes import Cause, causes, costliest_failure
 from autograder.result.model import CheckResult, Result, Status
 from autograder.suite import Outcome
 from autograder.suite.contract import Requirement
@@ -87,7 +87,8 @@ class GroupView:
     @property
     def pictures(self) -> tuple[Picture, ...]:
         """The pictures of all shown checks."""
-        return tuple(picture for check in self.checks for one in (check, *check.also) for picture in one.pictures)
+        views = (view for check in self.checks for view in (check, *check.also))
+        return tuple(picture for view in views for picture in view.pictures)
 
 
 @dataclass(frozen=True)
@@ -146,22 +147,26 @@ def page_view(result: Result, folder: Path | None, contract: Mapping[str, Requir
     all_causes = causes(result.checks, result.diagnosis.sentence)
 
     def view(check: CheckResult, cause: Cause | None = None, quoted: tuple[str, ...] = ()) -> CheckView:
-        judged = check.outcome is Outcome.FAILED and check.message != result.diagnosis.sentence
-        covered = check.holds if judged else ()  # a program that does not run breaks no particular requirement
+        # A program that does not run breaks no particular requirement.
+        is_specific = check.outcome is Outcome.FAILED and check.message != result.diagnosis.sentence
+        covered = check.holds if is_specific else ()
         sentences = dict.fromkeys(contract[name].text for name in covered if name in contract)
-        new = tuple(sentence for sentence in sentences if sentence not in quoted)
-        plain = CheckView(check, new, tuple(pictures.get(check.id, ())))
+        unquoted = tuple(sentence for sentence in sentences if sentence not in quoted)
+        check_view = CheckView(check, unquoted, tuple(pictures.get(check.id, ())))
         if cause is None:
-            return plain
+            return check_view
         also: list[CheckView] = []
-        for one in cause.failed:
-            also.append(view(one, quoted=(*new, *(sentence for each in also for sentence in each.contract))))
-        return replace(plain, also=tuple(also), not_checked=cause.not_checked, unnamed=cause.unnamed)
+        for failed in cause.failed:
+            earlier = (sentence for other in also for sentence in other.contract)
+            also.append(view(failed, quoted=(*unquoted, *earlier)))
+        return replace(check_view, also=tuple(also), not_checked=cause.not_checked, unnamed=cause.unnamed)
 
     groups = []
     for name in dict.fromkeys(check.group for check in result.checks):
         views = tuple(view(cause.check, cause) for cause in all_causes if cause.check.group == name)
-        others = ((cause, tuple(one for one in cause.checks if one.group == name)) for cause in all_causes)
-        elsewhere = tuple(Elsewhere(cause.check, came) for cause, came in others if came and cause.check.group != name)
+        members = ((cause, tuple(check for check in cause.checks if check.group == name)) for cause in all_causes)
+        elsewhere = tuple(
+            Elsewhere(cause.check, checks) for cause, checks in members if checks and cause.check.group != name
+        )
         groups.append(GroupView(name, result.group(name), views, elsewhere))
-    return PageView(result, tuple(groups), tuple(pictures.get("", ())), dearest(all_causes))
+    return PageView(result, tuple(groups), tuple(pictures.get("", ())), costliest_failure(all_causes))

@@ -58,7 +58,7 @@ def class_statistics(results: Sequence[Result]) -> ClassStatistics:
     for result in results:
         for check in result.checks:
             by_check.setdefault((result.assignment, check.id), []).append((result, check))
-    checks = [_check(taken) for taken in by_check.values()]
+    checks = [_check(pairs) for pairs in by_check.values()]
     missed = sorted((check for check in checks if check.passed < check.total), key=lambda check: check.difficulty)
     messages = Counter(
         message
@@ -73,19 +73,19 @@ def class_statistics(results: Sequence[Result]) -> ClassStatistics:
     )
 
 
-def _check(taken: Sequence[tuple[Result, CheckResult]]) -> CheckStatistics:
-    points = [check.points for _, check in taken]
-    others = [math.fsum((result.score, -check.points)) for result, check in taken]
+def _check(pairs: Sequence[tuple[Result, CheckResult]]) -> CheckStatistics:
+    points = [check.points for _, check in pairs]
+    others = [math.fsum((result.score, -check.points)) for result, check in pairs]
     try:
         discrimination = correlation(points, others)
     except StatisticsError:  # fewer than two results, or equal values
         discrimination = None
-    first = taken[0][1]
+    first = pairs[0][1]
     return CheckStatistics(
         first.id,
         first.title,
-        sum(check.outcome is Outcome.PASSED for _, check in taken),
-        len(taken),
-        math.fsum(points) / math.fsum(check.max_points for _, check in taken),
+        sum(check.outcome is Outcome.PASSED for _, check in pairs),
+        len(pairs),
+        math.fsum(points) / math.fsum(check.max_points for _, check in pairs),
         discrimination,
     )

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from autograder.result.causes import causes, dearest
+from autograder.result.causes import causes, costliest_failure
 from autograder.result.model import CheckResult
 from autograder.suite import Check, Outcome
 
@@ -72,7 +72,7 @@ def test_checks_that_failed_with_the_message_of_the_diagnosis_have_one_cause(res
 def test_the_most_expensive_cause_includes_its_consequences_and_the_first_of_equals_wins(result: Make) -> None:
     small, large = result("small", FAILED, points=2.0), result("large", FAILED, points=3.0)
     equally_costly, passed = result("equal", FAILED, points=3.0), result("passed", PASSED, points=9.0)
-    assert dearest(causes([passed, small, large, equally_costly])) == large
+    assert costliest_failure(causes([passed, small, large, equally_costly])) == large
     with_small = [result(name, outcome, "small") for name, outcome in (("x", FAILED), ("y", NOT_CHECKED))]
-    assert dearest(causes([small, large, *with_small])) == small
-    assert dearest(causes([passed, result("unknown", NOT_CHECKED)])) is None
+    assert costliest_failure(causes([small, large, *with_small])) == small
+    assert costliest_failure(causes([passed, result("unknown", NOT_CHECKED)])) is None

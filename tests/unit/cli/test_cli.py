@@ -195,7 +195,7 @@ def _main(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
         (("grade", "/no/where", "--assignment", "02_nodes"), "/no/where: there is no such file or folder"),
         (("grade", "/tmp", "--assignment", "77_none"), "there are no hidden checks for '77_none'; there are for: "),
         (("check", "77_none", "/tmp"), "'77_none' has no visible checks"),
-        (("check", "02_nodes", "/no/where"), "there is no folder /no/where/src"),
+        (("check", "02_nodes", "/no/where"), "the folder /no/where/src does not exist"),
     ],
 )
 def test_an_unknown_name_is_reported_in_one_sentence_and_exits_2(

@@ -121,7 +121,7 @@ def test_gradescope_gets_the_score_and_a_test_for_each_check(a_class: Class, tmp
 
 def test_gradescope_names_the_cause_of_a_consequence(a_class: Class, tmp_path: Path) -> None:
     tests = json.loads((write(a_class, "gradescope", tmp_path / "g") / "alice" / "results.json").read_text())["tests"]
-    advice = f'This came with "{tests[2]["name"]}": fix that first and run again.'
+    advice = f'Probably caused by "{tests[2]["name"]}": fix that first and run again.'
     assert tests[3]["output"] == f"Not checked. {advice}"
     assert advice not in tests[2]["output"] + tests[4]["output"]
 

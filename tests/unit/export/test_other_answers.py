@@ -43,7 +43,7 @@ def test_a_page_is_written_for_full_marks_only(
 def test_each_graded_chapter_shows_two_answers_with_what_differs(assignment: str) -> None:
     answers = other_answers(assignment)
     assert len(answers) == 2
-    assert all(len(answer.differs.split()) > 10 and answer.files for answer in answers)
+    assert all(len(answer.difference.split()) > 10 and answer.files for answer in answers)
     assert not any("Licensed under" in text for answer in answers for path, text in answer.files if path[-3:] == ".py")
 
 

@@ -63,7 +63,7 @@ def test_only_a_result_with_a_program_in_real_time_has_the_note_on_real_time(
     assert note in page.text
     assert "The machine was busy" not in page.text
     page = Page(feedback.write(make_result(time="real", time_note=note, held_up=0.62), tmp_path))
-    assert f"{note} The machine was busy and kept it from running for up to 0.6 s, twice" in page.text
+    assert f"{note} The machine was too busy to run it for up to 0.6 s, in both attempts" in page.text
     assert "real time" not in Page(feedback.write(make_result(), tmp_path)).text
 
 
@@ -98,7 +98,8 @@ def test_consequences_are_folded_under_their_cause_and_named_once_in_their_own_g
     )
     page = Page(feedback.write(make_result(checks=checks), tmp_path))
     assert page.all("aria-label") == ["failed", "failed", "failed", "not checked"]
-    folded = "It drives. 0 / 1 it stood These failed as well; mend the first and run again: 2 It turns. 0 / 2 it turned"
+    heading = "These also failed. Fix the one above first, then run again:"
+    folded = f"It drives. 0 / 1 it stood {heading} 2 It turns. 0 / 2 it turned"
     assert folded in page.text
     assert "Not checked: It sees. Safety 0 / 7 2 checks did not pass with It drives. (7 points)" in page.text
     assert "has to pass" not in page.text
@@ -138,12 +139,12 @@ def test_a_failed_check_quotes_its_sentence_of_the_contract(
 ) -> None:
     stops = make_check("stops", "It stops.", 1, "graph", covers=("stale", "no-such-sentence"))
     page = Page(feedback.write(make_result(checks=(CheckResult.of(stops, Outcome.FAILED, "it drove"),)), tmp_path))
-    assert f"The contract: {contract('02_nodes')['stale'].text}" in page.text
+    assert f"Requirement: {contract('02_nodes')['stale'].text}" in page.text
     passed = make_result(checks=(CheckResult.of(stops, Outcome.PASSED),))
     crash = Diagnosis(Kind.CRASHED_LATER, "It crashed.")
     crashed = make_result(checks=(CheckResult.of(stops, Outcome.FAILED, "It crashed."),), diagnosis=crash)
     for result in (passed, crashed):
-        assert "The contract:" not in Page(feedback.write(result, tmp_path)).text
+        assert "Requirement:" not in Page(feedback.write(result, tmp_path)).text
 
 
 def test_a_sentence_of_the_contract_is_quoted_once_for_failures_with_one_cause(
@@ -153,7 +154,7 @@ def test_a_sentence_of_the_contract_is_quoted_once_for_failures_with_one_cause(
     consequences = [make_check(id, "It turns.", 1, "graph", covers=("stale", "near"), after=("first",)) for id in "ab"]
     checks = tuple(CheckResult.of(check, Outcome.FAILED, "it drove") for check in (cause, *consequences))
     text = Page(feedback.write(make_result(checks=checks), tmp_path)).text
-    assert [text.count(f"The contract: {contract('02_nodes')[name].text}") for name in ("stale", "near")] == [1, 1]
+    assert [text.count(f"Requirement: {contract('02_nodes')[name].text}") for name in ("stale", "near")] == [1, 1]
 
 
 def test_a_link_that_is_not_a_web_address_is_not_followed(
@@ -185,7 +186,7 @@ def test_a_missing_picture_is_reported_as_missing(make_result: MakeResult, tmp_p
     artifact = Artifact("lost.png", "track", "0" * 64, "turns", "The robot's track.")
     page = Page(feedback.write(make_result(artifacts=(artifact,)), tmp_path))
     assert "img" not in page.tags
-    assert "The robot's track. (The picture was not kept.)" in page.text
+    assert "The robot's track. (The picture is not available.)" in page.text
 
 
 def test_an_artifact_that_is_not_a_picture_is_ignored(make_result: MakeResult, tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from click.testing import Result as Ran
 
 from autograder.cli import group
 from autograder.exceptions import UsageError
-from autograder.lms.lateness import Delivery, Extension, Lateness, LatePolicy, moment
+from autograder.lms.lateness import Delivery, Extension, Lateness, LatePolicy, parse_time
 from autograder.result.model import Result, write_json
 
 MakeResult = Callable[..., Result]
@@ -45,13 +45,13 @@ def delivered(after: timedelta) -> Delivery:
 def test_a_day_that_has_begun_counts_from_the_deadline_and_the_floor_stays(
     after: timedelta, days: int, share: float
 ) -> None:
-    assert DAILY.judge("ada", delivered(after)) == Lateness(pytest.approx(share), days)
+    assert DAILY.lateness_of("ada", delivered(after)) == Lateness(pytest.approx(share), days)
 
 
 def test_a_flat_penalty_is_the_same_for_each_delay_and_no_penalty_exceeds_the_mark() -> None:
     policy = LatePolicy(flat=20, due=DUE)
-    assert [policy.judge("ada", delivered(after)).kept for after in (HOUR, 9 * DAY)] == [0.8, 0.8]
-    assert LatePolicy(per_day=30, due=DUE).judge("ada", delivered(9 * DAY)).kept == 0.0
+    assert [policy.lateness_of("ada", delivered(after)).kept_share for after in (HOUR, 9 * DAY)] == [0.8, 0.8]
+    assert LatePolicy(per_day=30, due=DUE).lateness_of("ada", delivered(9 * DAY)).kept_share == 0.0
 
 
 @pytest.mark.promise(
@@ -72,30 +72,30 @@ def test_a_flat_penalty_is_the_same_for_each_delay_and_no_penalty_exceeds_the_ma
 )
 def test_a_row_of_the_table_overrides_the_due_time_and_the_systems_time(extension: Extension, days: int) -> None:
     policy = LatePolicy(per_day=10, due=DUE, extensions={"ada": extension})
-    assert policy.judge("ada", delivered(3 * DAY)).days == days
-    assert policy.judge("bob", delivered(3 * DAY)).days == 3
+    assert policy.lateness_of("ada", delivered(3 * DAY)).days == days
+    assert policy.lateness_of("bob", delivered(3 * DAY)).days == 3
 
 
 def test_moodles_delay_counts_without_a_due_time_and_extension_days_are_subtracted_from_it() -> None:
     policy = LatePolicy(per_day=10, extensions={"ada": Extension(days=DAY), "eve": Extension(until=DUE)})
     moodle_delivery = Delivery(late=True, late_by=DAY + 2 * HOUR)
-    assert [policy.judge(name, moodle_delivery).days for name in ("ada", "bob")] == [1, 2]
-    assert policy.judge("eve", moodle_delivery).unclear == "it is late, and nothing says by how much: give --due"
+    assert [policy.lateness_of(name, moodle_delivery).days for name in ("ada", "bob")] == [1, 2]
+    assert policy.lateness_of("eve", moodle_delivery).unclear == "it is late, but by how much is unknown: give --due"
     policy_with_deadlines = LatePolicy(per_day=10, due=DUE, extensions={"eve": Extension(until=DUE + DAY)})
-    assert policy_with_deadlines.judge("eve", moodle_delivery).days == 1
+    assert policy_with_deadlines.lateness_of("eve", moodle_delivery).days == 1
 
 
 def test_a_time_overrides_the_systems_late_flag_which_alone_suffices_only_for_a_flat_penalty() -> None:
     late_flag = Delivery(late=True)
-    assert LatePolicy(flat=25).judge("ada", late_flag) == Lateness(0.75, None)
-    assert LatePolicy(flat=25, due=DUE).judge("ada", Delivery(late=True, time=DUE)) == Lateness()
+    assert LatePolicy(flat=25).lateness_of("ada", late_flag) == Lateness(0.75, None)
+    assert LatePolicy(flat=25, due=DUE).lateness_of("ada", Delivery(late=True, time=DUE)) == Lateness()
     for policy in (
         LatePolicy(per_day=10, due=DUE),
         LatePolicy(flat=10, grace=HOUR),
         LatePolicy(flat=10, due=DUE, extensions={"ada": Extension(days=DAY)}),
     ):
-        assert "'submitted'" in policy.judge("ada", late_flag).unclear
-        assert policy.judge("ada", Delivery()) == Lateness()
+        assert "'submitted'" in policy.lateness_of("ada", late_flag).unclear
+        assert policy.lateness_of("ada", Delivery()) == Lateness()
 
 
 @pytest.mark.parametrize(
@@ -108,14 +108,14 @@ def test_a_time_overrides_the_systems_late_flag_which_alone_suffices_only_for_a_
     ],
 )
 def test_a_time_without_a_zone_gets_the_given_one_and_a_day_means_its_end(text: str, expected: str) -> None:
-    assert moment(text, timezone.utc).isoformat() == expected
+    assert parse_time(text, timezone.utc).isoformat() == expected
 
 
 def test_a_time_without_any_zone_is_in_the_machines_time_zone(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TZ", "HERE-5")  # POSIX: five hours before UTC
     time.tzset()
     try:
-        assert moment("2026-05-04 18:00", None).isoformat() == "2026-05-04T18:00:00+05:00"
+        assert parse_time("2026-05-04 18:00", None).isoformat() == "2026-05-04T18:00:00+05:00"
     finally:
         monkeypatch.undo()
         time.tzset()
@@ -162,7 +162,7 @@ def test_export_applies_the_table_of_extensions_and_names_students_without_a_kno
     options = ("--due", "2026-05-04T18:00+02:00", "--late-per-day", "10", "--grace", "1", "--late-floor", "40")
     completed = export(results_folder, *options)
     assert completed.exit_code == 1
-    assert "Left out: jane: it is late, and nothing says by how much" in completed.output
+    assert "Left out: jane: it is late, but by how much is unknown" in completed.output
     # zoe's time has no zone, so it is that of --due: 1 day and 23 hours late. bob came in time, in another zone.
     assert cells(results_folder, "SIS Login ID", "02 Nodes (55)") == {"jane": "", "zoe": "3.20", "bob": "4.00"}
 

@@ -94,7 +94,7 @@ def test_a_student_who_has_not_been_marked_yet_gets_no_mark_and_is_listed(result
     for text in ("student,q2-answer\nzoe@x.edu,6\n", "student,q2-answer\nzoe@x.edu,6\njane@x.edu,\n"):
         completed = with_points(results_folder, text)
         assert completed.exit_code == 1
-        assert "Left out: jane@x.edu: A person has not marked q2-answer yet." in completed.output
+        assert "Left out: jane@x.edu: Not marked yet: q2-answer." in completed.output
         assert column(results_folder / "out.csv", "Grade") == ["52.00", "", ""]
 
 
@@ -127,7 +127,7 @@ def test_the_zip_of_feedback_has_the_points_of_a_person_and_leaves_out_students_
 ) -> None:
     completed = with_points(results_folder, "student,q2-answer\nzoe@x.edu,6\n", "moodle-feedback")
     assert completed.exit_code == 1
-    assert "Left out: jane@x.edu: A person has not marked q2-answer yet." in completed.output
+    assert "Left out: jane@x.edu: Not marked yet: q2-answer." in completed.output
     with zipfile.ZipFile(results_folder / "out.csv") as archive:
         assert archive.namelist() == ["Zoë Müller_101_assignsubmission_file_/feedback.html"]
         assert "of 52 points" in archive.read(archive.namelist()[0]).decode()
@@ -136,7 +136,7 @@ def test_the_zip_of_feedback_has_the_points_of_a_person_and_leaves_out_students_
 def test_without_the_option_the_missing_points_are_named(results_folder: Path) -> None:
     completed = export(results_folder, "csv")
     assert completed.exit_code == 0
-    assert "09_assessment has 6 points that a person gives (q2-answer), which are missing here" in completed.output
+    assert "09_assessment has 6 manual points (q2-answer), which are missing here" in completed.output
 
 
 @pytest.mark.parametrize(
@@ -174,7 +174,7 @@ def test_an_assignment_without_manual_cells_accepts_no_table_of_points(tmp_path:
     write_json(tmp_path / "results" / "zoe" / "result.json", make_result("zoe").to_json())
     (tmp_path / "manual.csv").write_text("student,q2-answer\nzoe,6\n")
     completed = export(tmp_path, "csv", "--manual", str(tmp_path / "manual.csv"))
-    assert "02_nodes has no cell that a person grades" in str(completed.exception)
+    assert "02_nodes has no manually graded cells" in str(completed.exception)
 
 
 @pytest.mark.promise("`--dry-run` writes nothing and lists")

@@ -77,7 +77,7 @@ def test_a_renamed_copy_is_found_and_given_code_is_ignored() -> None:
 
 def test_unchanged_releases_are_not_similar() -> None:
     comparison = compare({"alice": GIVEN, "bob": GIVEN, "carol": ""}, GIVEN, 0.0)
-    assert (comparison.groups, comparison.without_own) == ((), ("alice", "bob", "carol"))
+    assert (comparison.groups, comparison.without_own_code) == ((), ("alice", "bob", "carol"))
 
 
 def test_seven_equal_copies_are_one_group_with_one_pair_of_texts() -> None:
@@ -135,7 +135,7 @@ def test_similar_compares_a_class_and_names_unreadable_submissions(
         main(["similar", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out")])
     assert exit_info.value.code == 1  # one could not be read
     captured = capsys.readouterr()
-    assert "alice and bob: 100 % and 100 % of their own text alike" in captured.out
+    assert "alice and bob: 100 % and 100 % of their own text in common" in captured.out
     assert "3 compared, 1 group to read" in captured.out
     assert "carol" not in captured.out
     assert "Not compared: dave: dave.zip is not a folder" in captured.err
@@ -195,8 +195,8 @@ def test_members_of_a_group_with_one_submission_are_not_alike(
 @pytest.mark.parametrize(
     ("texts", "reason"),
     [
-        ({"ada": OWN}, "of 1 submissions, 1 has own code"),
-        ({"ada": "", "bob": "x = 1"}, "of 2 submissions, 0 has own code"),
+        ({"ada": OWN}, "of 1 submissions, 1 contains code of its own"),
+        ({"ada": "", "bob": "x = 1"}, "of 2 submissions, 0 contain code of their own"),
     ],
 )
 def test_without_two_comparable_submissions_the_command_says_so_and_exits_1(

@@ -112,11 +112,11 @@ def test_consequences_are_folded_under_their_cause_and_named_in_their_own_cell(
     cells = [grade_outputs(0, page, group, first=False)[1].data for group in page.groups]
     assert cells[0]["text/plain"].splitlines() == [
         "[failed] It is first. first is wrong",
-        "These failed as well; mend the first and run again:",
+        "These also failed. Fix the one above first, then run again:",
         "[failed] It is same. same is wrong",
         "[failed] It is other. other is wrong",
     ]
-    assert "mend the first and run again: 2</summary>" in cells[0]["text/html"]
+    assert "Fix the one above first, then run again: 2</summary>" in cells[0]["text/html"]
     assert cells[1]["text/plain"] == "1 check did not pass with: It is first."
     assert "1 check did not pass with “It is first.” (1 points)" in cells[1]["text/html"]
 

@@ -72,7 +72,7 @@ def test_consequences_are_lines_below_their_cause() -> None:
 ✘ failed      It is <a>.
     a is wrong
     hint 1: look
-    These failed as well; mend the first and run again:
+    These also failed. Fix the one above first, then run again:
     ✘ failed      It is <b>.
     Not checked: It is <c>. It is <d>.
 ✔ passed      It is <e>.
@@ -81,7 +81,7 @@ def test_consequences_are_lines_below_their_cause() -> None:
 02_nodes: 1 of 5 visible checks passed."""
     )
     html = report._repr_html_()
-    assert "<summary>These failed as well; mend the first and run again: 1</summary>" in html
+    assert "<summary>These also failed. Fix the one above first, then run again: 1</summary>" in html
     assert "Not checked: It is &lt;c&gt;. It is &lt;d&gt;.</div>" in html
     assert html.count("not checked") == 0
 
@@ -107,7 +107,7 @@ def test_the_locked_cell_gives_no_points_in_the_kernel() -> None:
 
 
 def test_a_missing_folder_world_fault_or_assignment_is_named(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"there is no folder .*/src: run this in the assignment's folder"):
+    with pytest.raises(UsageError, match=r"the folder .*/src does not exist: run this in the assignment's folder"):
         drive("a", "b", workspace=tmp_path)
     with pytest.raises(UsageError, match=r"there is no world 'moon'; there are: .*empty_room"):
         drive("a", "b", world="moon", workspace=tmp_path)

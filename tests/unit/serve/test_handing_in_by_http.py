@@ -102,7 +102,7 @@ def test_an_invalid_hand_in_is_refused_with_a_reason_and_costs_no_try(classroom:
     start_service(classroom)
     for student, assignment, data, sentence in (
         ("late", "02_nodes", answer(), "02_nodes was due at 2001-01-01 12:00. Ask your instructor."),
-        ("ada", "09_assessment", answer(), "There is no such assignment here."),
+        ("ada", "09_assessment", answer(), "This assignment does not exist here."),
         ("ada", "02_nodes", b"", "The answer is empty."),
     ):
         with pytest.raises(HandInError, match=sentence):
@@ -171,7 +171,7 @@ def test_a_browser_is_sent_to_the_login_of_the_hub_and_back(classroom: Classroom
     start_service(classroom)
     classroom.hand_in("ada", answer())
     browser, page = log_in(classroom, "ada")
-    assert "<h1>Handed in</h1>" in page
+    assert "<h1>Submissions</h1>" in page
     with pytest.raises(urllib.error.HTTPError, match="403"):  # a cookie does not authorise a hand-in
         browser.open(urllib.request.Request(f"{classroom.url}hand-ins/02_nodes/{KEY}", answer(), method="PUT"))
 

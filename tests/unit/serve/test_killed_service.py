@@ -79,7 +79,7 @@ def test_a_kill_at_any_instant_loses_nothing_and_grades_nothing_twice(classroom:
     students.join()
     classroom.wait(classroom.listens)
     classroom.wait_for_marks(3)  # a row for each student
-    classroom.wait(lambda: "In the queue, of all assignments: 0." in classroom.get("grace", "class/02_nodes")[1])
+    classroom.wait(lambda: "Queue length, for all assignments: 0." in classroom.get("grace", "class/02_nodes")[1])
     classroom.kill()
     marks = marks_in(classroom.folder / "data")
     assert [receipt.number for receipt in students.receipts] == list(marks) == [1, 2, 3, 4]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from autograder.exceptions import UsageError
-from autograder.lms.serve.hand_in import HandIn, Mark, counting
+from autograder.lms.serve.hand_in import HandIn, Mark, counted_hand_in
 from autograder.lms.serve.store import Store
 from autograder.result.model import Status
 
@@ -88,7 +88,7 @@ def _open(folder: Path, errors: multiprocessing.SimpleQueue[str]) -> None:
 
 
 def test_two_processes_cannot_work_on_one_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("autograder.lms.serve.store.PATIENCE", 0.1)
+    monkeypatch.setattr("autograder.lms.serve.store.LOCK_TIMEOUT", 0.1)
     store = Store(tmp_path)
     processes = multiprocessing.get_context("fork")
     errors = processes.SimpleQueue()
@@ -109,17 +109,17 @@ def test_a_file_that_is_not_a_store_is_named(tmp_path: Path, content: bytes) -> 
 
 def test_the_last_or_the_best_answer_counts() -> None:
     hand_ins = [hand_in(1, HALF), hand_in(2, FULL), hand_in(3, HALF), hand_in(4, None)]
-    assert counting(hand_ins, best=False) == hand_ins[2]
-    assert counting(hand_ins, best=True) == hand_ins[1]
-    assert counting(hand_ins[3:], best=True) is None
+    assert counted_hand_in(hand_ins, best=False) == hand_ins[2]
+    assert counted_hand_in(hand_ins, best=True) == hand_ins[1]
+    assert counted_hand_in(hand_ins[3:], best=True) is None
 
 
 def test_the_later_of_two_equal_answers_counts() -> None:
     hand_ins = [hand_in(1, HALF), hand_in(2, HALF)]
-    assert counting(hand_ins, best=True) == hand_ins[1]
+    assert counted_hand_in(hand_ins, best=True) == hand_ins[1]
 
 
 def test_an_ungraded_answer_does_not_count_and_costs_no_try_if_the_grader_failed() -> None:
     failed, unclear = (hand_in(1, Mark(status, 0.0, 53.0)) for status in (Status.NOT_GRADED, Status.UNCLEAR))
-    assert counting([failed, unclear], best=True) is None
+    assert counted_hand_in([failed, unclear], best=True) is None
     assert (failed.costs_a_try, unclear.costs_a_try, hand_in(1, None).costs_a_try) == (False, True, True)

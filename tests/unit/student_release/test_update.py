@@ -79,7 +79,7 @@ def test_unchanged_files_become_those_of_the_later_release(release: Path, newer_
 def test_files_and_cells_that_a_student_wrote_are_kept(release: Path, newer_release: Path) -> None:
     write(release, "my answer")
     update = update_release(release, newer_release)
-    assert (update.kept, update.set_aside) == ([GIVEN], {})
+    assert (update.skipped, update.backups) == ([GIVEN], {})
     assert NOTEBOOK in update.written
     assert [(cell.id, cell.source) for cell in read(release).cells] == [
         ("title", "# Nodes"),
@@ -96,7 +96,7 @@ def test_kept_files_and_cells_are_kept_at_the_next_update(release: Path, newer_r
     write(release, "my answer")
     update_release(release, newer_release)
     before = [cell.source for cell in read(release).cells]
-    assert update_release(release, newer_release).kept == [GIVEN]
+    assert update_release(release, newer_release).skipped == [GIVEN]
     assert [cell.source for cell in read(release).cells] == before
 
 
@@ -107,7 +107,7 @@ def test_a_changed_file_of_the_course_is_set_aside(release: Path, newer_release:
     (release / "sim/world.py").write_text("mine")
     (release / "sim/world.py.yours").write_text("of the update before")
     update = update_release(release, newer_release)
-    assert update.set_aside == {"sim/world.py": "sim/world.py.yours1"}
+    assert update.backups == {"sim/world.py": "sim/world.py.yours1"}
     assert (release / "sim/world.py").read_text() == "one, mended"
     assert (release / "sim/world.py.yours").read_text() == "of the update before"
     assert (release / "sim/world.py.yours1").read_text() == "mine"

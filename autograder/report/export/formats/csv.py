@@ -15,13 +15,13 @@ FOLDER = False
 _SEPARATOR = re.compile(r"([;|\t])")
 
 
-def write(results: Sequence[Result], out: Path, more: Mapping[str, Mapping[str, str | float]] = {}) -> Path:
+def write(results: Sequence[Result], out: Path, extra_cells: Mapping[str, Mapping[str, str | float]] = {}) -> Path:
     """Write a row for each result, with a column for each check and the points that it earned.
 
-    `more` contains additional cells of students by heading. The file is UTF-8 with commas, and every cell is quoted as
-    in RFC 4180. A submission that was not graded has no score.
+    `extra_cells` contains additional cells of students by heading. The file is UTF-8 with commas, and every cell is
+    quoted as in RFC 4180. A submission that was not graded has no score.
     """
-    rows = [{**_row(result), **more.get(result.student, {})} for result in results]
+    rows = [{**_row(result), **extra_cells.get(result.student, {})} for result in results]
     with out.open("w", encoding="utf-8", newline="") as file:
         columns = list(dict.fromkeys(name for row in rows for name in row))
         writer = csv.DictWriter(file, columns, restval="", quoting=csv.QUOTE_ALL)

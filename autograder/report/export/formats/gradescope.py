@@ -51,14 +51,14 @@ def report(result: Result) -> dict[str, Any]:
 def _tests(result: Result) -> list[dict[str, Any]]:
     """Return the tests in the order of the suite. Consequences name their cause, as Gradescope cannot fold them."""
     all_causes = causes(result.checks, result.diagnosis.sentence)
-    came_with = {id(check): cause.check for cause in all_causes for check in cause.checks[1:]}
-    return [_test(check, index, came_with.get(id(check))) for index, check in enumerate(result.checks, start=1)]
+    cause_of = {id(check): cause.check for cause in all_causes for check in cause.checks[1:]}
+    return [_test(check, index, cause_of.get(id(check))) for index, check in enumerate(result.checks, start=1)]
 
 
 def _test(check: CheckResult, index: int, cause: CheckResult | None) -> dict[str, Any]:
     lines: list[str] = []
     if check.outcome is not Outcome.PASSED and cause is not None:
-        advice = f'This came with "{cause.title}": fix that first and run again.'
+        advice = f'Probably caused by "{cause.title}": fix that first and run again.'
         lines = [check.message, advice] if check.outcome is Outcome.FAILED else [f"Not checked. {advice}"]
     elif check.outcome is not Outcome.PASSED:
         hints = check.hints if check.outcome is Outcome.FAILED else ()

@@ -18,7 +18,7 @@ MARKS = {Outcome.PASSED: "✓", Outcome.FAILED: "✗", Outcome.NOT_CHECKED: "-"}
 
 
 def write(results: Sequence[Result], out: Path) -> Path:
-    """Write the report."""
+    """Write the tables to `out`, and return it."""
     lines = ["| Submission | Assignment | Score | Diagnosis |", "|---|---|--:|---|"]
     lines += [
         f"| {_plain(r.student)} | {_plain(r.assignment)} | {_score(r)} | {_plain(_diagnosis(r))} |" for r in results
@@ -47,9 +47,9 @@ def _rows(result: Result) -> Iterator[str]:
 
 
 def _row(check: CheckResult, reason: str) -> str:
-    why = "" if check.outcome is Outcome.PASSED else reason
+    shown_reason = "" if check.outcome is Outcome.PASSED else reason
     points = f"{number(check.points)} / {number(check.max_points)}"
-    return f"| {MARKS[check.outcome]} | {_plain(check.title)} | {points} | {_plain(why)} |"
+    return f"| {MARKS[check.outcome]} | {_plain(check.title)} | {points} | {_plain(shown_reason)} |"
 
 
 def _score(result: Result) -> str:
