@@ -4,8 +4,7 @@
 faster than real time, and `side_by_side(...)` compares drives. `check(...)` runs the visible checks. `grade(...)` is in
 the locked cells. `source(...)` is the kernel's equivalent of `source install/setup.bash`. `simulator(...)` runs the
 simulator in the background. `graph()` draws the running nodes and their topics. `score(...)` ranks a student's drives.
-`submit(...)` hands the assignment in on a JupyterHub that
-grades immediately.
+`submit(...)` hands in the assignment on a JupyterHub that grades it immediately.
 
 Students' programs run in separate processes, never in the kernel.
 """
@@ -84,11 +83,11 @@ def ros() -> None:
         writefile.register(get_ipython())
         # If it is set, setuptools warns, and colcon shows a block "stderr" although the build succeeds.
         os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-    chosen = os.environ.get("ROS_DOMAIN_ID")
-    activate(domain=int(chosen) if chosen else Domain(user=None if grading() else os.getuid()).number)
+    domain = os.environ.get("ROS_DOMAIN_ID")
+    activate(domain=int(domain) if domain else Domain(user=None if grading() else os.getuid()).number)
     os.environ.update(LOGS_TO_STDOUT)
 
 
 def grade(assignment: str, group: str) -> NotGraded:
-    """Say that the hidden checks of `group` run after submission. Nothing is graded in the kernel."""
+    """Return a notice that the hidden checks of `group` run after submission. Nothing is graded in the kernel."""
     return NotGraded(f"{assignment}: the hidden checks of “{group}” run after you have submitted.")

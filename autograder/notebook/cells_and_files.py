@@ -35,7 +35,7 @@ def differences(
     sentences = []
     compared = [path for path in cells.keys() | written.keys() if str(SOURCE / path) not in later]
     for path in sorted(p for p in compared if p.parts and p.parts[0] in packages):
-        file, cell, last = workspace / "src" / path, cells.get(path), written.get(path)
+        file, cell, last_digest = workspace / "src" / path, cells.get(path), written.get(path)
         is_answered = cell is not None and STILL_TO_BE_WRITTEN not in cell
         if not file.is_file():
             if is_answered:
@@ -44,11 +44,11 @@ def differences(
         text = text_of(file.read_bytes())
         if cell is not None and same_text(cell, text):
             continue
-        if last is not None and last != digest(text):  # changed since a cell wrote it
-            is_stub = cell is not None and not is_answered and digest(cell) == last
+        if last_digest is not None and last_digest != digest(text):  # changed since a cell wrote it
+            is_stub = cell is not None and not is_answered and digest(cell) == last_digest
             sentences += [] if is_stub else [differs(path)]
         elif is_answered and notebook is not None:
-            is_stale = last is not None and notebook.stat().st_mtime <= file.stat().st_mtime
+            is_stale = last_digest is not None and notebook.stat().st_mtime <= file.stat().st_mtime
             sentences += [] if is_stale else [differs(path)]
     return tuple(sentences)
 

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from autograder.run.workspace import Workspace
 
 SEED = 1  # for the inputs of visible checks
-NEEDS_ITS_NOTEBOOK = "The notebook has to run before there is something to check: run check(...) in it."
+NEEDS_ITS_NOTEBOOK = "The visible checks need the executed notebook: run check(...) in it."
 
 
 def main() -> None:
@@ -155,8 +155,8 @@ def _check(
     def reply(reason: Diagnosis, ids: Collection[str], *, lasting: bool = True) -> dict[str, Any]:
         """Return the results of checks, and of their failed dependencies."""
         not_passed = {name for name, result in results.items() if result.outcome is not Outcome.PASSED}
-        shown = [check for check in suite.checks if check.id in ids or check.id in not_passed]
-        lines = [results.get(check.id) or CheckResult.of(check, Outcome.NOT_CHECKED) for check in shown]
+        reported = [check for check in suite.checks if check.id in ids or check.id in not_passed]
+        lines = [results.get(check.id) or CheckResult.of(check, Outcome.NOT_CHECKED) for check in reported]
         return {
             "diagnosis": asdict(reason),
             "checks": [asdict(line) for line in lines],
@@ -171,8 +171,8 @@ def _check(
         build = build_workspace(workspace, suite.packages, may_fail=suite.build_may_fail)
         diagnosis = build.diagnosis
         for ids in filter(None, (early, others)):
-            is_all = len(ids) == len(suite.checks)
-            options = Options(only=() if is_all else suite.with_dependencies(*ids))
+            is_whole_suite = len(ids) == len(suite.checks)
+            options = Options(only=() if is_whole_suite else suite.with_dependencies(*ids))
             plugin = GradingPlugin(workspace, SEED, Artifacts(out), build.diagnoses, options)
             run(suite.files, plugin)
             if plugin.failures:

@@ -14,8 +14,8 @@ from autograder import course_paths
 from autograder.exceptions import UsageError
 from autograder.notebook.cells_and_files import differences
 from autograder.notebook.exercises import KINDS, Exercise, exercises, find_exercise
-from autograder.notebook.kept_results import Kept, keep, load, take_inputs
 from autograder.notebook.notices import INFO, STYLE, TROUBLE, Notice
+from autograder.notebook.stored_results import StoredResult, current_inputs, load, store
 from autograder.notebook.worker_client import run_in_worker
 from autograder.result.causes import FAILED_AS_WELL, Cause, causes
 from autograder.result.model import CheckResult, structure
@@ -25,7 +25,7 @@ from sim.grading import grading
 SYMBOLS = {Outcome.PASSED: "✔", Outcome.FAILED: "✘", Outcome.NOT_CHECKED: "○"}
 HIDDEN_CHECKS_HEADING = "After you submit, {count} more checks run with their own inputs:"
 UNCHANGED = "Unchanged since {since}, so nothing was run."
-FAILED_BEFORE = "what failed before"
+FAILED_BEFORE = "previously failed checks"
 INDENT = 'style="margin-left:2em"'
 COLOURS = {Outcome.PASSED: "#009e73", Outcome.FAILED: TROUBLE, Outcome.NOT_CHECKED: "#767676"}
 
@@ -74,10 +74,10 @@ class CheckReport:
     @property
     def summary(self) -> str:
         """A sentence with the number of passed checks."""
-        good = sum(line.outcome is Outcome.PASSED for line in self.lines)
+        passed_count = sum(line.outcome is Outcome.PASSED for line in self.lines)
         checked = ", ".join(filter(None, (self.assignment, self.part)))
         unchanged = f" {UNCHANGED.format(since=self.since)}" if self.since else ""
-        return f"{checked}: {good} of {len(self.lines)} visible checks passed.{unchanged}"
+        return f"{checked}: {passed_count} of {len(self.lines)} visible checks passed.{unchanged}"
 
     @property
     def causes(self) -> tuple[Cause, ...]:
@@ -138,10 +138,10 @@ def check(
         fresh: whether to run the checks even if nothing has changed.
 
     Raises:
-        UsageError: there is no such chapter, exercise or workspace.
+        UsageError: the chapter, exercise or workspace does not exist.
         GraderError: the check itself failed.
     """
-    if grading():  # the sandbox holds no checks
+    if grading():  # the sandbox contains no checks
         return Notice("The hidden checks run after this notebook has been executed.")
     return run_part(part_of(assignment, exercise, step, question), Path(workspace), fresh=fresh)
 
@@ -183,14 +183,14 @@ def run_part(
         early: called with the report of those while the others run.
 
     Raises:
-        UsageError: there is no such workspace.
+        UsageError: the workspace does not exist.
         GraderError: the check itself failed.
     """
-    kept = load(workspace, part.assignment, part.name)
-    reads = () if kept is None else kept.reads
-    before = take_inputs(part.assignment, workspace / "src", reads)
-    if kept is not None and before is not None and kept.digest == before.digest and not fresh:
-        return _report(part, workspace, kept.answer, kept.since)
+    stored = load(workspace, part.assignment, part.name)
+    reads = () if stored is None else stored.reads
+    inputs = current_inputs(part.assignment, workspace / "src", reads)
+    if stored is not None and inputs is not None and stored.digest == inputs.digest and not fresh:
+        return _report(part, workspace, stored.reply, stored.since)
 
     def report_early(reply: dict[str, Any]) -> None:
         if early is not None:
@@ -198,11 +198,16 @@ def run_part(
 
     arguments = {"exercises": [asdict(each) for each in part.exercises], "part": part.name, "first": [*first]}
     with run_in_worker("check", workspace, early=report_early, assignment=part.assignment, **arguments) as (reply, _):
-        made = datetime.now().isoformat(timespec="seconds")
-    is_unchanged = before is not None and before == take_inputs(part.assignment, workspace / "src", reads)
-    digest = before.digest if before is not None and is_unchanged and reply["lasting"] else ""
-    new = tuple(reply["reads"])
-    keep(workspace, part.assignment, part.name, Kept(digest if new == reads else "", made, new, reply))
+        created_at = datetime.now().isoformat(timespec="seconds")
+    is_unchanged = inputs is not None and inputs == current_inputs(part.assignment, workspace / "src", reads)
+    digest = inputs.digest if inputs is not None and is_unchanged and reply["lasting"] else ""
+    new_reads = tuple(reply["reads"])
+    store(
+        workspace,
+        part.assignment,
+        part.name,
+        StoredResult(digest if new_reads == reads else "", created_at, new_reads, reply),
+    )
     return _report(part, workspace, reply)
 
 

@@ -13,7 +13,7 @@ from autograder import course_paths
 from autograder.diagnosis import Kind
 from autograder.exceptions import UsageError
 from autograder.notebook.notices import TROUBLE, Notice
-from autograder.notebook.publishing import EachStep, planned
+from autograder.notebook.publishing import EachStep, plan_messages
 from autograder.notebook.worker_client import RECORDING, run_in_worker
 from sim import (
     DeadSector,
@@ -62,8 +62,8 @@ class DriveReport:
     @property
     def collided_at(self) -> float | None:
         """The time of the first collision in seconds, or None."""
-        rows = self.recording.collided.any(axis=1).nonzero()[0]
-        return float(self.recording.times[rows[0]]) if len(rows) else None
+        steps = self.recording.collided.any(axis=1).nonzero()[0]
+        return float(self.recording.times[steps[0]]) if len(steps) else None
 
     @property
     def picture(self) -> Picture:
@@ -102,7 +102,7 @@ def drive(
     each_step: EachStep | None = None,
     workspace: str | Path = "ws",
 ) -> DriveReport | Notice:
-    """Build the workspace, let a program control the robot, and show the track.
+    """Build the workspace, let a program control the robot, and show its track.
 
     The program is the student's own `main()` with the real rclpy over DDS. It runs in its own process. Its ROS time is
     stepped: a minute takes a second or two, and each run gives the same result.
@@ -126,8 +126,8 @@ def drive(
         The drive, or a notice with the reason why the robot could not move.
 
     Raises:
-        UsageError: there is no such world, fault, parameter file or workspace, or a return value of `each_step` cannot
-            be published.
+        UsageError: the world, fault, parameter file or workspace does not exist, or a return value of `each_step`
+            cannot be published.
     """
     if grading():
         return Notice("The robot stays in its dock while the notebook is graded.")
@@ -143,7 +143,7 @@ def drive(
         seconds=float(seconds),
         options=["-r", f"__node:={name}"] if name else [],
         parameter_file="" if parameters is None else _parameter_file(parameters),
-        published=None if each_step is None else planned(each_step, float(seconds), Path(workspace)),
+        published=None if each_step is None else plan_messages(each_step, float(seconds), Path(workspace)),
     ) as (reply, folder):
         diagnosis = reply["diagnosis"]
         if diagnosis["kind"] != Kind.OK.value:

@@ -55,7 +55,7 @@ def exercises(assignment: str) -> tuple[Exercise, ...]:
     """Return the exercises of a chapter that have checks, in the order of its notebook.
 
     Raises:
-        UsageError: there is no such chapter, or its notebook cannot be read.
+        UsageError: the chapter does not exist, or its notebook cannot be read.
     """
     path = course_paths.source_notebook(assignment)
     try:
@@ -72,8 +72,8 @@ def find_exercise(assignment: str, available: Sequence[Exercise], kind: str, num
         if (exercise.kind, exercise.number) == (kind, number):
             return exercise
     in_order = sorted(available, key=lambda each: (each.kind, each.number))
-    listed = ", ".join(f"{each.name} ({each.title})" if each.title else each.name for each in in_order)
-    raise UsageError(f"{assignment} has no {kind} {number}; it has: {listed or 'no exercise with a number'}")
+    known = ", ".join(f"{each.name} ({each.title})" if each.title else each.name for each in in_order)
+    raise UsageError(f"{assignment} has no {kind} {number}; it has: {known or 'no exercise with a number'}")
 
 
 def checks_of(chosen: Exercise, available: Sequence[Exercise], checks: Sequence[Check]) -> tuple[str, ...]:
@@ -90,8 +90,8 @@ def _exercise_of(check: Check, available: Sequence[Exercise], checks: Sequence[C
     """Return the exercise of a check, or None if no exercise contains one of its requirements."""
     group = [each for other in checks if other.group == check.group for each in _exercises_covering(other, available)]
     if len(set(group)) > 1:
-        named = next((each for each in available if check.group in each.groups), None)
-        return named or next(reversed(_exercises_covering(check, available)), None)
+        assigned = next((each for each in available if check.group in each.groups), None)
+        return assigned or next(reversed(_exercises_covering(check, available)), None)
     return next(iter(_exercises_covering(check, available)), None)
 
 
@@ -125,9 +125,11 @@ def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]
             sentences.setdefault(current, {}).update(cell["metadata"].get("course", {}).get("contract", {}))
             file_counts[current] = len(files)
     for name, each in by_name.items():
-        if own := sentences.get(name):  # empty for a question that a person grades
+        if requirements := sentences.get(name):  # empty for a question that a person grades
             written, rest = files[: file_counts[name]], files[file_counts[name] :]
-            yield replace(each, sentences=tuple(own), later=tuple(file for file in rest if file not in written))
+            yield replace(
+                each, sentences=tuple(requirements), later=tuple(file for file in rest if file not in written)
+            )
 
 
 def _headings(cell: Any) -> Iterator[tuple[int, str]]:

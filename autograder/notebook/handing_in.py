@@ -69,16 +69,16 @@ def submit(assignment: str, folder: str | Path = ".") -> Receipt | Notice:
         The service's receipt, or a notice that says why nothing was handed in.
 
     Raises:
-        UsageError: there is no such assignment.
+        UsageError: the assignment does not exist.
     """
     if grading():
         return Notice("Nothing is handed in while a notebook is graded.")
     if assignment not in (known := suites.checkable_assignments()):
-        raise UsageError(f"there is nothing to hand in for {assignment!r}; choose one of: {', '.join(known)}")
+        raise UsageError(f"{assignment!r} is not an assignment to hand in; choose one of: {', '.join(known)}")
     service, token = os.environ.get(SERVICE), os.environ.get(TOKEN)
     if not service or not token:
         return Notice(
-            "This hub does not grade submissions. Hand in as your instructor says: the folder as a zip, for example."
+            "This hub does not grade submissions. Hand in as your instructor told you, for example the folder as a zip."
         )
     try:
         files = intake.read_files(Path(folder), assignment)

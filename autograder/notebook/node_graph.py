@@ -94,21 +94,25 @@ def graph(seconds: float = 10.0) -> Graph | Notice:
 
 def _wait_until_stable(observer: Any, seconds: float) -> Graph:
     """Read the graph until it has not changed for `STABLE_SECONDS`, or until `seconds` have passed."""
-    end = time.monotonic() + seconds
-    seen, since = _read_graph(observer), time.monotonic()
-    while time.monotonic() < min(end, since + STABLE_SECONDS):
+    deadline = time.monotonic() + seconds
+    latest, changed_at = _read_graph(observer), time.monotonic()
+    while time.monotonic() < min(deadline, changed_at + STABLE_SECONDS):
         time.sleep(0.05)
-        now = _read_graph(observer)
-        if now != seen or not now.nodes:
-            seen, since = now, time.monotonic()
-    return seen
+        current = _read_graph(observer)
+        if current != latest or not current.nodes:
+            latest, changed_at = current, time.monotonic()
+    return latest
 
 
 def _read_graph(observer: Any) -> Graph:
     """Return the current graph without hidden nodes, whose names start with an underscore."""
     topics = {name: kinds[0] for name, kinds in observer.get_topic_names_and_types() if name not in HIDDEN_TOPICS}
-    published = {(_name(end), topic) for topic in topics for end in observer.get_publishers_info_by_topic(topic)}
-    subscribed = {(topic, _name(end)) for topic in topics for end in observer.get_subscriptions_info_by_topic(topic)}
+    published = {
+        (_name(endpoint), topic) for topic in topics for endpoint in observer.get_publishers_info_by_topic(topic)
+    }
+    subscribed = {
+        (topic, _name(endpoint)) for topic in topics for endpoint in observer.get_subscriptions_info_by_topic(topic)
+    }
     nodes = {f"{space.rstrip('/')}/{name}" for name, space in observer.get_node_names_and_namespaces()}
     visible = tuple(sorted(node for node in nodes if not node.rpartition("/")[2].startswith("_")))
     return Graph(
@@ -119,8 +123,8 @@ def _read_graph(observer: Any) -> Graph:
     )
 
 
-def _name(end: Any) -> str:
-    return f"{end.node_namespace.rstrip('/')}/{end.node_name}"
+def _name(endpoint: Any) -> str:
+    return f"{endpoint.node_namespace.rstrip('/')}/{endpoint.node_name}"
 
 
 def _box(x: float, y: float, name: str, kind: str | None) -> str:

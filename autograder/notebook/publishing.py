@@ -1,4 +1,4 @@
-"""Additional messages of a drive, which a function in the notebook returns for each step.
+"""Plans the additional messages of a drive: a function in the notebook returns them for each step.
 
 The function runs in the notebook's kernel before the drive, because the driving process must not run a notebook's code.
 It therefore knows the time, but not what the robot does. Its messages are sent as serialized ROS messages.
@@ -17,14 +17,14 @@ from typing import Any
 from autograder.exceptions import UsageError
 
 STEP_SECONDS = 0.1  # of ROS time between two calls, at the instants of the simulator's scans
-TAKEN = ("/scan", "/odom", "/clock", "/cmd_vel")  # topics of the simulator and of the controlling program
+RESERVED_TOPICS = ("/scan", "/odom", "/clock", "/cmd_vel")  # topics of the simulator and of the controlling program
 _TOPIC = re.compile(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
 
 EachStep = Callable[[float], "Mapping[str, Any] | None"]
 """Takes the seconds since the start, and returns the messages to publish by topic, or None."""
 
 
-def planned(each_step: EachStep, seconds: float, workspace: Path) -> dict[str, Any]:
+def plan_messages(each_step: EachStep, seconds: float, workspace: Path) -> dict[str, Any]:
     """Call a function for each step of a drive, and return its messages as JSON: types by topic, and steps.
 
     Args:
@@ -40,18 +40,18 @@ def planned(each_step: EachStep, seconds: float, workspace: Path) -> dict[str, A
     types: dict[str, str] = {}
     steps: list[dict[str, str]] = []
     for number in range(1, round(seconds / STEP_SECONDS) + 1):
-        at = round(number * STEP_SECONDS, 1)
-        messages = each_step(at)
+        time = round(number * STEP_SECONDS, 1)
+        messages = each_step(time)
         if not isinstance(messages or {}, Mapping):
             raise UsageError(
-                f"at {at} s, each_step returned {messages!r}: return messages by topic, such as {{'/mode': String()}}"
+                f"at {time} s, each_step returned {messages!r}: return messages by topic, such as {{'/mode': String()}}"
             )
         step = {}
         for name, message in (messages or {}).items():
             topic = "/" + str(name).lstrip("/")
             kind = _type_of(topic, message, workspace)
             if types.setdefault(topic, kind) != kind:
-                raise UsageError(f"at {at} s, each_step returned a {kind} for {topic}, and before a {types[topic]}")
+                raise UsageError(f"at {time} s, each_step returned a {kind} for {topic}, and before a {types[topic]}")
             step[topic] = base64.b64encode(serialize_message(message)).decode("ascii")
         steps.append(step)
     return {"types": types, "steps": steps}
@@ -76,7 +76,7 @@ def _type_of(topic: str, message: Any, workspace: Path) -> str:
     """Return the ROS name of a message's type. Raises UsageError if it cannot be published on this topic."""
     if not _TOPIC.fullmatch(topic):
         raise UsageError(f"each_step names the topic {topic!r}, which is not a valid topic name")
-    if topic in TAKEN:
+    if topic in RESERVED_TOPICS:
         raise UsageError(f"each_step cannot publish on {topic}: the simulator and your program use it")
     package, _, _ = type(message).__module__.partition(".")
     if not hasattr(type(message), "get_fields_and_field_types"):

@@ -94,7 +94,7 @@ def score(drive: DriveReport | SimulatorSession | Notice, run: str = "") -> Scor
     if isinstance(drive, Notice):
         return drive
     if drive.recording is None:
-        return Notice("There is no run to score.")
+        return Notice("Nothing was recorded, so the run has no score.")
     scores = _read()
     newest = score_of(drive.recording, run or f"run {len(scores) + 1}")
     scores.append(newest)

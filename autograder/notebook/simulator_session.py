@@ -43,7 +43,7 @@ class SimulatorSession:
 def simulator(
     world: str = "empty_room", speed: float = 1.0, robots: Sequence[str] = ("",)
 ) -> Iterator[SimulatorSession]:
-    """Simulate robots while the block runs. The simulator publishes /scan, /odom and /clock and obeys /cmd_vel.
+    """Simulate robots while the block runs. The simulator publishes /scan, /odom, /clock and subscribes to /cmd_vel.
 
     The simulator is a separate program, like a real robot. Its log is printed in the cell. The robots are as large as
     in `drive`.
@@ -54,7 +54,7 @@ def simulator(
         robots: the namespace of each robot; "" means no namespace.
 
     Raises:
-        UsageError: there is no such world.
+        UsageError: the world does not exist.
     """
     path = course_paths.world_path(world)
     session = SimulatorSession()

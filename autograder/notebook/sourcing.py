@@ -36,7 +36,7 @@ def source(workspace: str | Path = "ws") -> Notice:
         workspace: a colcon workspace after `colcon build`.
 
     Raises:
-        UsageError: there is no workspace, or it was not built.
+        UsageError: the workspace does not exist, or it was not built.
     """
     if grading():
         return Notice(NOT_WHILE_GRADING)
@@ -108,7 +108,9 @@ def _prefixes(workspace: str | Path) -> list[Path]:
     """Return the install prefix of each package of a workspace."""
     root = Path(workspace).resolve()
     if not root.is_dir():
-        raise UsageError(f"there is no folder {workspace}: run this in the assignment's folder, which contains ws")
+        raise UsageError(
+            f"the folder {workspace} does not exist: run this in the assignment's folder, which contains ws"
+        )
     install = root / "install"
     prefixes = sorted(path for path in install.iterdir() if (path / "share").is_dir()) if install.is_dir() else []
     if not prefixes:

@@ -40,20 +40,20 @@ def shell(command: str, *, seconds: float = 600.0, workspace: str | Path = "ws")
         workspace: the workspace to source first, if it has been built.
 
     Raises:
-        UsageError: there is no such workspace.
+        UsageError: the workspace does not exist.
     """
     if grading():
         print(NOT_WHILE_GRADING)
         return
-    if unwritten := _unwritten(command, Path(workspace)):
-        print(unwritten)
+    if message := _unsolved_message(command, Path(workspace)):
+        print(message)
         return
     with _Terminal(command, Path(workspace)) as terminal:
         terminal.wait(lambda: False, seconds)
         terminal.show()
-        if terminal.runs:
+        if terminal.is_running:
             print(f"[Ctrl-C after {seconds:g} s]", flush=True)
-        terminal.end()
+        terminal.stop()
 
 
 @contextmanager
@@ -69,7 +69,7 @@ def running(
         workspace: the workspace to source first, if it has been built.
 
     Raises:
-        UsageError: there is no such workspace.
+        UsageError: the workspace does not exist.
     """
     if grading():
         print(NOT_WHILE_GRADING)
@@ -81,21 +81,21 @@ def running(
         terminal.wait(lambda: all(text in terminal.output() for text in texts), seconds)
         terminal.show()
         missing = [text for text in texts if text not in terminal.output()]
-        if missing and terminal.runs:
+        if missing and terminal.is_running:
             print(f"[not printed within {seconds:g} s: {', '.join(map(repr, missing))}]")
         try:
             yield
         finally:
-            terminal.end()
+            terminal.stop()
 
 
-def _unwritten(command: str, workspace: Path) -> str:
+def _unsolved_message(command: str, workspace: Path) -> str:
     """Return a message instead of a colcon build that must fail because a file still contains an exercise's stub."""
     if not (build := _BUILD.search(command)):
         return ""
     source = workspace / "src"
-    chosen = (build["packages"] or "").split()
-    reason = explain(OK, source, *(chosen or sorted(path.name for path in source.glob("*"))))
+    packages = (build["packages"] or "").split()
+    reason = explain(OK, source, *(packages or sorted(path.name for path in source.glob("*"))))
     return "" if reason is OK else reason.sentence
 
 
@@ -104,9 +104,9 @@ class _Terminal:
 
     def __init__(self, command: str, workspace: Path) -> None:
         if not workspace.is_dir():
-            raise UsageError(f"there is no folder {workspace}: run this in the assignment's folder")
+            raise UsageError(f"the folder {workspace} does not exist: run this in the assignment's folder")
         self._file = tempfile.TemporaryFile()  # noqa: SIM115  # closed by __exit__
-        self._shown = 0
+        self._printed_length = 0
         # With this variable, a build prints byte-code warnings that look like errors in the package.
         inherited = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
         path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
@@ -128,7 +128,7 @@ class _Terminal:
         self._file.close()
 
     @property
-    def runs(self) -> bool:
+    def is_running(self) -> bool:
         return self._process.poll() is None
 
     def output(self) -> str:
@@ -137,8 +137,8 @@ class _Terminal:
     def show(self) -> None:
         """Print the new output."""
         text = self.output()
-        print(text[self._shown :], end="", flush=True)
-        self._shown = len(text)
+        print(text[self._printed_length :], end="", flush=True)
+        self._printed_length = len(text)
 
     def wait(self, condition: Callable[[], bool], seconds: float) -> None:
         """Wait for a condition or the command's end, for at most `seconds`."""
@@ -150,17 +150,17 @@ class _Terminal:
                 continue
             return
 
-    def end(self) -> None:
+    def stop(self) -> None:
         """Send Ctrl-C if the command is still running. Print the rest of its output, and its status if it failed."""
-        pressed = self.runs
-        if pressed:
+        was_running = self.is_running
+        if was_running:
             self._signal(signal.SIGINT)
             self.wait(lambda: False, STOP_SECONDS)
         self.show()
         status = self._process.poll()
         if status is None:
             print(f"[still running {STOP_SECONDS:.0f} s after Ctrl-C: killed]")
-        elif status != 0 and not pressed:
+        elif status != 0 and not was_running:
             print(f"[exit status {status}]")
 
     def _signal(self, number: signal.Signals) -> None:

@@ -13,8 +13,8 @@ from pathlib import Path
 from autograder import course_paths
 from autograder.exceptions import GraderError, UsageError
 from autograder.notebook.checking import Part, run_part
-from autograder.notebook.kept_results import stamp_of
 from autograder.notebook.notices import Notice
+from autograder.notebook.stored_results import stamp_of
 from autograder.suite import Outcome, fingerprint
 
 POLL_SECONDS = 0.25
@@ -34,35 +34,35 @@ def watch(part: Part, workspace: Path, show: Show, *, pause: Callable[[float], N
         pause: waits for some seconds between polls.
 
     Raises:
-        UsageError: there is no such workspace.
+        UsageError: the workspace does not exist.
     """
     source = workspace / "src"
     if not source.is_dir():
-        raise UsageError(f"there is no folder {source}: run this from the assignment's folder, where ws/src is")
+        raise UsageError(f"the folder {source} does not exist: run this from the assignment's folder, where ws/src is")
     failed: tuple[str, ...] = ()
     try:
         while True:
-            seen = _stamp(part.assignment, workspace)
+            checked_stamp = _stamp(part.assignment, workspace)
             try:
                 report = run_part(part, workspace, first=failed, early=show)
                 failed = tuple(line.id for line in report.lines if line.outcome is Outcome.FAILED)
                 show(report)
             except (GraderError, UsageError, OSError) as error:  # such as a file that was deleted while it was copied
                 show(Notice(str(error)))
-            if _stamp(part.assignment, workspace) == seen:
+            if _stamp(part.assignment, workspace) == checked_stamp:
                 show(Notice(WAITING))
-            _wait(part.assignment, workspace, seen, pause)
+            _wait(part.assignment, workspace, checked_stamp, pause)
     except KeyboardInterrupt:
         return
 
 
-def _wait(assignment: str, workspace: Path, seen: str, pause: Callable[[float], None]) -> None:
-    """Wait until the files have changed since `seen` and then stayed the same for a moment."""
-    newest, since = seen, time.monotonic()
-    while newest == seen or time.monotonic() - since < QUIET_SECONDS:
+def _wait(assignment: str, workspace: Path, checked_stamp: str, pause: Callable[[float], None]) -> None:
+    """Wait until the files have changed since `checked_stamp` and then stayed the same for a moment."""
+    latest, changed_at = checked_stamp, time.monotonic()
+    while latest == checked_stamp or time.monotonic() - changed_at < QUIET_SECONDS:
         pause(POLL_SECONDS)
-        if (now := _stamp(assignment, workspace)) != newest:
-            newest, since = now, time.monotonic()
+        if (current := _stamp(assignment, workspace)) != latest:
+            latest, changed_at = current, time.monotonic()
 
 
 def _stamp(assignment: str, workspace: Path) -> str:

@@ -39,12 +39,14 @@ def run_in_worker(
         arguments: the verb's arguments.
 
     Raises:
-        UsageError: there is no such workspace.
+        UsageError: the workspace does not exist.
         GraderError: the worker failed.
     """
     source = workspace / "src"
     if not source.is_dir():
-        raise UsageError(f"there is no folder {source}: run this in the assignment's folder, which contains ws/src")
+        raise UsageError(
+            f"the folder {source} does not exist: run this in the assignment's folder, which contains ws/src"
+        )
     with run_on(source.resolve(), best_isolation(), verb, early=early, **arguments) as reply:
         yield reply
 
@@ -59,15 +61,15 @@ def run_on(
     **arguments: Any,
 ) -> Iterator[tuple[dict[str, Any], Path]]:
     """Do the same as `run_in_worker`, at an isolation level. For a check, `source` may be a whole submission."""
-    ours, theirs = Pipe()
-    with tempfile.TemporaryDirectory(prefix="request-") as folder, ours:
+    own_end, worker_end = Pipe()
+    with tempfile.TemporaryDirectory(prefix="request-") as folder, own_end:
 
         def command(scratch: Path) -> list[str]:
             request = {"verb": verb, "source": place_of(source, isolation, scratch), "out": folder, "scratch": scratch}
             request["arguments"] = arguments
             file = Path(folder) / REQUEST  # a large map does not fit on a command line
             file.write_text(json.dumps(request, default=str))
-            return [sys.executable, "-m", "autograder.notebook.check_worker", str(file), str(theirs.fileno())]
+            return [sys.executable, "-m", "autograder.notebook.check_worker", str(file), str(worker_end.fileno())]
 
         visible_paths = places(assignment, parts=("visible",)) if (assignment := arguments.get("assignment")) else []
         if source.is_file():
@@ -75,22 +77,22 @@ def run_on(
             visible_paths.append(course_paths.chapter(arguments["assignment"]))
         view = View(shown=tuple(visible_paths), submitted=(source,), writable=(Path(folder),))
         with (
-            theirs,
-            in_worker_sandbox(command, isolation, NOTEBOOK_WORKER, view=view, pass_fds=(theirs.fileno(),)) as (
+            worker_end,
+            in_worker_sandbox(command, isolation, NOTEBOOK_WORKER, view=view, pass_fds=(worker_end.fileno(),)) as (
                 process,
                 _,
             ),
         ):
-            theirs.close()  # the worker has the only other copy, so the connection ends with it
+            worker_end.close()  # the worker has the only other copy, so the connection ends with it
             first_part, listeners = Path(folder) / EARLY_FILE, [early] if early else []
 
             def has_ended() -> bool:
-                """Pass the first part of the reply on once it exists. Return whether the worker has ended."""
+                """Pass on the first part of the reply once it exists. Return whether the worker has ended."""
                 if listeners and first_part.is_file():
                     listeners.pop()(json.loads(first_part.read_text(encoding="utf-8")))
                 return process.exit_reason is not None
 
-            keeper.attend(ours, isolation, has_ended)  # answers the worker's requests for interface packages
+            keeper.attend(own_end, isolation, has_ended)  # answers the worker's requests for interface packages
             has_ended()  # the worker may have written the first part just before it ended
             report = ended(process)
         reply = Path(folder) / REPLY_FILE

@@ -1,6 +1,6 @@
 """The course's `%%writefile`, which writes a file like IPython's but never destroys a student's work.
 
-It creates missing folders of the file and says so, because a misspelt name also creates one. A cell that still
+It creates missing folders and prints their names, because a misspelt name also creates one. A cell that still
 contains an exercise's stub does not replace a file that the student wrote in another way. A file that was changed since
 a cell last wrote it is copied to `replaced/` in its workspace before a cell replaces it.
 """
@@ -30,13 +30,13 @@ def register(shell: InteractiveShell | None) -> None:
         return
     in_shell: Any = shell  # IPython has no types
     original = in_shell.find_cell_magic("writefile")
-    if original is None or getattr(original, "is_the_courses", False):
+    if original is None or getattr(original, "is_course_magic", False):
         return
 
     def writefile(line: str, cell: str) -> None:
         write(line, cell, original)
 
-    writefile.is_the_courses = True  # type: ignore[attr-defined]
+    writefile.is_course_magic = True  # type: ignore[attr-defined]
     in_shell.register_magic_function(writefile, "cell")
 
 
@@ -49,13 +49,13 @@ def write(line: str, cell: str, original: Any) -> None:
     parse: Any = magic_arguments.parse_argstring
     arguments = parse(original, line)
     path = Path(arguments.filename.strip("'\"")).expanduser()
-    home = _workspace(path)
-    record, name, on_disk = read_record(home), os.path.relpath(path, home), _text(path)
+    workspace = _workspace(path)
+    record, name, on_disk = read_record(workspace), os.path.relpath(path, workspace), _text(path)
     _make_folder(path.parent)
     if arguments.append:
         original(line, cell)
         if on_disk is None or record.get(name) == digest(on_disk):  # only cells have written it
-            write_json(home / RECORD, {**record, name: digest((on_disk or "") + cell)})
+            write_json(workspace / RECORD, {**record, name: digest((on_disk or "") + cell)})
         return
     if on_disk is not None and on_disk != cell:
         if cell.count(STUB) > on_disk.count(STUB):
@@ -65,13 +65,13 @@ def write(line: str, cell: str, original: Any) -> None:
             )
             return
         if record.get(name) != digest(on_disk):
-            _show(f"{path} was changed outside of this cell. Its old text was copied to {_keep_copy(path, home)}.")
+            _show(f"{path} was changed outside of this cell. Its old text was copied to {_keep_copy(path, workspace)}.")
     original(line, cell)
-    write_json(home / RECORD, {**record, name: digest(cell)})
+    write_json(workspace / RECORD, {**record, name: digest(cell)})
 
 
 def _make_folder(folder: Path) -> None:
-    """Create a folder if it does not exist, and say so. Raises UsageError if part of its path is a file."""
+    """Create a folder if it does not exist, and print its name. Raises UsageError if part of its path is a file."""
     if folder.is_dir():
         return
     try:
@@ -99,14 +99,14 @@ def _text(path: Path) -> str | None:
     return path.read_bytes().decode("utf-8", "surrogateescape")
 
 
-def _keep_copy(path: Path, home: Path) -> Path:
+def _keep_copy(path: Path, workspace: Path) -> Path:
     """Copy a file to an unused name in the workspace's folder of replaced files, and return the copy's path."""
-    top = home / REPLACED
-    stem = top / os.path.relpath(path, home)
-    stem.parent.mkdir(parents=True, exist_ok=True)
-    (top / "COLCON_IGNORE").touch()  # a copied package.xml must not count as a package
+    folder = workspace / REPLACED
+    base = folder / os.path.relpath(path, workspace)
+    base.parent.mkdir(parents=True, exist_ok=True)
+    (folder / "COLCON_IGNORE").touch()  # a copied package.xml must not count as a package
     number = 1
-    while (copy := stem.with_name(f"{stem.name}.{number}")).exists():
+    while (copy := base.with_name(f"{base.name}.{number}")).exists():
         number += 1
     copy.write_bytes(path.read_bytes())
     return copy

@@ -14,10 +14,10 @@ def digest(text: str) -> str:
     return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()
 
 
-def read_record(home: Path) -> dict[str, str]:
+def read_record(workspace: Path) -> dict[str, str]:
     """Read the record. It is empty if the file is missing or unreadable."""
     try:
-        record = json.loads((home / RECORD).read_text())
+        record = json.loads((workspace / RECORD).read_text())
     except (OSError, ValueError):
         return {}
     return record if isinstance(record, dict) else {}

@@ -21,7 +21,7 @@ from autograder.author.verification.mutants import mutants, write_mutant, write_
 from autograder.building import keeper
 from autograder.building.interfaces import Cache
 from autograder.course_paths import SOLUTIONS
-from autograder.notebook import check, drive, kept_results, ros
+from autograder.notebook import check, drive, ros, stored_results
 from autograder.notebook.checking import CheckReport
 from autograder.notebook.driving import FAULTS, DriveReport
 from autograder.notebook.notices import Notice
@@ -46,7 +46,7 @@ def reference_workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(autouse=True)
 def _own_result_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kept_results, "CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(stored_results, "CACHE", str(tmp_path / "cache"))
 
 
 def _mutant(name: str, folder: Path) -> Path:

@@ -38,7 +38,7 @@ def test_without_a_hub_a_notice_says_so(answer: Path, monkeypatch: pytest.Monkey
 
 
 def test_an_assignment_that_does_not_exist_is_named() -> None:
-    with pytest.raises(UsageError, match="there is nothing to hand in for '02_node'"):
+    with pytest.raises(UsageError, match="'02_node' is not an assignment to hand in"):
         submit("02_node")
 
 

@@ -16,7 +16,7 @@ import pytest
 
 from autograder import course_paths
 from autograder.course_paths import Course
-from autograder.notebook import checking, kept_results
+from autograder.notebook import checking, stored_results
 from autograder.notebook.checking import CheckReport, part_of, run_part
 from autograder.result.model import CheckResult
 from autograder.suite import Outcome, suites
@@ -109,11 +109,11 @@ def course_copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def machine(course_copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Machine:
     copy = Machine(course_copy)
-    module = copy.root / "autograder/notebook/kept_results.py"
+    module = copy.root / "autograder/notebook/stored_results.py"
     course = Course(copy.root, "a-copy", "A copy", checks="autograder/checks", worlds="assets/worlds")
     monkeypatch.setattr(course_paths, "ROOT", copy.root)
     monkeypatch.setattr(course_paths, "course", lambda: course)
-    monkeypatch.setattr(kept_results, "__file__", str(module))
+    monkeypatch.setattr(stored_results, "__file__", str(module))
     monkeypatch.setattr(checking, "run_in_worker", copy.run)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     return copy
@@ -223,7 +223,7 @@ def test_a_damaged_kept_result_is_ignored(text: str, machine: Machine, tmp_path:
 
 
 def test_only_the_newest_files_are_kept(machine: Machine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kept_results, "MAX_FILES", 2)
+    monkeypatch.setattr(stored_results, "MAX_FILES", 2)
     folder = tmp_path / "cache/autograder/checks"
     folder.mkdir(parents=True)
     for number in range(3):

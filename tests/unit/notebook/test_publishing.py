@@ -9,11 +9,11 @@ import pytest
 from std_msgs.msg import Int32, String
 
 from autograder.exceptions import UsageError
-from autograder.notebook.publishing import messages_at, planned, types_of
+from autograder.notebook.publishing import messages_at, plan_messages, types_of
 
 
 def test_messages_arrive_unchanged_at_their_steps(tmp_path: Path) -> None:
-    planned_run = planned(
+    planned_run = plan_messages(
         lambda t: {"mode": String(data=f"é {t}"), "/n": Int32(data=-7)} if t >= 0.2 else None, 0.4, tmp_path
     )
     types = types_of(planned_run)
@@ -38,12 +38,12 @@ def test_messages_arrive_unchanged_at_their_steps(tmp_path: Path) -> None:
 )
 def test_a_value_that_cannot_be_published_is_named(tmp_path: Path, returned: Any, message: str) -> None:
     with pytest.raises(UsageError, match=message):
-        planned(lambda t: returned, 1.0, tmp_path)
+        plan_messages(lambda t: returned, 1.0, tmp_path)
 
 
 def test_a_topic_has_one_type(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"at 0.2 s, each_step returned a std_msgs/msg/Int32 for /n, and before a"):
-        planned(lambda t: {"/n": Int32() if t > 0.15 else String()}, 1.0, tmp_path)
+        plan_messages(lambda t: {"/n": Int32() if t > 0.15 else String()}, 1.0, tmp_path)
 
 
 def test_a_type_that_the_workspace_builds_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -55,4 +55,4 @@ def test_a_type_that_the_workspace_builds_is_refused(tmp_path: Path, monkeypatch
     import own_msgs
 
     with pytest.raises(UsageError, match="a message of own_msgs, which your workspace builds: use an installed type"):
-        planned(lambda t: {"/own": own_msgs.Own()}, 1.0, tmp_path / "ws")
+        plan_messages(lambda t: {"/own": own_msgs.Own()}, 1.0, tmp_path / "ws")

@@ -39,7 +39,7 @@ rclpy.shutdown()
 
 def test_a_missing_or_unbuilt_workspace_is_named(tmp_path: Path) -> None:
     with pytest.raises(
-        UsageError, match=r"there is no folder .*: run this in the assignment's folder, which contains ws"
+        UsageError, match=r"the folder .* does not exist: run this in the assignment's folder, which contains ws"
     ):
         source(tmp_path / "ws")
     with pytest.raises(UsageError, match="has not been built: run colcon build"):

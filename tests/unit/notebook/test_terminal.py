@@ -138,5 +138,5 @@ def test_no_command_runs_while_the_notebook_is_graded(
 
 
 def test_a_missing_workspace_is_named(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"there is no folder .*nowhere: run this in the assignment's folder"):
+    with pytest.raises(UsageError, match=r"the folder .*nowhere does not exist: run this in the assignment's folder"):
         shell("true", workspace=tmp_path / "nowhere")

@@ -50,29 +50,29 @@ class Inputs:
 
 
 @dataclass(frozen=True)
-class Kept:
+class StoredResult:
     """A stored result.
 
     Attributes:
         digest: the digest of its inputs; empty if they changed during the run.
-        at: when it was created, in ISO 8601.
+        created_at: when it was created, in ISO 8601.
         reads: additional files of the course that the checks read.
-        answer: the worker's reply.
+        reply: the worker's reply.
     """
 
     digest: str
-    at: str
+    created_at: str
     reads: tuple[str, ...]
-    answer: dict[str, Any]
+    reply: dict[str, Any]
 
     @property
     def since(self) -> str:
         """The time of day at which it was created, with the date unless that is today."""
-        made = datetime.fromisoformat(self.at)
-        return f"{made:%H:%M}" if made.date() == datetime.now().date() else f"{made:%d %B, %H:%M}"
+        created = datetime.fromisoformat(self.created_at)
+        return f"{created:%H:%M}" if created.date() == datetime.now().date() else f"{created:%d %B, %H:%M}"
 
 
-def take_inputs(assignment: str, source: Path, reads: Iterable[str] = ()) -> Inputs | None:
+def current_inputs(assignment: str, source: Path, reads: Iterable[str] = ()) -> Inputs | None:
     """Return the inputs of a check of a folder of packages, or None if files are changing or one is a link.
 
     Args:
@@ -96,21 +96,21 @@ def take_inputs(assignment: str, source: Path, reads: Iterable[str] = ()) -> Inp
     return Inputs(digest.hexdigest(), stamp.hexdigest())
 
 
-def load(workspace: Path, assignment: str, part: str) -> Kept | None:
+def load(workspace: Path, assignment: str, part: str) -> StoredResult | None:
     """Return the stored result of a chapter or a part of it, or None if it is missing or unreadable."""
     with suppress(OSError, ValueError, TypeError, LookupError, AttributeError):
-        kept: Kept = structure(Kept, json.loads(_file(workspace, assignment).read_bytes())[part])
-        return kept
+        stored: StoredResult = structure(StoredResult, json.loads(_file(workspace, assignment).read_bytes())[part])
+        return stored
     return None
 
 
-def keep(workspace: Path, assignment: str, part: str, kept: Kept) -> None:
+def store(workspace: Path, assignment: str, part: str, result: StoredResult) -> None:
     """Store a result in place of the previous one. If the disk is full, store nothing."""
-    file, others = _file(workspace, assignment), {}
+    file, other_parts = _file(workspace, assignment), {}
     with suppress(OSError, ValueError):
-        others = json.loads(file.read_bytes())
+        other_parts = json.loads(file.read_bytes())
     with suppress(OSError):
-        write_json(file, {**(others if isinstance(others, dict) else {}), part: asdict(kept)})
+        write_json(file, {**(other_parts if isinstance(other_parts, dict) else {}), part: asdict(result)})
         oldest_first = sorted(file.parent.glob("*.json"), key=lambda path: path.stat().st_mtime)
         for path in oldest_first[:-MAX_FILES]:
             path.unlink(missing_ok=True)
@@ -167,22 +167,22 @@ def _stamp(path: Path) -> bytes:
 def _environment() -> Mapping[str, Any]:
     ros = find()
     installed = {name for folder in _site_packages() for name in _versions(folder)}
-    own = without_wheel_bootstrap(os.environ)
-    variables = {**ros.variables(log_dir=Path("/")), **own, "PATH": path_with_scripts()}
-    kept = {name: value for name, value in passed_variables(variables).items() if name not in _IGNORED}
+    own_variables = without_wheel_bootstrap(os.environ)
+    variables = {**ros.variables(log_dir=Path("/")), **own_variables, "PATH": path_with_scripts()}
+    relevant_variables = {name: value for name, value in passed_variables(variables).items() if name not in _IGNORED}
     return {
         **identity(ros),
         "installed": sorted(installed),
         "launch": describe_launch(),
         "system": os.uname()[::2],
         "isolation": best_isolation().value,
-        "variables": kept,
+        "variables": relevant_variables,
     }
 
 
 def _site_packages() -> list[Path]:
-    named = [path for path in sys.path if path.endswith(("site-packages", "dist-packages"))]
-    return [Path(path) for path in {*named, *site.getsitepackages()} if Path(path).is_dir()]
+    on_path = [path for path in sys.path if path.endswith(("site-packages", "dist-packages"))]
+    return [Path(path) for path in {*on_path, *site.getsitepackages()} if Path(path).is_dir()]
 
 
 def _versions(folder: Path) -> Iterator[str]:
