@@ -58,10 +58,10 @@ class Interpreter:
 def check_machine(python: str, system: str, machine: str) -> None:
     """Raise SetUpError if the pinned packages do not support this version of Python or this machine."""
     if python not in ROS["pythons"]:
-        title, own, (first, *_, last) = ROS["title"], ROS["pythons"][0], sorted(ROS["pythons"])
+        title, default, (first, *_, last) = ROS["title"], ROS["pythons"][0], sorted(ROS["pythons"])
         raise SetUpError(
             f"Python {python} is not supported: ROS 2 {title}'s wheels are for Python {first} to {last}. "
-            f"Install one of them ({title}'s default is {own}) and run `make PYTHON=python{own}`"
+            f"Install one of them ({title}'s default is {default}) and run `make PYTHON=python{default}`"
         )
     if (system, machine) != ("Linux", "x86_64"):
         raise SetUpError(
@@ -104,13 +104,18 @@ def sourced_ros(environ: Mapping[str, str], venv: Path, interpreter: Interpreter
 
 
 def closed_to_other_users(python: Path, course: Path) -> str | None:
-    """Say why no other user can run the `.venv` that `python` makes in the folder `course`, and what to do; or None."""
+    """Explain why other users cannot run the `.venv` of the folder `course`, with a remedy, or return None.
+
+    `python` is the base interpreter of the environment.
+    """
     advice = {course: "move the course, to /srv for example, and run `make setup` there"}
     advice[python] = "run `make setup PYTHON=/usr/bin/python3`"
-    for path, what_to_do in advice.items():
+    for path, remedy in advice.items():
         for folder in reversed(path.parents):
             if not folder.stat().st_mode & stat.S_IXOTH:
-                return f"other users cannot run .venv, as {folder} is closed to them, and {path} is in it; {what_to_do}"
+                return (
+                    f"other users cannot run .venv, because they cannot enter {folder}, which contains {path}; {remedy}"
+                )
     return None
 
 
@@ -157,12 +162,12 @@ class SetUp:
         """Return the stamp of a finished set-up."""
         lock, patches = self.root / "requirements.lock", self.root / "autograder" / "ros" / "patch_wheels.py"
         # A virtual environment contains its own path, so a moved clone needs a new one.
-        about = (str(self.root), self.interpreter.executable, self.interpreter.build, str(self.sourced))
-        base = digest(Path(__file__), lock, patches, *about)
+        location = (str(self.root), self.interpreter.executable, self.interpreter.build, str(self.sourced))
+        base = digest(Path(__file__), lock, patches, *location)
         files = (self.root / "pyproject.toml", self.root / "autograder/building/interfaces/tutorials.yaml")
         project = digest(*files, json.dumps(ROS["commits"]), str(self.standins))
-        added = {"dev": digest(self.root / "requirements-dev.lock")} if dev else {}
-        return {"base": base, "project": project, **added}
+        dev_part = {"dev": digest(self.root / "requirements-dev.lock")} if dev else {}
+        return {"base": base, "project": project, **dev_part}
 
     def stamp(self) -> dict[str, str]:
         """Return the stamp of the last finished set-up, empty if it or its Python does not exist."""
@@ -185,7 +190,7 @@ class SetUp:
         missing = self.missing_parts(dev=dev)
         if not missing and not real_launch:
             return
-        kept = {} if "base" in missing else self.stamp()
+        valid_parts = {} if "base" in missing else self.stamp()
         (self.venv / STAMP).unlink(missing_ok=True)
         if "base" in missing:
             self._new_environment()
@@ -201,15 +206,15 @@ class SetUp:
             tutorials = "autograder.building.interfaces.tutorials"
             self._step("the tutorials' interfaces were not built", self.python, "-m", tutorials)
         fresh = self.venv / f"{STAMP}.fresh"
-        fresh.write_text(json.dumps({**kept, **self.expected_stamp(dev=dev)}, indent=1))
+        fresh.write_text(json.dumps({**valid_parts, **self.expected_stamp(dev=dev)}, indent=1))
         fresh.replace(self.venv / STAMP)
         print_progress("done")
         if launch_failed and real_launch:
             raise SetUpError("the real launch could not be installed, for the reason above; everything else is set up")
 
-    def _step(self, failed: str, *command: str) -> None:
+    def _step(self, problem: str, *command: str) -> None:
         if status := self.run(*command):
-            raise SetUpError(f"{failed} (exit status {status} of `{' '.join(command)}`)")
+            raise SetUpError(f"{problem} (exit status {status} of `{' '.join(command)}`)")
 
     def _new_environment(self) -> None:
         base = self.interpreter.executable
@@ -221,18 +226,18 @@ class SetUp:
         self._step("the virtual environment could not be created", base, "-m", "venv", *bare, str(self.venv))
         if without_pip:
             # Debian ships Python without ensurepip. The system's pip then installs pip in the environment.
-            site = self.venv / "lib" / f"python{self.interpreter.version}" / "site-packages"
-            failed = "neither ensurepip nor pip works for this Python: install python3-venv or python3-pip"
-            self._step(failed, base, "-m", "pip", "install", "-qq", "--target", str(site), "pip")
+            site_packages = self.venv / "lib" / f"python{self.interpreter.version}" / "site-packages"
+            problem = "neither ensurepip nor pip works for this Python: install python3-venv or python3-pip"
+            self._step(problem, base, "-m", "pip", "install", "-qq", "--target", str(site_packages), "pip")
 
     def _install(self, name: str) -> None:
         lock = (self.root / name).read_text()
-        (chosen := self.venv / name).write_text(without_ros(lock) if self.sourced else lock)
+        (lock_file := self.venv / name).write_text(without_ros(lock) if self.sourced else lock)
         print_progress(f"installing the pinned packages of {name}, which takes a minute or two")
-        failed = f"pip could not install {name}, for the reason above; set proxies and mirrors in pip.conf"
+        problem = f"pip could not install {name}, for the reason above; set proxies and mirrors in pip.conf"
         # The lock is complete and valid for each supported Python, even where a package's metadata disagree (rtamt).
-        pinned = ("--no-deps", "--ignore-requires-python", "--no-compile", "--require-hashes", "-r", str(chosen))
-        self._step(failed, self.python, "-m", "pip", "install", "-qq", *pinned)
+        pinned = ("--no-deps", "--ignore-requires-python", "--no-compile", "--require-hashes", "-r", str(lock_file))
+        self._step(problem, self.python, "-m", "pip", "install", "-qq", *pinned)
         print_progress("compiling them")
         # The exit status is ignored, because some packages contain templates and old Python that never compile.
         self.run(self.python, "-m", "compileall", "-qq", "-j", "0", str(self.venv / "lib"), quiet=True)
@@ -242,12 +247,12 @@ class SetUp:
 def exclusive_set_up(lock_file: Path) -> Iterator[None]:
     """Lock `lock_file`, so that a clone has only one set-up at a time. Print a line before waiting."""
     lock_file.parent.mkdir(exist_ok=True)
-    with lock_file.open("w") as held:
+    with lock_file.open("w") as file:
         try:
-            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             print_progress("waiting for another set-up that is already running")
-            fcntl.flock(held, fcntl.LOCK_EX)
+            fcntl.flock(file, fcntl.LOCK_EX)
         yield
 
 
@@ -275,8 +280,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if run(*apt, *(["--browser"] if options.browser else []), *(["--require-compiler"] if needed else [])) != 0:
             return 1  # the reason is printed
         if needed:
-            if os.geteuid() == 0 and (closed := closed_to_other_users(Path(interpreter.executable), root)):
-                print_progress(closed)
+            if os.geteuid() == 0 and (problem := closed_to_other_users(Path(interpreter.executable), root)):
+                print_progress(problem)
             with exclusive_set_up(root / ".build" / "set-up.lock"):
                 set_up.make(dev=options.dev, real_launch=options.real_launch)
     except SetUpError as error:

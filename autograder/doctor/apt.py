@@ -14,7 +14,7 @@ import sysconfig
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-# Packages from apt, and commands that show that the package or an equivalent is installed.
+# The apt packages, each with the commands that show that it or an equivalent is installed.
 TOOLS = {
     "g++": ("g++",),
     "bubblewrap": ("bwrap",),
@@ -29,39 +29,39 @@ def missing_packages(headers: Path, *, browser: bool) -> list[str]:
     return missing if (headers / "Python.h").is_file() else [*missing, f"python{sysconfig.get_python_version()}-dev"]
 
 
-def install(missing: Sequence[str], tried: Path, uid: int, run: Callable[..., int]) -> None:
+def install(missing: Sequence[str], attempts_file: Path, uid: int, run: Callable[..., int]) -> None:
     """Install packages, or print the command that does.
 
     Args:
         missing: the packages.
-        tried: a file that records them if they are tried, because each attempt takes seconds.
-        uid: the user; others than root need sudo.
+        attempts_file: records the packages of each attempt, because an attempt takes seconds.
+        uid: the user's id; users other than root need sudo.
         run: runs a command silently and returns its exit status.
     """
-    by_hand = f"sudo apt-get install {' '.join(missing)}"
-    before = tried.read_text().split() if tried.exists() else []
+    manual_command = f"sudo apt-get install {' '.join(missing)}"
+    attempted = attempts_file.read_text().split() if attempts_file.exists() else []
     sudo = [] if uid == 0 else ["sudo", "-n"]  # `env` turns a missing sudo into an exit status
-    possible = shutil.which("apt-get") and run("env", *sudo, "true") == 0
-    if not possible or set(missing) <= set(before):
-        print(f"set-up: {', '.join(missing)} is missing; to install it: {by_hand}", flush=True)
+    can_install = shutil.which("apt-get") and run("env", *sudo, "true") == 0
+    if not can_install or set(missing) <= set(attempted):
+        print(f"set-up: {', '.join(missing)} is missing; to install it: {manual_command}", flush=True)
         return
     print(f"set-up: installing {', '.join(missing)} with apt-get", flush=True)
     apt = [*sudo, "env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "-o", "DPkg::Lock::Timeout=60"]
     run(*apt, "update")
     status = run(*apt, "install", "-y", "--no-install-recommends", *missing)
-    tried.parent.mkdir(exist_ok=True)
-    tried.write_text(" ".join({*before, *missing}))
+    attempts_file.parent.mkdir(exist_ok=True)
+    attempts_file.write_text(" ".join({*attempted, *missing}))
     if status != 0:
-        print(f"set-up: apt-get failed; set-up continues; to install them yourself: {by_hand}", flush=True)
+        print(f"set-up: apt-get failed; set-up continues; to install them yourself: {manual_command}", flush=True)
 
 
 def require_compiler(missing: Sequence[str]) -> None:
-    """Exit with a message if a package by which message packages are compiled is missing."""
-    if needed := [package for package in missing if package == "g++" or package.endswith("-dev")]:
-        lacks = " and ".join("g++" if package == "g++" else "Python.h" for package in needed)
+    """Exit with a message if a package that is needed to compile messages is missing."""
+    if needed_packages := [package for package in missing if package == "g++" or package.endswith("-dev")]:
+        missing_files = " and ".join("g++" if package == "g++" else "Python.h" for package in needed_packages)
         sys.exit(
-            f"set-up: {lacks} not found, which ROS needs to compile messages: "
-            f"run `sudo apt-get install {' '.join(needed)}`, then the same command again."
+            f"set-up: {missing_files} not found, which ROS needs to compile messages: "
+            f"run `sudo apt-get install {' '.join(needed_packages)}`, then the same command again."
         )
 
 
@@ -71,14 +71,17 @@ def main() -> None:
     parser.add_argument("--browser", action="store_true", help="also install Chromium if there is no browser")
     parser.add_argument("--require-compiler", action="store_true", help="fail if messages cannot be compiled")
     options = parser.parse_args()
-    headers, tried = Path(sysconfig.get_path("include")), Path(__file__).resolve().parents[2] / ".build" / "apt-tried"
+    headers, attempts_file = (
+        Path(sysconfig.get_path("include")),
+        Path(__file__).resolve().parents[2] / ".build" / "apt-tried",
+    )
 
     def run(*command: str) -> int:
         quiet = subprocess.DEVNULL
         return subprocess.call(command, cwd="/", stdin=quiet, stdout=quiet, stderr=quiet)
 
     if missing := missing_packages(headers, browser=options.browser):
-        install(missing, tried, os.geteuid(), run)
+        install(missing, attempts_file, os.geteuid(), run)
     if options.require_compiler:
         require_compiler(missing_packages(headers, browser=False))
 

@@ -1,4 +1,4 @@
-"""Programs that try to escape from a sandbox. Each prints a line that begins with `OUT` for everything it reached.
+"""Programs that try to escape from a sandbox. Each prints a line that begins with `OUT` for each thing that it reached.
 
 `exit_reasons` lists the exit reasons that count as contained. An endless program must be stopped by a limit of the
 sandbox. A program that exceeds a limit without being stopped counts as escaped.
@@ -116,23 +116,23 @@ for folder in ("/", "/usr", "/etc", "/dev", "/proc", "/proc/sys/kernel", {str(co
 """
 _SETTINGS = """
 import os
-own = {os.getcwd(), "/tmp", "/dev/shm", "/dev/pts"}
-own |= {f"/dev/{name}" for name in ("null", "zero", "full", "random", "urandom", "tty", "console", "ptmx")}
-made = {os.stat(folder).st_dev for folder in ("/", "/dev")}  # of the folders in which single files are mounted
+writable = {os.getcwd(), "/tmp", "/dev/shm", "/dev/pts"}
+writable |= {f"/dev/{name}" for name in ("null", "zero", "full", "random", "urandom", "tty", "console", "ptmx")}
+devices = {os.stat(folder).st_dev for folder in ("/", "/dev")}  # of the folders in which single files are mounted
 pending = ["/"]
 while pending:
     folder = pending.pop()
     try:
         entries = list(os.scandir(folder))
-        plain_is_closed = os.statvfs(folder).f_flag & os.ST_RDONLY and os.stat(folder).st_dev not in made
+        is_read_only = os.statvfs(folder).f_flag & os.ST_RDONLY and os.stat(folder).st_dev not in devices
     except OSError:
         continue
     for entry in entries:
-        if entry.path in own or entry.is_symlink():
+        if entry.path in writable or entry.is_symlink():
             continue
         if entry.is_dir():
             pending.append(entry.path)
-        elif not (plain_is_closed and entry.is_file()):
+        elif not (is_read_only and entry.is_file()):
             try:
                 os.close(os.open(entry.path, os.O_WRONLY | os.O_NONBLOCK | os.O_NOCTTY))
                 print("OUT", entry.path)
@@ -158,15 +158,15 @@ _IN_FLIGHT = """
 import array, os, socket
 def fill():
     pairs = [socket.socketpair() for _ in range(60)]
-    sent, some = 0, array.array("i", [0] * 250)
+    sent, descriptors = 0, array.array("i", [0] * 250)
     try:
         for near, _ in pairs:
-            near.sendmsg([b"x"], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, some)])
-            sent += len(some)
+            near.sendmsg([b"x"], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, descriptors)])
+            sent += len(descriptors)
     except OSError:
         pass
     return sent, pairs
-total, kept = fill()
+total, open_pairs = fill()
 if total > 900:
     print("OUT", total)
 """
@@ -194,7 +194,7 @@ for folder in ("/tmp", "/dev/shm"):
         pass
 """
 _FILES = "import itertools\nfor n in itertools.count(): open(f'/tmp/{n}', 'w').close()"
-_USE_MEMORY = "held = []\nwhile True: held.append(bytearray(b'x') * (1 << 20))"
+_USE_MEMORY = "blocks = []\nwhile True: blocks.append(bytearray(b'x') * (1 << 20))"
 _UNMAPPED = """
 import mmap, os, ctypes
 try:
@@ -211,33 +211,33 @@ if libc.shmget(0, 1 << 30, 0o1600) >= 0:
 _SOCKETS = """
 import os, socket
 def fill():
-    held, kept = 0, []
+    buffered, sockets = 0, []
     try:
-        while held < 200 << 20:
-            kept += socket.socketpair()
-            for end in kept[-2:]:
-                end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 1 << 20)
-                end.setblocking(False)
+        while buffered < 200 << 20:
+            sockets += socket.socketpair()
+            for each in sockets[-2:]:
+                each.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 1 << 20)
+                each.setblocking(False)
                 try:
-                    while True: held += end.send(bytes(65536))
+                    while True: buffered += each.send(bytes(65536))
                 except BlockingIOError:
                     pass
     except OSError:  # no more descriptors
         pass
-    return held, kept
-told, tell = os.pipe()
+    return buffered, sockets
+reader, writer = os.pipe()
 children = []
 while len(children) < 8 and 0 not in children: children.append(os.fork())
 if 0 in children:
-    held, kept = fill()
-    os.write(tell, b"%d " % held)
+    buffered, sockets = fill()
+    os.write(writer, b"%d " % buffered)
     import signal; signal.pause()
-os.close(tell)
+os.close(writer)
 sums = b""
-while sums.count(b" ") < 8: sums += os.read(told, 64)
-held = sum(map(int, sums.split()))
-if held > 1400 << 20:
-    print("OUT", held >> 20, "MiB")
+while sums.count(b" ") < 8: sums += os.read(reader, 64)
+total = sum(map(int, sums.split()))
+if total > 1400 << 20:
+    print("OUT", total >> 20, "MiB")
 for child in children: os.kill(child, 9)
 """
 _FORKS = "import os\nwhile True:\n    try: os.fork()\n    except OSError: pass"
@@ -280,6 +280,12 @@ ESCAPES = (
     Escape("thread bomb", "start threads without end", _THREADS, exit_reasons=(ExitReason.THREADS,)),
     Escape("output", "print without end", "while True: print('x' * 99)", exit_reasons=(ExitReason.OUTPUT,)),
     Escape("endless loop", "run without end", "while True: pass", _SHORT, exit_reasons=(ExitReason.WALL_TIME,)),
-    Escape("deaf", "survive by ignoring every signal", _IGNORE_SIGNALS, _SHORT, exit_reasons=(ExitReason.WALL_TIME,)),
+    Escape(
+        "ignored signals",
+        "survive by ignoring every signal",
+        _IGNORE_SIGNALS,
+        _SHORT,
+        exit_reasons=(ExitReason.WALL_TIME,),
+    ),
     Escape("daemon", "survive by setsid and two forks", _DAEMON),
 )

@@ -12,11 +12,11 @@ from autograder.doctor.finding import Finding, Status
 from autograder.doctor.system import System
 from autograder.ros.distribution import DISTRIBUTION
 
-ROOMY_BYTES = 2 * 1024**3
+RECOMMENDED_FREE_BYTES = 2 * 1024**3
 
 _SYSCTL = Path("/proc/sys")
 # Kernel settings that forbid user namespaces: the file, the value that forbids them, the reason, the fix.
-_FORBIDDING = (
+_FORBIDDING_SETTINGS = (
     (
         "kernel.apparmor_restrict_unprivileged_userns",
         "1",
@@ -94,12 +94,12 @@ def build_tools(system: System) -> Finding:
 def versions(system: System) -> Finding:
     """Check that the packages used by students' programs, builds and tests have the versions of ROS's platform."""
     platform, packages = DISTRIBUTION.platform, DISTRIBUTION.packages
-    others = DISTRIBUTION.differences({p.name: system.package(p.name) for p in packages})
-    if not others:
-        all_of_them = ", ".join(f"{p.name} {p.version}" for p in packages)
-        return Finding("versions", Status.OK, f"as on {platform}: {all_of_them}")
-    state = "; ".join(f"{p.name} {version or 'is not found'} for {p.version}" for p, version in others.items())
-    if all(package.differs and version for package, version in others.items()):
+    differences = DISTRIBUTION.differences({p.name: system.package(p.name) for p in packages})
+    if not differences:
+        version_list = ", ".join(f"{p.name} {p.version}" for p in packages)
+        return Finding("versions", Status.OK, f"as on {platform}: {version_list}")
+    state = "; ".join(f"{p.name} {version or 'is not found'} for {p.version}" for p, version in differences.items())
+    if all(package.differs and version for package, version in differences.items()):
         return Finding("versions", Status.OK, f"as on {platform}, except {state}: the nearest for this Python")
     return Finding(
         "versions",
@@ -125,8 +125,8 @@ def isolation(system: System) -> Finding:
         return Finding("isolation", Status.MISSING, state, "sudo apt-get install bubblewrap")
     failure, bounds = system.namespaces_failure(), system.bounds()
     if failure is not None:
-        why, fix = _forbidden(system)
-        state = f"bubblewrap cannot create nested namespaces ({failure.splitlines()[-1]}): {why}"
+        reason, fix = _reason_and_fix(system)
+        state = f"bubblewrap cannot create nested namespaces ({failure.splitlines()[-1]}): {reason}"
         return Finding("isolation", Status.WEAK, f"{state}; only the weaker isolation level is available", fix)
     if "pids" not in bounds:
         state = "only control groups can limit root's processes, but none can be created: a fork bomb would succeed"
@@ -141,10 +141,11 @@ def isolation(system: System) -> Finding:
     return Finding("isolation", Status.OK, state)
 
 
-def _forbidden(system: System) -> tuple[str, str]:
-    for setting, value, why, fix in _FORBIDDING:
+def _reason_and_fix(system: System) -> tuple[str, str]:
+    """Return why user namespaces cannot be created, and the command that fixes it."""
+    for setting, value, reason, fix in _FORBIDDING_SETTINGS:
         if (system.read(_SYSCTL / setting.replace(".", "/")) or "").strip() == value:
-            return why, fix
+            return reason, fix
     if any(system.read(mark) is not None for mark in _CONTAINER_MARKS):
         return "this container's security profile forbids it", _CONTAINER_OPTIONS
     return "the kernel or a security module forbids it", "sudo dmesg | tail"
@@ -152,14 +153,14 @@ def _forbidden(system: System) -> tuple[str, str]:
 
 def release(system: System) -> tuple[Finding, ...]:
     """Check whether a newer student release is available. The course itself is not a release."""
-    own = json.loads(system.read(course_paths.ROOT / MANIFEST) or "{}")
-    newest = json.loads((system.read(Path(own["course"], MANIFEST)) if own.get("course") else None) or "{}")
-    if not own:
+    installed = json.loads(system.read(course_paths.ROOT / MANIFEST) or "{}")
+    newest = json.loads((system.read(Path(installed["course"], MANIFEST)) if installed.get("course") else None) or "{}")
+    if not installed:
         return ()
-    if newest and newest["version"] > own["version"]:
-        state = f"version {own['version']}; a newer one is available, {newest['version']}"
+    if newest and newest["version"] > installed["version"]:
+        state = f"version {installed['version']}; a newer one is available, {newest['version']}"
         return (Finding("release", Status.WEAK, state, "autograder update"),)
-    return (Finding("release", Status.OK, f"version {own['version']}"),)
+    return (Finding("release", Status.OK, f"version {installed['version']}"),)
 
 
 def space(system: System) -> Finding:
@@ -169,8 +170,8 @@ def space(system: System) -> Finding:
         return Finding("disk", Status.MISSING, state, 'export TMPDIR="$HOME/tmp" && mkdir -p "$TMPDIR"')
     free = system.disk_usage(system.tmp).free
     free_text = f"{free / 1024**3:.1f} GB free in {system.tmp}"
-    if free < ROOMY_BYTES:
-        state = f"{free_text}: building and grading may need {ROOMY_BYTES / 1024**3:.0f} GB"
+    if free < RECOMMENDED_FREE_BYTES:
+        state = f"{free_text}: building and grading may need {RECOMMENDED_FREE_BYTES / 1024**3:.0f} GB"
         return Finding("disk", Status.WEAK, state, f"df -h {system.tmp}")
     return Finding("disk", Status.OK, free_text)
 

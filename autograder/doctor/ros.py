@@ -93,13 +93,13 @@ def cmake_files(system: System, ros: RosEnvironment) -> Finding:
 
 def log_folder(system: System, ros: RosEnvironment | None) -> Finding:
     """Check that the log folder is writable. Otherwise `rclpy.init` raises an exception."""
-    chosen = system.environ.get("ROS_LOG_DIR")
-    folder = Path(chosen or (ros.variables()["ROS_LOG_DIR"] if ros else system.tmp))
+    configured = system.environ.get("ROS_LOG_DIR")
+    folder = Path(configured or (ros.variables()["ROS_LOG_DIR"] if ros else system.tmp))
     if system.writable(folder):
         return Finding("ROS logs", Status.OK, f"written to {folder}")
     state = f"the folder for ROS logs, {folder}, is not writable"
     return Finding(
-        "ROS logs", Status.MISSING, state, "unset ROS_LOG_DIR" if chosen else "export ROS_LOG_DIR=~/.ros/log"
+        "ROS logs", Status.MISSING, state, "unset ROS_LOG_DIR" if configured else "export ROS_LOG_DIR=~/.ros/log"
     )
 
 
@@ -131,6 +131,6 @@ def variables(system: System) -> Finding:
         stray["ROS_DOMAIN_ID"] = f"is {domain}, but must be 0 to 232"
     if not stray:
         return Finding("ROS variables", Status.OK, "none that affects discovery")
-    stops = {"RMW_IMPLEMENTATION", "ROS_DOMAIN_ID"} & set(stray)
+    blocking = {"RMW_IMPLEMENTATION", "ROS_DOMAIN_ID"} & set(stray)
     state = "; ".join(f"{name} {effect}" for name, effect in stray.items())
-    return Finding("ROS variables", Status.MISSING if stops else Status.WEAK, state, f"unset {' '.join(stray)}")
+    return Finding("ROS variables", Status.MISSING if blocking else Status.WEAK, state, f"unset {' '.join(stray)}")

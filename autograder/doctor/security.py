@@ -19,7 +19,7 @@ from autograder.run.sandbox.launcher import launch, warm_up
 from autograder.run.sandbox.worker_sandbox import run_in_worker_sandbox
 
 VERDICTS = ("Every escape was blocked.", "An escape succeeded: docs/security.md explains the limits.")
-_PROFILE = "lockstep"  # of nodes
+_PROFILE = "lockstep"  # the import profile of nodes
 
 
 def attempt(escape: Escape, home: Path, port: int, profile: str | None) -> str:
@@ -34,25 +34,25 @@ def attempt(escape: Escape, home: Path, port: int, profile: str | None) -> str:
     program = home / "program.py"
     program.write_text(f"PORT, OUTSIDE = {port}, {os.getpid()}\n{escape.program}")
     spec = Sandbox(home, mounts=(Mount(home, writable=True),), network=escape.network, limits=escape.limits)
-    before = processes()
+    earlier = processes()
     with launch([sys.executable, str(program)], spec, profile=profile) as process:
         process.wait(escape.limits.wall_seconds + 60)
     problems = [line for line in process.output.splitlines() if line.startswith("OUT")]
     if process.exit_reason not in escape.exit_reasons:
         problems.append(f"it ended as {process.exit_reason and process.exit_reason.value}: {process.output[-200:]}")
     deadline = time.monotonic() + 20
-    while (survivors := processes() - before) and time.monotonic() < deadline:
+    while (survivors := processes() - earlier) and time.monotonic() < deadline:
         time.sleep(0.05)
     return "; ".join([*problems, *(f"process {pid} survived" for pid in survivors)])
 
 
 def processes() -> set[int]:
     """Return the processes in this worker sandbox's network namespace, except zombies."""
-    own, pids = Path("/proc/self/ns/net").readlink(), set()
+    own_namespace, pids = Path("/proc/self/ns/net").readlink(), set()
     for pid in map(int, filter(str.isdigit, os.listdir("/proc"))):
         with suppress(OSError):
             state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-            if Path(f"/proc/{pid}/ns/net").readlink() == own and state not in "ZX":
+            if Path(f"/proc/{pid}/ns/net").readlink() == own_namespace and state not in "ZX":
                 pids.add(pid)
     return pids
 
@@ -63,20 +63,20 @@ def examine() -> tuple[Finding, ...]:
     if failure is not None:
         state = f"not tried: {failure}; without namespaces, a student's code has the rights of the grader's user"
         return (Finding("isolation", Status.MISSING, state, "autograder doctor"),)
-    outs: dict[str, str] = {}
+    reached: dict[str, str] = {}
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = str(server.getsockname()[1])
         command = [sys.executable, "-m", "autograder.doctor.security", port]
         report = run_in_worker_sandbox(lambda scratch: [*command, str(scratch)], Isolation.BUBBLEWRAP)
     for line in report.output.splitlines():
         with suppress(ValueError):
-            outs |= json.loads(line)
-    return tuple(_finding(escape, outs.get(escape.id, f"not tried: {report.output[-300:]}")) for escape in ESCAPES)
+            reached |= json.loads(line)
+    return tuple(_finding(escape, reached.get(escape.id, f"not tried: {report.output[-300:]}")) for escape in ESCAPES)
 
 
-def _finding(escape: Escape, out: str) -> Finding:
-    if out:
-        return Finding(escape.id, Status.MISSING, f"not blocked, a program can {escape.description}: {out}")
+def _finding(escape: Escape, reached: str) -> Finding:
+    if reached:
+        return Finding(escape.id, Status.MISSING, f"not blocked, a program can {escape.description}: {reached}")
     return Finding(escape.id, Status.OK, f"blocked: a program cannot {escape.description}")
 
 
@@ -86,17 +86,17 @@ def main() -> None:
     os.environ["CANARY"] = CANARY
     port, scratch = int(sys.argv[1]), Path(sys.argv[2])
     warm_up(_PROFILE)
-    counted = "pids" in cgroup.bounds()
+    limits_processes = "pids" in cgroup.bounds()
     for number, escape in enumerate(ESCAPES):
-        outs = []
+        problems = []
         for profile in (None, _PROFILE):
             home = scratch / f"{number}-{profile}"
             home.mkdir()
-            if escape.id == "fork bomb" and not counted:
-                outs.append("not tried: nothing limits root's processes here")
+            if escape.id == "fork bomb" and not limits_processes:
+                problems.append("not tried: nothing limits root's processes here")
             else:
-                outs.append(attempt(escape, home, port, profile))
-        print(json.dumps({escape.id: "; ".join(dict.fromkeys(filter(None, outs)))}), flush=True)
+                problems.append(attempt(escape, home, port, profile))
+        print(json.dumps({escape.id: "; ".join(dict.fromkeys(filter(None, problems)))}), flush=True)
 
 
 if __name__ == "__main__":

@@ -40,7 +40,7 @@ class CommandResult:
 
 
 class System:
-    """This machine, as the doctor sees it."""
+    """The machine that the doctor examines."""
 
     def __init__(self) -> None:
         self.python = sys.version_info[:3]
@@ -60,13 +60,13 @@ class System:
 
     def which(self, command: str) -> str | None:
         """Find a command on PATH or in the running environment, even if that is not activated."""
-        own = str(Path(sys.prefix) / "bin")
-        return shutil.which(command, path=os.pathsep.join([own, os.environ.get("PATH", os.defpath)]))
+        bin_folder = str(Path(sys.prefix) / "bin")
+        return shutil.which(command, path=os.pathsep.join([bin_folder, os.environ.get("PATH", os.defpath)]))
 
     def run(self, command: Sequence[str], variables: Mapping[str, str]) -> CommandResult:
         """Run a command with additional environment variables, in a folder that cannot be a submission."""
         try:
-            done = subprocess.run(
+            completed = subprocess.run(
                 command,
                 cwd="/",
                 env={**os.environ, **variables},
@@ -82,7 +82,7 @@ class System:
             return CommandResult(127, f"{command[0]}: {error.strerror}")
         except subprocess.TimeoutExpired:
             return CommandResult(124, f"{command[0]} did not end within {COMMAND_TIMEOUT_SECONDS:g} s")
-        return CommandResult(done.returncode, done.stdout)
+        return CommandResult(completed.returncode, completed.stdout)
 
     def read(self, path: Path) -> str | None:
         """Return the text of a small file, or None if it does not exist."""
@@ -101,7 +101,7 @@ class System:
             return False
 
     def closed_to_other_users(self) -> str | None:
-        """Say why other users cannot run what root has set up here; None if they can, or this user is not root."""
+        """Explain why other users cannot run root's set-up, or return None if they can or this user is not root."""
         return closed_to_other_users(Path(sys.executable).resolve(), course_paths.ROOT) if os.geteuid() == 0 else None
 
     def package(self, name: str) -> str | None:

@@ -1,4 +1,4 @@
-"""Reads the course's metadata of notebooks and cells, which `metadata.schema.json` beside this module defines.
+"""Reads the course's metadata of notebooks and cells. `metadata.schema.json` beside this module defines their format.
 
 A cell that writes a file to the student's workspace names the reference file that it copies:
 
@@ -28,7 +28,7 @@ from autograder.probes.given_files import strip_licence
 
 _SCHEMA = json.loads(Path(__file__).with_name("metadata.schema.json").read_text("utf-8"))
 _METADATA = Draft202012Validator(_SCHEMA)
-WHOLE = "`course`"  # the metadata in sentences about them
+METADATA_NAME = "`course`"  # in sentences about the whole metadata
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def is_graded(cell: NotebookNode) -> bool:
 
 
 def is_manually_graded(cell: NotebookNode) -> bool:
-    """Return whether students write in this cell and a person awards the points in nbgrader's formgrader."""
+    """Return whether students write in this cell and an instructor awards the points in nbgrader's formgrader."""
     return is_graded(cell) and is_solution(cell)
 
 
@@ -98,7 +98,7 @@ def metadata(node: NotebookNode) -> Mapping[str, Any]:
     """Return the `course` metadata of a cell or notebook. Raises CourseError if they do not match the schema."""
     course: Mapping[str, Any] = node.metadata.get("course", {})
     if not _METADATA.is_valid(course):
-        problems = "; ".join(sentence for _, sentence in broken_schema(course, _SCHEMA, WHOLE))
+        problems = "; ".join(sentence for _, sentence in broken_schema(course, _SCHEMA, METADATA_NAME))
         raise CourseError(f"the metadata are invalid: {problems}")
     return course
 
@@ -106,7 +106,7 @@ def metadata(node: NotebookNode) -> Mapping[str, Any]:
 def broken_metadata(name: str, notebook: NotebookNode) -> Iterator[Finding]:
     """Yield the problems in the `course` metadata of a notebook and its cells, with `name` as the notebook's name."""
     for cell, node in ((None, notebook), *((cell.id, cell) for cell in notebook.cells)):
-        for _, sentence in broken_schema(node.metadata.get("course", {}), _SCHEMA, WHOLE):
+        for _, sentence in broken_schema(node.metadata.get("course", {}), _SCHEMA, METADATA_NAME):
             yield Finding(name, cell, f"the metadata are invalid: {sentence}")
 
 

@@ -1,6 +1,6 @@
 """Applies all rules to a chapter at once, so that a mistake in one file does not hide one in another.
 
-Nothing is graded. All readable files are examined, whether the suites can be imported or not.
+Nothing is graded. All readable files are examined, even if the suites cannot be imported.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ SUITE_KINDS = (suites.VISIBLE, suites.HIDDEN)
 
 
 @dataclass(frozen=True)
-class ReadChecks:
+class ParsedChecks:
     """The checks of a chapter and all related files.
 
     Attributes:
@@ -50,8 +50,8 @@ class ReadChecks:
 
 
 @dataclass(frozen=True)
-class ReadChapter:
-    """A chapter with all its problems.
+class ParsedChapter:
+    """A chapter that was read, with all its problems.
 
     Attributes:
         findings: its problems.
@@ -64,12 +64,12 @@ class ReadChapter:
     hidden: tuple[Check, ...] | None
 
 
-def read_chapter(chapter: Chapter) -> ReadChapter:
+def read_chapter(chapter: Chapter) -> ParsedChapter:
     """Read a chapter, its checks and its reference, and apply all rules to them."""
     notebook, findings = _read_notebook(chapter)
     folder = course_paths.CHECKS / f"ch{chapter.assignment}"
-    graded = (folder / suites.HIDDEN).is_dir() or (notebook is not None and any(map(is_graded, notebook.cells)))
-    read = read_checks(chapter.assignment) if graded else ReadChecks((), (), None, {})
+    has_checks = (folder / suites.HIDDEN).is_dir() or (notebook is not None and any(map(is_graded, notebook.cells)))
+    parsed = read_checks(chapter.assignment) if has_checks else ParsedChecks((), (), None, {})
     name = chapter.notebook_path.name
     if notebook is not None:
         text = chapter.notebook_path.read_text(encoding="utf-8")
@@ -77,32 +77,32 @@ def read_chapter(chapter: Chapter) -> ReadChapter:
         if invalid_metadata:
             findings = [*invalid_metadata, *broken_rules(name, notebook)]
         else:
-            findings = _broken_notebook(chapter, notebook, read)
-        findings = [with_line(each, text) if each.file == name else each for each in findings]
+            findings = _broken_notebook(chapter, notebook, parsed)
+        findings = [with_line(finding, text) if finding.file == name else finding for finding in findings]
         notebook = None if invalid_metadata else notebook
     path = display_path(chapter.notebook_path)
-    findings = [replace(each, file=path) if each.file == name else each for each in findings]
-    hidden = None if read.checks is None else tuple(c for c in read.checks if c.visibility is Visibility.HIDDEN)
+    findings = [replace(finding, file=path) if finding.file == name else finding for finding in findings]
+    hidden = None if parsed.checks is None else tuple(c for c in parsed.checks if c.visibility is Visibility.HIDDEN)
     if hidden:
         unproven = unproven_checks(folder, [check.id for check in hidden])
         findings = [*unproven, *_outdated_titles(chapter.assignment), *findings]
-    return ReadChapter((*read.findings, *findings), notebook, hidden)
+    return ParsedChapter((*parsed.findings, *findings), notebook, hidden)
 
 
-def read_checks(assignment: str) -> ReadChecks:
+def read_checks(assignment: str) -> ParsedChecks:
     """Read the checks of a chapter, the mutants and variants beside them, and the packages that they grade."""
     folder = course_paths.CHECKS / f"ch{assignment}"
-    read = {kind: read_suite(assignment, kind) for kind in SUITE_KINDS}
-    findings = [finding for suite in read.values() for finding in suite.findings]
+    parsed = {kind: read_suite(assignment, kind) for kind in SUITE_KINDS}
+    findings = [finding for suite in parsed.values() for finding in suite.findings]
     findings += broken_python(folder)
-    locations = {f"{kind} {id}": where for kind, suite in read.items() for id, where in suite.locations.items()}
+    locations = {f"{kind} {id}": location for kind, suite in parsed.items() for id, location in suite.locations.items()}
     checks, points = None, None
     try:
         hidden, visible = suites.hidden(assignment), suites.visible(assignment)
         checks, points = (*visible.checks, *hidden.checks), hidden.groups
     except Exception as error:  # an author's module may raise anything
         findings += [] if findings else [_import_error(error, folder)]  # earlier findings are more precise
-    hidden_suite = read[suites.HIDDEN]
+    hidden_suite = parsed[suites.HIDDEN]
     sources = hidden_suite.sources
     if not all((course_paths.SOLUTIONS / source).is_dir() for source in sources):
         sources = ()  # one of the names is wrong, which was already reported
@@ -112,14 +112,19 @@ def read_checks(assignment: str) -> ReadChecks:
     findings += broken_packages(sources)
     findings += broken_mutants(folder, ids, sources)
     findings += broken_variants(folder / "variants", sources)
-    return ReadChecks(tuple(findings), checks, points, locations)
+    return ParsedChecks(tuple(findings), checks, points, locations)
 
 
 def require_checks(assignments: Iterable[str]) -> None:
     """Raise a CourseError with all problems of the suites that cannot be imported."""
     graded = suites.graded_assignments()
-    read = [read_checks(name) for name in assignments if name in graded]
-    if problems := [str(finding) for each in read if each.checks is None for finding in each.findings]:
+    parsed = [read_checks(name) for name in assignments if name in graded]
+    if problems := [
+        str(finding)
+        for chapter_checks in parsed
+        if chapter_checks.checks is None
+        for finding in chapter_checks.findings
+    ]:
         raise CourseError("\n".join(dict.fromkeys(problems)))
 
 
@@ -132,7 +137,9 @@ def _outdated_titles(assignment: str) -> Iterator[Finding]:
 
 def _import_error(error: Exception, folder: Path) -> Finding:
     """Return the finding for a suite that raises an error, at the last line of the traceback in the chapter."""
-    frames = [each for each in traceback.extract_tb(error.__traceback__) if Path(each.filename).is_relative_to(folder)]
+    frames = [
+        frame for frame in traceback.extract_tb(error.__traceback__) if Path(frame.filename).is_relative_to(folder)
+    ]
     init_path = folder / (suites.VISIBLE if suites.VISIBLE in str(error) else suites.HIDDEN) / "__init__.py"
     file, line = (Path(frames[-1].filename), frames[-1].lineno) if frames else (init_path, 1)
     is_explained = isinstance(error, AutograderError)
@@ -153,17 +160,17 @@ def _read_notebook(chapter: Chapter) -> tuple[NotebookNode | None, list[Finding]
         return None, [Finding(name, None, message.removeprefix(f"{name} ").removeprefix(f"{name}: "), line)]
 
 
-def _broken_notebook(chapter: Chapter, notebook: NotebookNode, read: ReadChecks) -> list[Finding]:
+def _broken_notebook(chapter: Chapter, notebook: NotebookNode, parsed: ParsedChecks) -> list[Finding]:
     """Return the problems in a notebook. Rules that need its checks are skipped if the checks are invalid."""
     if not notebook.cells:
         return broken_rules(chapter.notebook_path.name, notebook)
     name = chapter.notebook_path.name
     rules: Sequence[Callable[[], Iterable[Finding]]] = (
-        lambda: find_outdated(chapter, notebook, read.points),
+        lambda: find_outdated(chapter, notebook, parsed.points),
         lambda: broken_rules(name, notebook),
         lambda: outdated_time_sentence(name, notebook),
         lambda: broken_cells(name, notebook),
-        lambda: () if not read.checks else broken_coverage(name, notebook, read.checks, read.locations),
+        lambda: () if not parsed.checks else broken_coverage(name, notebook, parsed.checks, parsed.locations),
     )
     return [finding for rule in rules for finding in _apply(name, rule)]
 

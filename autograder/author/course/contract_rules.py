@@ -41,7 +41,7 @@ def broken_coverage(
             message = f"the requirement {requirement.id!r} is marked as unchecked, but a check covers it"
             yield Finding(name, None, message)
     for check in checks:
-        unknown = ", ".join(repr(each) for each in check.covers if each not in known)
+        unknown = ", ".join(repr(requirement_id) for requirement_id in check.covers if requirement_id not in known)
         if unknown or not check.covers:
             message = f"covers {unknown}, which no cell names" if unknown else "covers no requirement"
             file, line = locations.get(f"{check.visibility.value} {check.id}", (name, None))
@@ -64,7 +64,7 @@ def _broken_cell(cell: NotebookNode) -> Iterator[str]:
     for name in course.get("unchecked", {}):
         if name not in quotes:
             yield f"{name!r} is marked as unchecked, but is not a requirement of the cell"
-    texts = [_words(text) for each in (*quotes.values(), explains) for text in each]
+    texts = [_words(text) for group in (*quotes.values(), explains) for text in group]
     hidden = course.get("hide", [])
     for piece in _pieces(cell, hidden) if contract or hidden else ():
         if not any(text in piece for text in texts):

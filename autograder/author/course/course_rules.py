@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from autograder import course_paths
-from autograder.author.course.chapter_rules import SUITE_KINDS, ReadChapter, with_line
+from autograder.author.course.chapter_rules import SUITE_KINDS, ParsedChapter, with_line
 from autograder.author.course.findings import Finding, display_path
 from autograder.author.course.syllabus import Syllabus, find_coverage
 from autograder.author.course.sync import Chapter
@@ -20,17 +20,17 @@ def broken_course_file() -> tuple[Finding, ...]:
     """Return the problems in the current `course.yaml`. Reading any other part of the course requires this file."""
     root = Path(os.environ.get(course_paths.COURSE_VARIABLE) or course_paths.ROOT)
     path = root / course_paths.COURSE_FILE
-    return read_yaml(path, shown=str(path)).findings if path.is_file() else ()
+    return read_yaml(path, label=str(path)).findings if path.is_file() else ()
 
 
-def broken_course(read: Mapping[str, ReadChapter], *, whole: bool) -> list[Finding]:
+def broken_course(parsed: Mapping[str, ParsedChapter], *, whole: bool) -> list[Finding]:
     """Return the problems of the course outside of its chapters.
 
     Args:
-        read: chapters by their names.
+        parsed: chapters by their names.
         whole: whether these are all chapters. Rules that need all of them are skipped otherwise.
     """
-    findings = list(_broken_coverage(read, whole))
+    findings = list(_broken_coverage(parsed, whole))
     return [*_misnamed_folders(), *_broken_worlds(), *findings] if whole else findings
 
 
@@ -46,7 +46,7 @@ def _misnamed_folders() -> Iterator[Finding]:
     for folder in sorted(path for path in course_paths.CHECKS.glob("ch*") if path.is_dir()):
         name = folder.name.removeprefix("ch")
         if name not in assignments and any((folder / kind).is_dir() for kind in SUITE_KINDS):
-            yield Finding(display_path(folder), None, f"contains checks of {name!r}, but there is no such chapter")
+            yield Finding(display_path(folder), None, f"contains checks of {name!r}, but this chapter does not exist")
 
 
 def _broken_worlds() -> Iterator[Finding]:
@@ -58,7 +58,7 @@ def _broken_worlds() -> Iterator[Finding]:
             yield Finding(display_path(path), None, f"{error.problem}. {error.remedy}", error.line)
 
 
-def _broken_coverage(read: Mapping[str, ReadChapter], whole: bool) -> Iterator[Finding]:
+def _broken_coverage(parsed: Mapping[str, ParsedChapter], whole: bool) -> Iterator[Finding]:
     """Yield the differences between the syllabus and the readable chapters."""
     path = course_paths.course().root / course_paths.course().syllabus
     if not path.is_file():
@@ -69,12 +69,12 @@ def _broken_coverage(read: Mapping[str, ReadChapter], whole: bool) -> Iterator[F
     if file.findings:
         return
     readable = [
-        (name, each.notebook, each.hidden)
-        for name, each in read.items()
-        if each.notebook is not None and each.hidden is not None
+        (name, chapter.notebook, chapter.hidden)
+        for name, chapter in parsed.items()
+        if chapter.notebook is not None and chapter.hidden is not None
     ]
     coverage = find_coverage(Syllabus.read(path), readable)
-    complete = whole and len(readable) == len(read)
+    complete = whole and len(readable) == len(parsed)
     lines = {key_path[-1]: line for key_path, line in file.lines.items() if len(key_path) == 2}
     for finding in coverage.findings:
         if finding.file != course_paths.course().syllabus:
@@ -82,4 +82,6 @@ def _broken_coverage(read: Mapping[str, ReadChapter], whole: bool) -> Iterator[F
             text = chapter.notebook_path.read_text(encoding="utf-8")
             yield replace(with_line(finding, text), file=display_path(chapter.notebook_path))
         elif complete:
-            yield replace(finding, line=next((n for key, n in lines.items() if repr(key) in finding.message), 1))
+            yield replace(
+                finding, line=next((number for key, number in lines.items() if repr(key) in finding.message), 1)
+            )

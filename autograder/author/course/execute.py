@@ -45,7 +45,7 @@ class Execution:
 
     @property
     def ok(self) -> bool:
-        """Whether it ran to its end."""
+        """Whether no cell failed."""
         return self.failure is None
 
 

@@ -32,10 +32,12 @@ def unknown_fixtures(folder: Path, modules: Iterable[PythonFile]) -> Iterator[Fi
             takes_row = "check_each_row" in decorators(function)  # as its first argument
             if not (declaration(function) or takes_row):
                 continue
-            for each in [*function.args.args, *function.args.kwonlyargs][1 if takes_row else 0 :]:
-                if each.arg not in (*known, *PYTEST_FIXTURES, *_parameters(function)):
-                    message = f"`{function.name}` uses the unknown fixture `{each.arg}`: {suggestion(each.arg, known)}"
-                    yield module.finding(each, message)
+            for argument in [*function.args.args, *function.args.kwonlyargs][1 if takes_row else 0 :]:
+                if argument.arg not in (*known, *PYTEST_FIXTURES, *_parameters(function)):
+                    message = f"`{function.name}` uses the unknown fixture `{argument.arg}`: " + suggestion(
+                        argument.arg, known
+                    )
+                    yield module.finding(argument, message)
 
 
 def _fixtures(file: PythonFile) -> list[str]:

@@ -47,7 +47,7 @@ def unproven_checks(folder: Path, checks: Collection[str]) -> Iterator[Finding]:
     if (folder / SNAPSHOT).is_file():
         snapshot = read_yaml(folder / SNAPSHOT)
         rows = {} if snapshot.findings else snapshot.data or {}
-        proven |= {check for entry in entries for check in _recorded(rows.get(entry.get("id"), ()), checks)}
+        proven |= {check for entry in entries for check in _recorded_failures(rows.get(entry.get("id"), ()), checks)}
     for check in checks:
         if check not in proven:
             yield file.finding((), f"no mutant fails the check `{check}`: add one with an error that it finds")
@@ -68,7 +68,7 @@ def _entries(file: YamlFile) -> Iterator[tuple[KeyPath, dict[str, Any]]]:
             yield ("mutants", str(index)), entry
 
 
-def _recorded(row: Any, checks: Collection[str]) -> Collection[str]:
+def _recorded_failures(row: Any, checks: Collection[str]) -> Collection[str]:
     """Return the failed checks in a row of the snapshot."""
     failed = row["fails"] if isinstance(row, dict) else row
     return checks if failed == "all" else failed

@@ -111,6 +111,6 @@ def _manual(cell: NotebookNode, group_name: str | None) -> Iterator[str]:
     if not nbgrader_data.get("points"):
         yield "a manually graded cell needs points above 0"
     if group_name is not None:
-        yield f"is graded by a person and cannot also belong to the group {group_name!r} of checks"
+        yield f"is manually graded and cannot also belong to the group {group_name!r} of checks"
     if "BEGIN SOLUTION" not in cell.source:
         yield "a manually graded cell needs a model answer between the solution markers"

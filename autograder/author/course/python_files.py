@@ -18,18 +18,18 @@ class PythonFile:
     """A Python file.
 
     Attributes:
-        shown: its path in findings.
+        label: its path in findings.
         tree: its syntax tree, which is empty if the file cannot be parsed.
         findings: the reason why it cannot be parsed.
     """
 
-    shown: str
+    label: str
     tree: ast.Module = field(default_factory=lambda: ast.Module([], []))
     findings: tuple[Finding, ...] = ()
 
     def finding(self, node: ast.AST | None, message: str) -> Finding:
         """Return a finding at a node, or at the first line."""
-        return Finding(self.shown, None, message, getattr(node, "lineno", 1))
+        return Finding(self.label, None, message, getattr(node, "lineno", 1))
 
     def functions(self) -> list[Function]:
         """Return the top-level functions of the file."""
@@ -47,12 +47,12 @@ class PythonFile:
 
 def read_python(path: Path) -> PythonFile:
     """Parse an existing Python file."""
-    shown = display_path(path)
+    label = display_path(path)
     try:
-        return PythonFile(shown, ast.parse(path.read_bytes(), filename=shown))
+        return PythonFile(label, ast.parse(path.read_bytes(), filename=label))
     except (SyntaxError, ValueError) as error:  # a ValueError for a null byte
         reason, line = getattr(error, "msg", error), getattr(error, "lineno", None) or 1
-        return PythonFile(shown, findings=(Finding(shown, None, f"is not Python: {reason}", line),))
+        return PythonFile(label, findings=(Finding(label, None, f"is not Python: {reason}", line),))
 
 
 def decorator_name(decorator: ast.expr) -> str:
@@ -63,7 +63,7 @@ def decorator_name(decorator: ast.expr) -> str:
 
 def decorators(function: Function) -> dict[str, ast.expr]:
     """Return the decorators of a function by their names."""
-    return {decorator_name(each): each for each in function.decorator_list}
+    return {decorator_name(decorator): decorator for decorator in function.decorator_list}
 
 
 def declaration(function: Function) -> ast.Call | None:
@@ -74,7 +74,7 @@ def declaration(function: Function) -> ast.Call | None:
 
 def argument(call: ast.Call, name: str) -> ast.expr | None:
     """Return the value of a named argument of a call, or None."""
-    return next((word.value for word in call.keywords if word.arg == name), None)
+    return next((keyword.value for keyword in call.keywords if keyword.arg == name), None)
 
 
 def literal(node: ast.expr | None) -> Any:

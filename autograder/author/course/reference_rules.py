@@ -31,7 +31,7 @@ def broken_python(folder: Path) -> Iterator[Finding]:
 
 
 def broken_variants(folder: Path, packages: Collection[str]) -> Iterator[Finding]:
-    """Yield a finding for each variant of a chapter that does not change any graded file."""
+    """Yield a finding for each package in a chapter's variants that the suite does not grade."""
     for variant in sorted(path for path in folder.glob("*") if path.is_dir()):
         for package in sorted(path.name for path in variant.iterdir()):
             if packages and package not in packages:

@@ -40,7 +40,7 @@ def write_release(out: Path, names: tuple[str, ...] = (), newest: str = "") -> l
     """
     if out.exists():
         raise UsageError(f"{out} already exists: choose a new folder")
-    chosen = chapters(names)
+    selected = chapters(names)
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{out.name}-", dir=out.parent) as scratch:
         release = Path(scratch) / out.name
@@ -49,15 +49,15 @@ def write_release(out: Path, names: tuple[str, ...] = (), newest: str = "") -> l
         copy_course((course_paths.COURSE_FILE, course_paths.course().worlds, *course_paths.course().released), release)
         checks = [path for path in course_paths.CHECKS.glob("ch*/*") if path.name in STUDENT_CHECKS]
         copy_course((str(path.relative_to(course_paths.course().root)) for path in checks), release)
-        for chapter in chosen:
+        for chapter in selected:
             write_released(chapter, release / course_paths.course().chapters / chapter.assignment)
         shutil.copytree(STUDENT_FILES, release, dirs_exist_ok=True)
         readme = (STUDENT_FILES / "README.md").read_text(encoding="utf-8")
-        readme = readme.replace("TITLE", course_paths.course().title).replace("FIRST", chosen[0].assignment)
+        readme = readme.replace("TITLE", course_paths.course().title).replace("FIRST", selected[0].assignment)
         (release / "README.md").write_text(readme, encoding="utf-8")
         write_manifest(release, datetime.now(timezone.utc).isoformat(timespec="seconds"), newest)
         release.rename(out)
-    return [chapter.assignment for chapter in chosen]
+    return [chapter.assignment for chapter in selected]
 
 
 def copy_tool(parts: Iterable[str], folder: Path) -> None:

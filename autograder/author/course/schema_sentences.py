@@ -41,8 +41,8 @@ def broken_schema(data: Any, schema: Mapping[str, Any], whole: str = "the file")
     for error in sorted(Draft202012Validator(schema).iter_errors(data), key=lambda each: [*map(str, each.path)]):
         path = tuple(map(str, error.absolute_path))
         subject = f"`{_formatted(path)}`{_id(data, error)}" if path else whole
-        for more, sentence in _sentences(error, subject):
-            violations.setdefault(((*path, *more), sentence))
+        for extra_path, sentence in _sentences(error, subject):
+            violations.setdefault(((*path, *extra_path), sentence))
     return list(violations)
 
 
@@ -56,8 +56,8 @@ def file_schema(name: str) -> dict[str, Any]:
 def suggestion(name: str, known: Iterable[str]) -> str:
     """Return the end of a sentence about an unknown name: a similar known name, or all known names."""
     known = list(known)
-    close = difflib.get_close_matches(name, known, n=1)
-    return f"did you mean `{close[0]}`?" if close else f"the known names are {', '.join(known) or 'none'}"
+    similar = difflib.get_close_matches(name, known, n=1)
+    return f"did you mean `{similar[0]}`?" if similar else f"the known names are {', '.join(known) or 'none'}"
 
 
 def _sentences(error: Any, subject: str) -> Iterator[tuple[KeyPath, str]]:
@@ -78,9 +78,9 @@ def _sentences(error: Any, subject: str) -> Iterator[tuple[KeyPath, str]]:
                     yield (), f"{subject} has `{key}`, but no `{other}`"
     elif rule == "type":
         names = [TYPE_NAMES[name] for name in ([expected] if isinstance(expected, str) else expected)]
-        quoted = ": put it in quotes" if "string" in expected and not isinstance(instance, (Mapping, list)) else ""
+        advice = ": put it in quotes" if "string" in expected and not isinstance(instance, (Mapping, list)) else ""
         actual = next((name for kind, name in INSTANCE_NAMES if isinstance(instance, kind)), "empty")
-        yield (), f"{subject} must be {' or '.join(names)}, not {actual}{'' if instance is None else quoted}"
+        yield (), f"{subject} must be {' or '.join(names)}, not {actual}{'' if instance is None else advice}"
     elif rule == "minItems":
         yield (), f"{subject} needs {expected} entries, but has {len(instance)}"
     else:

@@ -79,10 +79,10 @@ def _part(text: str, region: tuple[int, int, int], before: str, after: str) -> t
     start, stop, _ = region
     lines = text.splitlines()[start:stop]
     first, end = _line_index(lines, before, -1) + 1, _line_index(lines, after, len(lines))
-    written = next((line for line in lines[first:end] if line.strip()), None)
-    if written is None:
-        raise CourseError(f"there is nothing to hide between the lines {before!r} and {after!r}")
-    return start + first, start + end, len(written) - len(written.lstrip())
+    first_written = next((line for line in lines[first:end] if line.strip()), None)
+    if first_written is None:
+        raise CourseError(f"no text to hide between the lines {before!r} and {after!r}")
+    return start + first, start + end, len(first_written) - len(first_written.lstrip())
 
 
 def _line_index(lines: Sequence[str], text: str, default: int) -> int:

@@ -35,7 +35,7 @@ HELPERS = ("__init__.py", "conftest.py")
 
 
 @dataclass(frozen=True)
-class ReadSuite:
+class ParsedSuite:
     """A parsed suite, which may be invalid.
 
     Attributes:
@@ -51,13 +51,13 @@ class ReadSuite:
     is_complete: bool = False
 
 
-def read_suite(assignment: str, kind: str) -> ReadSuite:
+def read_suite(assignment: str, kind: str) -> ParsedSuite:
     """Parse the "visible" or "hidden" suite of an assignment."""
     folder = course_paths.CHECKS / f"ch{assignment}" / kind
     init_path = folder / "__init__.py"
     if not init_path.is_file():
-        message = f"there are no {kind} checks: this file must define PACKAGES and MODULES"
-        return ReadSuite((Finding(display_path(init_path), None, message),), {}, ())
+        message = f"the {kind} checks are missing: this file must define PACKAGES and MODULES"
+        return ParsedSuite((Finding(display_path(init_path), None, message),), {}, ())
     init = read_python(init_path)
     constants = {name: literal(value) for name, value in init.constants()}
     files = {path.stem: read_python(path) for path in sorted(folder.glob("*.py")) if path.name not in HELPERS}
@@ -65,29 +65,29 @@ def read_suite(assignment: str, kind: str) -> ReadSuite:
     if not init.findings:
         findings += _broken_settings(init, folder, files)
     listed = _strings(constants.get("MODULES"))
-    ordered = [name for name in listed if name in files] or list(files)
-    incomplete = [name for name in ordered if files[name].findings or _has_tables(files[name])]
+    in_order = [name for name in listed if name in files] or list(files)
+    incomplete = [name for name in in_order if files[name].findings or _has_tables(files[name])]
     locations: dict[str, tuple[str, int]] = {}
-    for name in ordered:
+    for name in in_order:
         findings += _broken_checks(files[name], locations, any(map(_has_tables, files.values())))
-    findings += unknown_fixtures(folder, [files[name] for name in ordered])
+    findings += unknown_fixtures(folder, [files[name] for name in in_order])
     sources = _strings(constants.get("PACKAGES")) + _strings(constants.get("FOLDERS"))
-    return ReadSuite(tuple(findings), locations, sources, len(ordered) == len(listed) and not incomplete)
+    return ParsedSuite(tuple(findings), locations, sources, len(in_order) == len(listed) and not incomplete)
 
 
 def _broken_settings(file: PythonFile, folder: Path, modules: dict[str, PythonFile]) -> Iterator[Finding]:
     """Yield the problems in the `__init__.py` of a suite."""
     values = dict(file.constants())
     for name, value in values.items():
-        content = literal(value)
+        setting_value = literal(value)
         if name not in SETTINGS:
             yield file.finding(value, f"`{name}` is not a setting of a suite: {suggestion(name, SETTINGS)}")
-        elif name in TUPLE_SETTINGS and isinstance(content, str):
-            message = f"`{name}` is a string, not a tuple: write {name} = ({content!r},), with a comma"
+        elif name in TUPLE_SETTINGS and isinstance(setting_value, str):
+            message = f"`{name}` is a string, not a tuple: write {name} = ({setting_value!r},), with a comma"
             yield file.finding(value, message)
-        elif name in TUPLE_SETTINGS and content and not _strings(content):
+        elif name in TUPLE_SETTINGS and setting_value and not _strings(setting_value):
             yield file.finding(value, f"`{name}` must be a tuple of strings, such as {name} = ('one', 'two')")
-        elif name == "BUILD_MAY_FAIL" and content not in (True, False):
+        elif name == "BUILD_MAY_FAIL" and setting_value not in (True, False):
             yield file.finding(value, "`BUILD_MAY_FAIL` must be True or False")
     yield from (file.finding(None, f"has no `{name}`") for name in REQUIRED_SETTINGS if name not in values)
     listed, packages, folders, read_paths = (
@@ -95,7 +95,7 @@ def _broken_settings(file: PythonFile, folder: Path, modules: dict[str, PythonFi
     )
     for name in listed:
         if name not in modules:
-            yield file.finding(values["MODULES"], f"`MODULES` names {name!r}, but there is no {name}.py beside it")
+            yield file.finding(values["MODULES"], f"`MODULES` names {name!r}, but {name}.py does not exist beside it")
     for name in packages + folders:
         if not (course_paths.SOLUTIONS / name).is_dir():
             setting = values["PACKAGES" if name in packages else "FOLDERS"]
@@ -106,10 +106,10 @@ def _broken_settings(file: PythonFile, folder: Path, modules: dict[str, PythonFi
             yield file.finding(values["READS"], f"`READS` names {name!r}, but the course has no such file or folder")
     if listed:
         for name, module in modules.items():
-            if name not in listed and (first := next(_declared(module), None)):
+            if name not in listed and (first_check := next(_declared(module), None)):
                 init = f"{folder.name}/__init__.py"
                 message = f"the checks in this file do not count: `MODULES` in {init} does not name {name!r}"
-                yield module.finding(first, message)
+                yield module.finding(first_check, message)
 
 
 def _broken_checks(file: PythonFile, locations: dict[str, tuple[str, int]], has_tables: bool) -> Iterator[Finding]:
@@ -121,7 +121,7 @@ def _broken_checks(file: PythonFile, locations: dict[str, tuple[str, int]], has_
         call = declaration(function)
         if call is None:
             if function.name.startswith(PREFIX):
-                locations.setdefault(function.name.removeprefix(PREFIX), (file.shown, function.lineno))
+                locations.setdefault(function.name.removeprefix(PREFIX), (file.label, function.lineno))
                 message = f"`{function.name}` is not a check and gives no points: decorate it with @check(points=...)"
                 yield file.finding(function, message)
             continue
@@ -130,23 +130,23 @@ def _broken_checks(file: PythonFile, locations: dict[str, tuple[str, int]], has_
         id = function.name.removeprefix(PREFIX)
         if not (ast.get_docstring(function) or "").strip():
             yield file.finding(function, f"the check `{id}` has no docstring, the sentence that the student reads")
-        for word in call.keywords:
-            if word.arg not in ARGUMENTS:
-                message = f"`{word.arg}` is not an argument of @check: {suggestion(str(word.arg), ARGUMENTS)}"
-                yield file.finding(word.value, message)
+        for keyword in call.keywords:
+            if keyword.arg not in ARGUMENTS:
+                message = f"`{keyword.arg}` is not an argument of @check: {suggestion(str(keyword.arg), ARGUMENTS)}"
+                yield file.finding(keyword.value, message)
         points = literal(argument(call, "points"))
         if argument(call, "points") is None:
             yield file.finding(call, f"the check `{id}` has no `points`")
         if isinstance(points, (int, float)) and points <= 0:
             yield file.finding(call, f"the check `{id}` is worth {points}: points must be above 0")
-        above = function.decorator_list[: function.decorator_list.index(call)]
-        if any(decorator_name(each) == "hint" for each in above):
-            yield file.finding(above[0], f"the hints of the check `{id}` must be below @check, not above")
+        decorators_above = function.decorator_list[: function.decorator_list.index(call)]
+        if any(decorator_name(decorator) == "hint" for decorator in decorators_above):
+            yield file.finding(decorators_above[0], f"the hints of the check `{id}` must be below @check, not above")
         if id in locations:
             location = "{}:{}".format(*locations[id])
             yield file.finding(function, f"two checks are called `{id}`: the other one is in {location}")
         yield from _broken_dependencies(file, call, locations, id, has_tables)
-        locations.setdefault(id, (file.shown, function.lineno))
+        locations.setdefault(id, (file.label, function.lineno))
 
 
 def _broken_dependencies(

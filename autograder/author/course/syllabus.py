@@ -133,16 +133,16 @@ def _rows(
     groups = {check.group for check in checks}
     named_groups: set[str] = set()
     for entry in metadata(notebook).get("objectives", []):
-        objective, exercise, named = entry["objective"], entry["exercise"], set(entry["groups"])
-        named_groups |= named
+        objective, exercise, entry_groups = entry["objective"], entry["exercise"], set(entry["groups"])
+        named_groups |= entry_groups
         for is_wrong, message in (
             (objective not in syllabus.objectives, f"the syllabus has no objective {objective!r}"),
-            (exercise not in headings, f"there is no cell {exercise!r}"),
-            (not named <= groups, f"the suite has no group {', '.join(sorted(named - groups))}"),
+            (exercise not in headings, f"the notebook has no cell {exercise!r}"),
+            (not entry_groups <= groups, f"the suite has no group {', '.join(sorted(entry_groups - groups))}"),
         ):
             if is_wrong:
                 findings.append(Finding(f"{name}.ipynb", None, message))
-        tested_by = tuple(check for check in checks if check.group in named)
+        tested_by = tuple(check for check in checks if check.group in entry_groups)
         rows.append(ExerciseRow(objective, name, headings.get(exercise, exercise), tested_by))
     if groups - named_groups:
         message = f"no objective names the groups {', '.join(sorted(groups - named_groups))}"

@@ -137,6 +137,6 @@ def _differences(chapter: Chapter, notebook: NotebookNode, points: Mapping[str, 
 def _diff(current: str, expected: str) -> str:
     """Return the first differing lines, indented."""
     lines = difflib.unified_diff(current.splitlines(), expected.splitlines(), "notebook", "reference", n=1, lineterm="")
-    differing = list(lines)[2:]
-    omitted = [f"... and {len(differing) - SHOWN_LINES} more lines"] if len(differing) > SHOWN_LINES else []
-    return "".join(f"\n    {line}" for line in differing[:SHOWN_LINES] + omitted)
+    diff_lines = list(lines)[2:]
+    omitted = [f"... and {len(diff_lines) - SHOWN_LINES} more lines"] if len(diff_lines) > SHOWN_LINES else []
+    return "".join(f"\n    {line}" for line in diff_lines[:SHOWN_LINES] + omitted)

@@ -35,20 +35,23 @@ notebooks' metadata, the hidden checks and `{syllabus}`; a test holds it.
 
 def course_page() -> tuple[str, tuple[Finding, ...]]:
     """Return the instructors' page of the course, and the problems in its notebooks and syllabus."""
-    syllabus, have_suites = Syllabus.read(), suites.graded_assignments()
+    syllabus, graded = Syllabus.read(), suites.graded_assignments()
     notebooks = {chapter.assignment: chapter.read() for chapter in chapters()}
-    covered = find_coverage(
+    coverage = find_coverage(
         syllabus,
-        [(name, book, suites.hidden(name).checks if name in have_suites else ()) for name, book in notebooks.items()],
+        [
+            (name, notebook, suites.hidden(name).checks if name in graded else ())
+            for name, notebook in notebooks.items()
+        ],
     )
-    efforts = {name: effort(book) for name, book in notebooks.items()}
-    titles = {name: book.cells[0].source.splitlines()[0].removeprefix("# ") for name, book in notebooks.items()}
-    return page(syllabus, covered, titles, efforts), covered.findings
+    efforts = {name: effort(notebook) for name, notebook in notebooks.items()}
+    titles = {name: notebook.cells[0].source.splitlines()[0].removeprefix("# ") for name, notebook in notebooks.items()}
+    return page(syllabus, coverage, titles, efforts), coverage.findings
 
 
-def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str], efforts: dict[str, Effort]) -> str:
+def page(syllabus: Syllabus, coverage: SyllabusCoverage, titles: dict[str, str], efforts: dict[str, Effort]) -> str:
     """Return the instructors' page as Markdown. Titles and efforts are given by chapter, in order."""
-    points = {name: _points(covered, name) for name in titles}
+    points = {name: _points(coverage, name) for name in titles}
     return "\n".join(
         [
             HEAD.format(syllabus=course_paths.course().syllabus),
@@ -59,49 +62,57 @@ def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str], 
                     "minutes at one go",
                 ),
                 [
-                    (f"[{n}]({n}/{n}.ipynb)", t, f"{points[n]:g}" if points[n] else "", *_effort(efforts[n]))
-                    for n, t in titles.items()
+                    (
+                        f"[{name}]({name}/{name}.ipynb)",
+                        title,
+                        f"{points[name]:g}" if points[name] else "",
+                        *_effort(efforts[name]),
+                    )
+                    for name, title in titles.items()
                 ],
             ),
             f"The time is counted: a minute for {WORDS_A_MINUTE:g} words, {MINUTES_A_CELL:g} minute for a code cell, "
             f"{MINUTES_A_LINE:g} minutes for a line to write. *At one go* is the longest time "
             f"before a cell to write or between two, for a reader of {FLUENT_WORDS_A_MINUTE:g} words a minute.\n",
             "## Objectives\n",
-            *table(("objective", "chapter", "exercise", "hidden checks"), _objectives(syllabus, covered)),
+            *table(("objective", "chapter", "exercise", "hidden checks"), _objectives(syllabus, coverage)),
             "## The chapter's contents\n",
             *table(
                 ("what", "where"),
-                [(syllabus.items[key], _where(locations)) for key, locations in covered.items.items()],
+                [(syllabus.items[key], _location_text(locations)) for key, locations in coverage.items.items()],
             ),
             "## What the chapter gets wrong\n",
             *table(
                 ("#", "the chapter", "here", "where"),
-                [(str(n), *syllabus.errata[n], _where(locations)) for n, locations in covered.errata.items()],
+                [
+                    (str(number), *syllabus.errata[number], _location_text(locations))
+                    for number, locations in coverage.errata.items()
+                ],
             ),
         ]
     )
 
 
-def _effort(needed: Effort) -> tuple[str, ...]:
-    counted = (str(needed.words), str(needed.cells), str(needed.lines), duration_text(needed.reading + needed.writing))
-    return *counted, f"{needed.longest_reading:.1f}"
+def _effort(work: Effort) -> tuple[str, ...]:
+    cells = (str(work.words), str(work.cells), str(work.lines), duration_text(work.reading + work.writing))
+    return *cells, f"{work.longest_reading:.1f}"
 
 
-def _points(covered: SyllabusCoverage, name: str) -> float:
+def _points(coverage: SyllabusCoverage, name: str) -> float:
     """Return a chapter's points. A check for two objectives counts once."""
-    checks = {check.id: check.points for row in covered.rows if row.chapter == name for check in row.checks}
+    checks = {check.id: check.points for row in coverage.rows if row.chapter == name for check in row.checks}
     return sum(checks.values())
 
 
-def _objectives(syllabus: Syllabus, covered: SyllabusCoverage) -> Iterator[tuple[str, ...]]:
+def _objectives(syllabus: Syllabus, coverage: SyllabusCoverage) -> Iterator[tuple[str, ...]]:
     for key, text in syllabus.objectives.items():
-        for row in covered.rows:
+        for row in coverage.rows:
             if row.objective == key:
                 checks = ", ".join(f"`{check.id}`" for check in row.checks)
                 yield text, row.chapter, row.exercise, checks
 
 
-def _where(locations: Sequence[Location]) -> str:
+def _location_text(locations: Sequence[Location]) -> str:
     return "; ".join(f"{location.chapter}: {location.heading}" for location in locations)
 
 

@@ -21,48 +21,50 @@ class YamlFile:
     """The content of a YAML file.
 
     Attributes:
-        shown: its path in findings.
+        label: its path in findings.
         data: its data, or None if it is empty or unusable.
         lines: the line of each key and list entry, by its key path.
         findings: its problems. If there are none, the data match the schema.
     """
 
-    shown: str
+    label: str
     data: Any
     lines: Mapping[KeyPath, int]
     findings: tuple[Finding, ...] = ()
 
     def finding(self, path: KeyPath, message: str) -> Finding:
         """Return a finding at a key path, or at the innermost part around it that the file has."""
-        around = (path[:length] for length in range(len(path), 0, -1))
-        return Finding(self.shown, None, message, next((self.lines[each] for each in around if each in self.lines), 1))
+        enclosing = (path[:length] for length in range(len(path), 0, -1))
+        return Finding(
+            self.label, None, message, next((self.lines[part] for part in enclosing if part in self.lines), 1)
+        )
 
 
-def read_yaml(path: Path, *, shown: str = "", schema: str = "") -> YamlFile:
+def read_yaml(path: Path, *, label: str = "", schema: str = "") -> YamlFile:
     """Read an existing YAML file.
 
     Args:
         path: the file.
-        shown: its path in findings, by default relative to the course.
+        label: its path in findings, by default relative to the course.
         schema: name of its schema in `files.schema.json`, by default the file's name.
     """
-    shown = shown or display_path(path)
+    label = label or display_path(path)
     try:
         loader = LOADER(path.read_text(encoding="utf-8"))
-        top = loader.get_single_node()
-        data = None if top is None else loader.construct_document(top)
+        root = loader.get_single_node()
+        data = None if root is None else loader.construct_document(root)
     except UnicodeDecodeError as error:
-        return YamlFile(shown, None, {}, (Finding(shown, None, f"is not UTF-8 text: {error.reason}", 1),))
+        return YamlFile(label, None, {}, (Finding(label, None, f"is not UTF-8 text: {error.reason}", 1),))
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         context = f", {error.context}" if error.context else ""
         message = f"cannot be read as YAML: {error.problem}{context}"
-        return YamlFile(shown, None, {}, (Finding(shown, None, message, mark.line + 1 if mark else 1),))
+        return YamlFile(label, None, {}, (Finding(label, None, message, mark.line + 1 if mark else 1),))
     except (yaml.YAMLError, ValueError) as error:  # a character that YAML forbids, or an invalid date
-        return YamlFile(shown, None, {}, (Finding(shown, None, f"cannot be read as YAML: {error}", 1),))
+        return YamlFile(label, None, {}, (Finding(label, None, f"cannot be read as YAML: {error}", 1),))
     lines: dict[KeyPath, int] = {}
-    duplicates = [] if top is None else list(_walk(top, (), lines))
-    file = YamlFile(shown, data, lines)
+    duplicates = [] if root is None else list(_walk(root, (), lines))
+    file = YamlFile(label, data, lines)
     problems = [(key, f"`{key[-1]}` occurs twice: only the last one would count") for key in duplicates]
     problems += broken_schema(data, file_schema(schema or path.name))
     return replace(file, findings=tuple(file.finding(key, message) for key, message in problems))
@@ -74,7 +76,7 @@ def load_yaml(path: Path, *, schema: str = "") -> Any:
     Raises:
         CourseError: it is not YAML, or violates its schema. The message lists all problems, line by line.
     """
-    file = read_yaml(path, shown=str(path), schema=schema)
+    file = read_yaml(path, label=str(path), schema=schema)
     if file.findings:
         raise CourseError("\n".join(map(str, file.findings)))
     return file.data

@@ -19,8 +19,8 @@ MAX_WORKER_DEATHS = 2  # workers that may die while they grade one submission
 def dask_setup(server: Any) -> None:
     """Prepare a worker or a scheduler of Dask, which calls this when it starts.
 
-    A worker offers a resource for each assignment and isolation level. A scheduler gives up a submission after two
-    workers have died while grading it. Dask's own default is four.
+    A worker offers a resource for each assignment and isolation level. A scheduler gives up on a submission after two
+    workers have died while grading it. Dask's default is four.
     """
     if hasattr(server, "allowed_failures"):
         server.allowed_failures = MAX_WORKER_DEATHS - 1

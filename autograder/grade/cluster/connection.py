@@ -39,8 +39,8 @@ def connected(scheduler: str, jobs: int, certificates: Path) -> Iterator[Client]
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     if scheduler == LOCAL:
         # By default, the cluster removes a worker that takes longer than 15 s to reconnect.
-        stays = dask.config.set({"distributed.deploy.lost-worker-timeout": 600})
-        with stays, _local(jobs) as cluster, Client(cluster, set_as_default=False) as client:
+        long_timeout = dask.config.set({"distributed.deploy.lost-worker-timeout": 600})
+        with long_timeout, _local(jobs) as cluster, Client(cluster, set_as_default=False) as client:
             yield client
         return
     require_address(scheduler)

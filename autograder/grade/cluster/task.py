@@ -41,8 +41,11 @@ class Task:
     def unpack(cls, data: bytes) -> Task:
         """Read a task. Raises ClusterError if the bytes are not a valid task."""
         try:
-            assignment, seed, isolation, files = _unpacked(data, MAX_TASK)
-            entries = [SubmittedFile(PurePosixPath(os.fsdecode(n)), bytes(d), bool(x)) for n, d, x in files]
+            assignment, seed, isolation, files = _unpacked(data)
+            entries = [
+                SubmittedFile(PurePosixPath(os.fsdecode(name)), bytes(content), bool(executable))
+                for name, content, executable in files
+            ]
             job = Job(Path(), str(assignment), "", int(seed), Path(), Isolation(isolation))
         except (ValueError, TypeError) as error:
             raise ClusterError(f"a task cannot be read: {error}") from None
@@ -80,22 +83,22 @@ def _reply(data: bytes) -> tuple[dict[str, bytes], str]:
     """Read a reply piece by piece, because 64 MiB at once could unpack to as many million empty lists."""
     if len(data) > MAX_REPLY:
         raise ValueError(f"it has {len(data)} bytes, but at most {MAX_REPLY} are allowed")
-    pieces = msgpack.Unpacker(
+    unpacker = msgpack.Unpacker(
         max_array_len=0, max_map_len=0, max_buffer_size=MAX_REPLY, unicode_errors="surrogateescape"
     )
-    pieces.feed(data)
-    if pieces.read_array_header() != 2 or (count := pieces.read_map_header()) > MAX_REPLY_FILES:
+    unpacker.feed(data)
+    if unpacker.read_array_header() != 2 or (count := unpacker.read_map_header()) > MAX_REPLY_FILES:
         raise ValueError("it does not consist of named files")
-    *files, failure = [pieces.unpack() for _ in range(2 * count + 1)]
+    *files, failure = [unpacker.unpack() for _ in range(2 * count + 1)]
     names, contents = files[::2], files[1::2]
     if not all(isinstance(text, str) for text in (*names, failure)) or not all(isinstance(c, bytes) for c in contents):
         raise ValueError("it does not consist of named files")
     return dict(zip(names, contents, strict=True)), failure
 
 
-def _unpacked(data: bytes, limit: int) -> Any:
-    if len(data) > limit:
-        raise ValueError(f"it has {len(data)} bytes, but at most {limit} are allowed")
+def _unpacked(data: bytes) -> Any:
+    if len(data) > MAX_TASK:
+        raise ValueError(f"it has {len(data)} bytes, but at most {MAX_TASK} are allowed")
     try:
         return msgpack.unpackb(data, unicode_errors="surrogateescape", strict_map_key=True)
     except RecursionError:

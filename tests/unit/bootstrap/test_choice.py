@@ -136,7 +136,7 @@ def test_a_python_or_course_that_other_users_cannot_read_is_named_with_the_remed
         python, course = folder / "python3", folder / "course"
         assert bootstrap.closed_to_other_users(python, course) is None
         assert bootstrap.closed_to_other_users(closed / "bin" / "python3", course) == (
-            f"other users cannot run .venv, as {closed} is closed to them, and {closed}/bin/python3 is in it; "
+            f"other users cannot run .venv, because they cannot enter {closed}, which contains {closed}/bin/python3; "
             "run `make setup PYTHON=/usr/bin/python3`"
         )
         problem = bootstrap.closed_to_other_users(python, closed / "course")

@@ -48,8 +48,8 @@ def test_empty_lines_name_the_start_and_the_end_of_the_file() -> None:
     [
         (MANIFEST, [("<parcel>", "")], "the line '<parcel>' occurs 0 times"),
         ("a\na\nb\n", [("a", "")], "the line 'a' occurs 2 times"),
-        ("a\nb\n", [("a", "b")], "nothing to hide"),
-        ("a\nb\nc\n", [("c", "a")], "nothing to hide"),
+        ("a\nb\n", [("a", "b")], "no text to hide"),
+        ("a\nb\nc\n", [("c", "a")], "no text to hide"),
         ("a\nb\nc\nd\n", [("a", "d"), ("b", "")], "nested parts"),
         ("# BEGIN SOLUTION\na\n", [("", "")], "contains solution markers"),
     ],

@@ -113,7 +113,7 @@ def old_format() -> NotebookNode:
         ),
         (
             notebook(prose("# T", "t"), prose(ANSWER, "m", nbgrader=manual("m", 1), course={"group": "graph"})),
-            "is graded by a person and cannot also belong to the group 'graph' of checks",
+            "is manually graded and cannot also belong to the group 'graph' of checks",
         ),
         (
             notebook(prose("# T", "t"), prose("So.", "m", nbgrader=manual("m", 1))),

@@ -93,7 +93,7 @@ def test_only_the_named_parts_of_a_function_are_marked(before: str, after: str, 
     [
         (["drive"], {"stop": ("", "")}, "`parts` names stop, which `hide` does not name"),
         (["drive"], {"drive": ("def drive(node):", "")}, "the line 'def drive.* occurs 0 times"),
-        (["drive"], {"drive": ("return command", "")}, "nothing to hide"),
+        (["drive"], {"drive": ("return command", "")}, "no text to hide"),
     ],
 )
 def test_a_part_that_cannot_be_hidden_is_named(

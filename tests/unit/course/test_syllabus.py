@@ -47,7 +47,7 @@ def test_a_syllabus_item_that_no_notebook_covers_is_named() -> None:
     ("change", "message"),
     [
         ({"objective": "flying"}, "the syllabus has no objective 'flying'"),
-        ({"exercise": "gone"}, "there is no cell 'gone'"),
+        ({"exercise": "gone"}, "the notebook has no cell 'gone'"),
         ({"groups": ["graph", "wings"]}, "the suite has no group wings"),
         ({"groups": []}, "no objective names the groups graph"),
     ],

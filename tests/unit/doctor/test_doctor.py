@@ -134,7 +134,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     "the system's own Python": ("environment", {"in_venv": False}, Status.WEAK, "not a virtual", "make setup"),
     "a Python that root alone can run": (
         "other users",
-        {"closed_to_other_users": lambda: "other users cannot run .venv, as /root is closed to them"},
+        {"closed_to_other_users": lambda: "other users cannot run .venv, because they cannot enter /root"},
         Status.WEAK,
         "/root is closed",
         "make setup PYTHON=/usr/bin/python3",
