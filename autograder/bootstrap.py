@@ -85,8 +85,8 @@ def sourced_ros(environ: Mapping[str, str], venv: Path, interpreter: Interpreter
 
     distro = environ.get("ROS_DISTRO", "")
     modules = [path for path in outside_venv("PYTHONPATH") if (path / "rclpy").is_dir()]
-    other = distro and (outside_venv("AMENT_PREFIX_PATH") or outside_venv("ROS_PACKAGE_PATH"))
-    if (modules or other) and distro != ROS["name"]:
+    has_other_ros = distro and (outside_venv("AMENT_PREFIX_PATH") or outside_venv("ROS_PACKAGE_PATH"))
+    if (modules or has_other_ros) and distro != ROS["name"]:
         raise SetUpError(
             f"the sourced ROS distribution is {distro or 'unknown'}, but the course needs {ROS['title']}: "
             f"use a shell that does not source it (the wheels are used then), or source {ROS['setup']}"
@@ -275,11 +275,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         check_machine(interpreter.version, platform.system(), platform.machine())
         sourced, standins = sourced_ros(os.environ, root / ".venv", interpreter), os.environ.get("ROS2_STANDINS")
         set_up = SetUp(root, interpreter, sourced, run, standins == "1")
-        needed = options.real_launch or bool(set_up.missing_parts(dev=options.dev))
+        needs_set_up = options.real_launch or bool(set_up.missing_parts(dev=options.dev))
         apt = [sys.executable, "-I", str(root / "autograder" / "doctor" / "apt.py")]
-        if run(*apt, *(["--browser"] if options.browser else []), *(["--require-compiler"] if needed else [])) != 0:
+        apt += ["--browser"] if options.browser else []
+        apt += ["--require-compiler"] if needs_set_up else []
+        if run(*apt) != 0:
             return 1  # the reason is printed
-        if needed:
+        if needs_set_up:
             if os.geteuid() == 0 and (problem := closed_to_other_users(Path(interpreter.executable), root)):
                 print_progress(problem)
             with exclusive_set_up(root / ".build" / "set-up.lock"):

@@ -50,8 +50,8 @@ def replay(
     if mcap and submission is None:
         raise UsageError("--mcap needs --submission PATH: the stored run has no messages, only a new grading has")
     original = _single_result(stored)
-    if check not in {each.id for each in original.checks}:
-        known = ", ".join(each.id for each in original.checks)
+    if check not in {result_check.id for result_check in original.checks}:
+        known = ", ".join(result_check.id for result_check in original.checks)
         raise UsageError(f"{stored}: the result has no check {check!r}; it has: {known}")
     folder = original.folder / "replay" / check
     with tempfile.TemporaryDirectory(prefix="replay-") as scratch:

@@ -146,9 +146,9 @@ def _check(
 
     suite = suites.visible(assignment)
     all_exercises = [structure(Exercise, exercise) for exercise in exercises]
-    chosen = [exercise for exercise in all_exercises if exercise.name == part]
+    matching = [exercise for exercise in all_exercises if exercise.name == part]
     selected = (
-        checks_of(chosen[0], all_exercises, suite.checks) if chosen else tuple(check.id for check in suite.checks)
+        checks_of(matching[0], all_exercises, suite.checks) if matching else tuple(check.id for check in suite.checks)
     )
     results: dict[str, CheckResult] = {}
 

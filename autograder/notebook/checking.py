@@ -95,7 +95,9 @@ class CheckReport:
                 parts += [f"    hint {number}: {hint}" for number, hint in enumerate(line.hints, 1)]
                 parts += [f"    read: {line.doc}"] if line.doc else []
             parts += (
-                [f"    {FAILED_AS_WELL}", *(f"    {_head(other)}" for other in cause.failed)] if cause.failed else []
+                [f"    {FAILED_AS_WELL}", *(f"    {_head(consequence)}" for consequence in cause.failed)]
+                if cause.failed
+                else []
             )
             parts += [f"    {cause.not_checked}"] if cause.not_checked else []
         parts += ["", self.summary]
@@ -155,14 +157,14 @@ def part_of(assignment: str, exercise: int | None, step: int | None, question: i
     if assignment not in (known := suites.checkable_assignments()):
         raise UsageError(f"{assignment!r} has no visible checks; choose one of: {', '.join(known)}")
     numbers = zip(KINDS, (exercise, step, question), strict=True)
-    chosen = [(kind, number) for kind, number in numbers if number is not None]
-    if not chosen:
+    given = [(kind, number) for kind, number in numbers if number is not None]
+    if not given:
         return Part(assignment)
-    if len(chosen) > 1:
-        words = " and ".join(f"{kind} {number}" for kind, number in chosen)
-        raise UsageError(f"{words} are two parts of {assignment}: ask for one at a time, or for the whole chapter")
+    if len(given) > 1:
+        listed = " and ".join(f"{kind} {number}" for kind, number in given)
+        raise UsageError(f"{listed} are two parts of {assignment}: ask for one at a time, or for the whole chapter")
     available = exercises(assignment)
-    return Part(assignment, find_exercise(assignment, available, *chosen[0]).name, available)
+    return Part(assignment, find_exercise(assignment, available, *given[0]).name, available)
 
 
 def run_part(

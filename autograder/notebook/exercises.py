@@ -71,19 +71,19 @@ def find_exercise(assignment: str, available: Sequence[Exercise], kind: str, num
     for exercise in available:
         if (exercise.kind, exercise.number) == (kind, number):
             return exercise
-    in_order = sorted(available, key=lambda each: (each.kind, each.number))
+    in_order = sorted(available, key=lambda exercise: (exercise.kind, exercise.number))
     known = ", ".join(f"{each.name} ({each.title})" if each.title else each.name for each in in_order)
     raise UsageError(f"{assignment} has no {kind} {number}; it has: {known or 'no exercise with a number'}")
 
 
-def checks_of(chosen: Exercise, available: Sequence[Exercise], checks: Sequence[Check]) -> tuple[str, ...]:
+def checks_of(exercise: Exercise, available: Sequence[Exercise], checks: Sequence[Check]) -> tuple[str, ...]:
     """Return the ids of the checks that belong to an exercise, in the order of the suite.
 
     If all requirements of a group of checks are in one exercise, the group belongs to it. If they are in several, the
     notebook's objectives decide. If these assign the group to no or several exercises, each check belongs to the last
     exercise with one of its requirements. A check without a requirement in an exercise belongs to every exercise.
     """
-    return tuple(check.id for check in checks if _exercise_of(check, available, checks) in (None, chosen))
+    return tuple(check.id for check in checks if _exercise_of(check, available, checks) in (None, exercise))
 
 
 def _exercise_of(check: Check, available: Sequence[Exercise], checks: Sequence[Check]) -> Exercise | None:

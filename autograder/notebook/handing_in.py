@@ -114,7 +114,7 @@ def packed(files: Sequence[SubmittedFile]) -> bytes:
     """Return files as a zip. Equal files make equal zips."""
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
-        for file in sorted(files, key=lambda each: each.path):
+        for file in sorted(files, key=lambda submitted: submitted.path):
             info = zipfile.ZipInfo(str(file.path), DATE)
             info.compress_type = zipfile.ZIP_DEFLATED
             info.external_attr = (0o100755 if file.executable else 0o100644) << 16

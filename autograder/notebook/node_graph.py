@@ -40,13 +40,17 @@ class Graph:
 
     def _repr_html_(self) -> str:
         """Return a drawing with publishers, topics and subscribers from left to right. A node may be on both sides."""
-        left = sorted({node for node, _ in self.published} | (set(self.nodes) - {node for _, node in self.subscribed}))
-        right = sorted({node for _, node in self.subscribed})
+        left_nodes = sorted(
+            {node for node, _ in self.published} | (set(self.nodes) - {node for _, node in self.subscribed})
+        )
+        right_nodes = sorted({node for _, node in self.subscribed})
         topics = sorted(self.topics)
-        height = ROW * max(len(left), len(right), len(topics), 1)
+        height = ROW * max(len(left_nodes), len(right_nodes), len(topics), 1)
         positions = {
             (column, name): (x, (number + 0.5) * height / len(names))
-            for column, (x, names) in enumerate(((0, left), (NODE + GAP, topics), (NODE + TOPIC + 2 * GAP, right)))
+            for column, (x, names) in enumerate(
+                ((0, left_nodes), (NODE + GAP, topics), (NODE + TOPIC + 2 * GAP, right_nodes))
+            )
             for number, name in enumerate(names)
         }
         boxes = "".join(

@@ -46,8 +46,8 @@ class Cause:
         """The line about checks that could not run, or an empty string. It names a few checks, but only counts many."""
         if not self.unchecked:
             return ""
-        few = " ".join(check.title for check in self.unchecked)
-        return f"Not checked: {len(self.unchecked)} more checks." if self.unnamed else f"Not checked: {few}"
+        titles = " ".join(check.title for check in self.unchecked)
+        return f"Not checked: {len(self.unchecked)} more checks." if self.unnamed else f"Not checked: {titles}"
 
     @property
     def unnamed(self) -> tuple[str, ...]:

@@ -189,10 +189,10 @@ def with_line(finding: Finding, text: str) -> Finding:
         return finding
     lines = text.splitlines()
     start = _line_index(lines, f'"id": "{finding.cell}"', 0) if finding.cell else None
-    end = len(lines) if start is None else _line_index(lines, '"cell_type":', start) or len(lines)
+    cell_end = len(lines) if start is None else _line_index(lines, '"cell_type":', start) or len(lines)
     names = re.findall(r"(?:['`]|given file )([^'` ]+)", finding.message.partition("\n")[0])
     indices = (_line_index(lines, f'"{name}"', start or 0) for name in names)
-    index = next((each for each in indices if each is not None and each < end), start)
+    index = next((candidate for candidate in indices if candidate is not None and candidate < cell_end), start)
     return replace(finding, line=1 if index is None else index + 1)
 
 

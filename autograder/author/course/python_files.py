@@ -68,7 +68,7 @@ def decorators(function: Function) -> dict[str, ast.expr]:
 
 def declaration(function: Function) -> ast.Call | None:
     """Return the decorator that declares a check (it is called `check` or has points), or None."""
-    calls = (each for each in function.decorator_list if isinstance(each, ast.Call))
+    calls = (decorator for decorator in function.decorator_list if isinstance(decorator, ast.Call))
     return next((call for call in calls if decorator_name(call) == "check" or argument(call, "points")), None)
 
 

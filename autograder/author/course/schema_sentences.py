@@ -38,7 +38,9 @@ def broken_schema(data: Any, schema: Mapping[str, Any], whole: str = "the file")
     Sentences refer to the whole data as `whole`, and to a part by its key path.
     """
     violations: dict[tuple[KeyPath, str], None] = {}
-    for error in sorted(Draft202012Validator(schema).iter_errors(data), key=lambda each: [*map(str, each.path)]):
+    for error in sorted(
+        Draft202012Validator(schema).iter_errors(data), key=lambda violation: [*map(str, violation.path)]
+    ):
         path = tuple(map(str, error.absolute_path))
         subject = f"`{_formatted(path)}`{_id(data, error)}" if path else whole
         for extra_path, sentence in _sentences(error, subject):
@@ -72,10 +74,10 @@ def _sentences(error: Any, subject: str) -> Iterator[tuple[KeyPath, str]]:
             if key not in instance:
                 yield (), f"{subject} has no `{key}`"
     elif rule == "dependentRequired":
-        for key, others in expected.items():
-            for other in others if key in instance else ():
-                if other not in instance:
-                    yield (), f"{subject} has `{key}`, but no `{other}`"
+        for key, dependents in expected.items():
+            for dependent in dependents if key in instance else ():
+                if dependent not in instance:
+                    yield (), f"{subject} has `{key}`, but no `{dependent}`"
     elif rule == "type":
         names = [TYPE_NAMES[name] for name in ([expected] if isinstance(expected, str) else expected)]
         advice = ": put it in quotes" if "string" in expected and not isinstance(instance, (Mapping, list)) else ""

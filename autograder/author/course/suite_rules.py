@@ -182,4 +182,4 @@ def _has_tables(file: PythonFile) -> bool:
 
 def _strings(value: object) -> tuple[str, ...]:
     """Return a tuple or list of strings as a tuple, or an empty tuple for any other value."""
-    return tuple(value) if isinstance(value, (tuple, list)) and all(isinstance(each, str) for each in value) else ()
+    return tuple(value) if isinstance(value, (tuple, list)) and all(isinstance(item, str) for item in value) else ()

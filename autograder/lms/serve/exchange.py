@@ -58,7 +58,7 @@ def find_submissions(inbound: Path) -> Iterator[ExchangeSubmission]:
     """
     if not inbound.exists():
         return
-    for entry in sorted(os.scandir(inbound), key=lambda each: each.name):
+    for entry in sorted(os.scandir(inbound), key=lambda item: item.name):
         student, separator, rest = entry.name.partition("+")
         status = entry.stat(follow_symlinks=False)
         if not separator or not stat.S_ISDIR(status.st_mode) or not os.path.lexists(Path(entry.path, LAST_FILE)):

@@ -57,7 +57,7 @@ class Grader:
 
     def ahead_of(self, number: int) -> int:
         """Return how many answers are graded before the waiting one with this number."""
-        waiting = [each for each in self._store.waiting() if not self.is_being_graded(each.number)]
+        waiting = [hand_in for hand_in in self._store.waiting() if not self.is_being_graded(hand_in.number)]
         return len(self._busy) + ahead_of(number, waiting, self._store.turns(), self._busy)
 
     async def run(self) -> None:
@@ -84,7 +84,7 @@ class Grader:
         """Wait for an answer to grade, mark its student as busy, and return it."""
         async with self._queue_changed:
             while True:
-                waiting = (each for each in self._store.waiting() if each.number not in self._failed)
+                waiting = (hand_in for hand_in in self._store.waiting() if hand_in.number not in self._failed)
                 if hand_in := next_turn(waiting, self._store.turns(), self._busy):
                     self._busy[hand_in.student] = hand_in.number
                     return hand_in

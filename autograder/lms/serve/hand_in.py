@@ -42,7 +42,9 @@ def counted_hand_in(hand_ins: Sequence[HandIn], *, best: bool) -> HandIn | None:
         best: whether the one with the most points counts (the later one of two equal ones), or else the last one.
     """
     graded = [
-        (each.mark.points, each) for each in hand_ins if each.mark is not None and each.mark.status is Status.GRADED
+        (hand_in.mark.points, hand_in)
+        for hand_in in hand_ins
+        if hand_in.mark is not None and hand_in.mark.status is Status.GRADED
     ]
     if not graded:
         return None

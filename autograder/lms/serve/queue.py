@@ -23,7 +23,7 @@ def in_order(
         busy: students with an answer that is being graded now. They come after all others.
     """
     answers: dict[str, deque[HandIn]] = {}
-    for answer in sorted(waiting, key=lambda each: each.number):
+    for answer in sorted(waiting, key=lambda hand_in: hand_in.number):
         answers.setdefault(answer.student, deque()).append(answer)
     turn = 1 + max(turns.values(), default=0)  # of the students with a running grading
     last_turns = {**turns, **dict.fromkeys(busy, turn)}
@@ -41,9 +41,9 @@ def in_order(
 
 def next_turn(waiting: Iterable[HandIn], turns: Mapping[str, int], busy: Collection[str]) -> HandIn | None:
     """Return the answer to grade next, or None. A student has at most one running grading."""
-    return next(in_order((each for each in waiting if each.student not in busy), turns), None)
+    return next(in_order((hand_in for hand_in in waiting if hand_in.student not in busy), turns), None)
 
 
 def ahead_of(number: int, waiting: Iterable[HandIn], turns: Mapping[str, int], busy: Collection[str]) -> int:
     """Return how many waiting answers are graded before the one with this number."""
-    return next(position for position, each in enumerate(in_order(waiting, turns, busy)) if each.number == number)
+    return next(position for position, hand_in in enumerate(in_order(waiting, turns, busy)) if hand_in.number == number)
