@@ -11,10 +11,10 @@
 
 Sources: Moodle, mod/assign/locallib.php (`download_submissions`); Canvas, "How do I download all student submissions";
 Sakai, AssignmentServiceImpl.java (`zipSubmissions`); GitHub Classroom, `gh classroom clone student-repos`; nbgrader,
-the folder "submitted". The names of Blackboard and Brightspace follow programs that read them: bb-file-cleanup,
-BBGradebookOrganiser and gradex-cli; kodiak, GradeFast and a `rename_and_move.sh`. In a Gradescope download,
-`submission_metadata.yml` lists the students and the submission time of each folder. It is written by Ruby, so its keys
-are symbols such as `:submitters:`, which YAML reads as text with colons.
+the folder "submitted". The name formats of Blackboard and Brightspace come from programs that parse them:
+bb-file-cleanup, BBGradebookOrganiser and gradex-cli; kodiak, GradeFast and a `rename_and_move.sh`. In a Gradescope
+download, `submission_metadata.yml` lists the students and the submission time of each folder. It is written by Ruby, so
+its keys are symbols such as `:submitters:`, which YAML reads as text with colons.
 """
 
 from __future__ import annotations

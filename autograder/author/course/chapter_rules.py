@@ -136,7 +136,7 @@ def _outdated_titles(assignment: str) -> Iterator[Finding]:
 
 
 def _import_error(error: Exception, folder: Path) -> Finding:
-    """Return the finding for a suite that raises an error, at the last line of the traceback in the chapter."""
+    """Return a finding for an exception of a suite, at the last line of its traceback that is in the chapter."""
     frames = [
         frame for frame in traceback.extract_tb(error.__traceback__) if Path(frame.filename).is_relative_to(folder)
     ]

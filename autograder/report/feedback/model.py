@@ -38,7 +38,7 @@ class CheckView:
 
     @property
     def message(self) -> str:
-        """The reason of the outcome, or an empty string."""
+        """The reason for the outcome, or an empty string."""
         return clean(self.result.message).strip()
 
 

@@ -141,4 +141,4 @@ def test_a_python_or_course_that_other_users_cannot_read_is_named_with_the_remed
         )
         problem = bootstrap.closed_to_other_users(python, closed / "course")
         assert problem is not None
-        assert problem.endswith("is in it; move the course, to /srv for example, and run `make setup` there")
+        assert problem.endswith("/closed/course; move the course, to /srv for example, and run `make setup` there")

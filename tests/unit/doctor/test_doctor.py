@@ -136,7 +136,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "other users",
         {"closed_to_other_users": lambda: "other users cannot run .venv, because they cannot enter /root"},
         Status.WEAK,
-        "/root is closed",
+        "cannot enter /root",
         "make setup PYTHON=/usr/bin/python3",
     ),
     "no ROS": (

@@ -52,8 +52,8 @@ def test_each_graded_chapter_shows_two_answers_with_what_differs(assignment: str
     [
         (None, "02_nodes has no other answers to show: .*shown.yaml does not exist"),
         ("[states", "cannot be read as YAML"),
-        ("states\n", "write the name of a variant, a colon and what differs in it"),
-        ("states: 3\n", "write the name of a variant, a colon and what differs in it"),
+        ("states\n", "for each variant, write its name, a colon and how it differs"),
+        ("states: 3\n", "for each variant, write its name, a colon and how it differs"),
         ("stats: It has states.\n", "names 'stats', which is not a variant; the variants are: states"),
     ],
 )
