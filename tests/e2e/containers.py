@@ -1,0 +1,80 @@
+"""Containers of an image, which buildah runs as root, without a container runtime."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+# Through these files, the machine's pip reaches its package index; see assets/image/build.
+MACHINE = (Path("/etc/pip.conf"), Path("/etc/ssl/certs/ca-certificates.crt"))
+SHOWN_LINES = 60  # of the output of a failed command
+
+
+@dataclass(frozen=True)
+class Container:
+    """A container of buildah.
+
+    Attributes:
+        name: buildah's name of the container.
+    """
+
+    name: str
+
+    @cached_property
+    def root(self) -> Path:
+        """The folder at which the container's files are mounted."""
+        return Path(buildah("mount", self.name).stdout.strip())
+
+    def command(self, *arguments: str, environment: dict[str, str] | None = None, folder: str = "") -> list[str]:
+        """Return the command that runs `arguments` in the container, as its user and in the network of this machine.
+
+        Args:
+            arguments: a program and its arguments. buildah ignores the image's entry point.
+            environment: environment variables in addition to the image's.
+            folder: the working directory; the image's own by default.
+        """
+        variables = [word for item in (environment or {}).items() for word in ("--env", "=".join(item))]
+        machine = [word for path in MACHINE if path.exists() for word in ("--volume", f"{path}:{path}:ro")]
+        place = ["--workingdir", folder] if folder else []
+        return ["buildah", "run", "--isolation", "chroot", *variables, *machine, *place, self.name, "--", *arguments]
+
+    def run(self, *arguments: str, folder: str = "") -> subprocess.CompletedProcess[str]:
+        """Run a program in the container, with its output captured. Its exit status may be any."""
+        return subprocess.run(self.command(*arguments, folder=folder), capture_output=True, text=True, check=False)
+
+    def copy(self, source: Path, target: str, owner: str = "root") -> None:
+        """Copy a folder's content into a folder of the container."""
+        buildah("copy", "--quiet", "--chown", owner, self.name, str(source), target)
+
+
+@contextmanager
+def container(image: str) -> Iterator[Container]:
+    """Make a container of an image. Afterwards, remove it and kill its processes."""
+    made = Container(buildah("from", "--pull=never", image).stdout.strip())
+    try:
+        yield made
+    finally:
+        for process in Path("/proc").glob("[0-9]*"):
+            with contextlib.suppress(OSError):
+                if (process / "root").samefile(made.root):
+                    os.kill(int(process.name), signal.SIGKILL)
+        buildah("rm", made.name)
+
+
+def buildah(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run buildah, which must succeed."""
+    done = subprocess.run(["buildah", *arguments], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, end_of(done)
+    return done
+
+
+def end_of(done: subprocess.CompletedProcess[str]) -> str:
+    """Return the last lines that a program printed, for the message of a failed test."""
+    return "\n".join((done.stdout + done.stderr).splitlines()[-SHOWN_LINES:])
