@@ -54,7 +54,7 @@ def test_new_and_removed_checks_and_new_students_are_listed(make_result: MakeRes
 def test_a_student_with_two_results_is_refused(make_result: MakeResult) -> None:
     from autograder.exceptions import UsageError
 
-    with pytest.raises(UsageError, match="the new results hold 'alice' twice for 02_nodes; use the folder of one"):
+    with pytest.raises(UsageError, match="the new results contain 'alice' twice for 02_nodes; use the folder of one"):
         changes([], [make_result("alice"), make_result("alice")])
 
 

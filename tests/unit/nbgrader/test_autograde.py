@@ -247,7 +247,7 @@ def test_points_that_do_not_match_the_cell_are_refused(
     course.submit("frank", course.released)
     response = course.autograde("frank")
     assert not response["success"]
-    assert "the cell of group 'graph' is worth 3 points, but its checks 5" in response["log"]
+    assert "the cell of group 'graph' is worth 3 points, but its checks are worth 5" in response["log"]
 
 
 def test_code_in_a_students_notebook_does_not_run_in_feedback(course: Any, verdict: Callable[..., Any]) -> None:

@@ -130,7 +130,7 @@ def test_an_answer_that_is_too_large_is_refused_before_all_of_it_is_read(
     monkeypatch.setattr(handing_in, "PAUSES", ())
     with pytest.raises(HandInError):
         classroom.hand_in("ada", bytes(handing_in.MAX_ANSWER + 1))
-    assert "Nothing yet" in classroom.get("ada")[1]
+    assert "No submissions yet" in classroom.get("ada")[1]
 
 
 def test_a_repeated_key_is_the_same_hand_in(classroom: Classroom) -> None:
