@@ -21,9 +21,9 @@ class NEW_CLASS(Node):
     """Publishes the distance to the nearest obstacle."""
 
     def __init__(self):
-        super().__init__("NEW_NODE")
-        self.publisher = self.create_publisher(Float32, "nearest", 10)
-        self.create_subscription(LaserScan, "scan", self.on_scan, qos_profile_sensor_data)
+        super().__init__('NEW_NODE')
+        self.publisher = self.create_publisher(Float32, 'nearest', 10)
+        self.create_subscription(LaserScan, 'scan', self.on_scan, qos_profile_sensor_data)
 
     def on_scan(self, scan):
         """Publish the nearest reading of each scan, and nothing if no reading counts."""
@@ -45,5 +45,5 @@ def main(args=None):
         rclpy.try_shutdown()
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

@@ -10,8 +10,8 @@ from std_msgs.msg import Float32
 
 class Watch(Node):
     def __init__(self):
-        super().__init__("NEW_NODE")
-        publisher = self.create_publisher(Float32, "nearest", 10)
+        super().__init__('NEW_NODE')
+        publisher = self.create_publisher(Float32, 'nearest', 10)
 
         def on_scan(scan):
             best = None
@@ -23,7 +23,7 @@ class Watch(Node):
             if best is not None:
                 publisher.publish(Float32(data=best))
 
-        self.create_subscription(LaserScan, "scan", on_scan, qos_profile_sensor_data)
+        self.create_subscription(LaserScan, 'scan', on_scan, qos_profile_sensor_data)
 
 
 def main():
