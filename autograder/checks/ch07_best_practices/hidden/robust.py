@@ -104,9 +104,11 @@ def _expect_own_count(workspace: Workspace) -> None:
     said = [re.findall(r"data='([^']+)'", text) for text in texts]
     if not all(len(status) == 1 for status in said):
         return  # another check asks what a callback publishes
-    (first,), _, (other,) = said
+    other = said[2][0]
+    count = re.search(r"\d+", other)
+    # A node that ignores its arguments does not always fail. `bugs_are_seen` asks for the arguments.
     sentence = "Of two robust nodes in one process, one failed twice, then the other one for the first time, and said"
-    expect(other == first, f"{sentence} {other!r}: each counts its own failures.", fraction=0.5)
+    expect(count is None or int(count[0]) == 1, f"{sentence} {other!r}: each counts its own failures.", fraction=0.5)
 
 
 @check(points=1, covers=("seed", "generator"), after=("once_a_second",), doc=RANDOM)
