@@ -32,22 +32,20 @@ class Container:
         """The folder at which the container's files are mounted."""
         return Path(buildah("mount", self.name).stdout.strip())
 
-    def command(self, *arguments: str, environment: dict[str, str] | None = None, folder: str = "") -> list[str]:
-        """Return the command that runs `arguments` in the container, as its user and in the network of this machine.
+    def run(self, *arguments: str, folder: str = "") -> subprocess.CompletedProcess[str]:
+        """Run a program in the container, as its user and in the network of this machine, and capture the output.
 
         Args:
             arguments: a program and its arguments. buildah ignores the image's entry point.
-            environment: environment variables in addition to the image's.
             folder: the working directory; the image's own by default.
+
+        Returns:
+            The process, with any exit status.
         """
-        variables = [word for item in (environment or {}).items() for word in ("--env", "=".join(item))]
         machine = [word for path in MACHINE if path.exists() for word in ("--volume", f"{path}:{path}:ro")]
         place = ["--workingdir", folder] if folder else []
-        return ["buildah", "run", "--isolation", "chroot", *variables, *machine, *place, self.name, "--", *arguments]
-
-    def run(self, *arguments: str, folder: str = "") -> subprocess.CompletedProcess[str]:
-        """Run a program in the container, with its output captured. Its exit status may be any."""
-        return subprocess.run(self.command(*arguments, folder=folder), capture_output=True, text=True, check=False)
+        command = ["buildah", "run", "--isolation", "chroot", *machine, *place, self.name, "--", *arguments]
+        return subprocess.run(command, capture_output=True, text=True, check=False)
 
     def copy(self, source: Path, target: str, owner: str = "root") -> None:
         """Copy a folder's content into a folder of the container."""

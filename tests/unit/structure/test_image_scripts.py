@@ -21,7 +21,10 @@ mount) mkdir -p "$MOUNT/etc/apt" && echo "$MOUNT" ;;
 commit) echo "$4" >>"$STORE" ;;
 esac
 """
-DEBOOTSTRAP = '#!/bin/sh\necho "debootstrap $*" >>"$LOG"\n'
+DEBOOTSTRAP = """#!/bin/sh
+echo "debootstrap $*" >>"$LOG"
+echo 'deb http://mirror.example/debian bookworm main' >"$4/etc/apt/sources.list"
+"""
 DEFAULT = next(
     line.removeprefix("ARG BASE=")
     for line in (ROOT / ".binder" / "Dockerfile").read_text().splitlines()
@@ -93,6 +96,10 @@ def test_without_a_registry_debootstrap_makes_the_base_once(machine: Machine) ->
     assert len(made) == 1
     assert "python3,python3-dev,python3-venv" in made[0]
     assert machine.calls().count("buildah rm working-container") == 1
+    assert (machine.folder / "mount" / "etc" / "apt" / "sources.list").read_text().splitlines() == [
+        "deb http://mirror.example/debian bookworm main",
+        "deb http://mirror.example/debian-security bookworm-security main",
+    ]
 
 
 def test_the_image_is_built_from_a_release_with_the_settings_of_the_machine(machine: Machine) -> None:
