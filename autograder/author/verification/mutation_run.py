@@ -90,15 +90,15 @@ class MutationRun:
     def run_mutant(self, mutant: GeneratedMutant, version: str = "") -> MutantResult:
         """Grade a mutant until a check fails."""
         started = time.monotonic()
-        error = ""
         try:
-            killer = next(filter(None, self._stages(mutant)), "")
+            killer, error = next(filter(None, self._stages(mutant)), ""), ""
         except GraderError as failure:
             killer, error = FAILED, str(failure)
-        if killer not in ("", FAILED):
+        result = MutantResult(mutant.id, killer, round(time.monotonic() - started, 2), version, error)
+        if result.killed:
             for location in {(mutant.file, mutant.function), (mutant.file, "")}:
                 self._killers[location][killer] += 1
-        return MutantResult(mutant.id, killer, round(time.monotonic() - started, 2), version, error)
+        return result
 
     def _stages(self, mutant: GeneratedMutant) -> Iterator[str]:
         """Yield the killer of each stage, or "". Fast checks and likely killers come first."""
