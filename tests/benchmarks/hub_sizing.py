@@ -1,7 +1,7 @@
 """Measure the memory and processor time that students need on a hub while several run chapter 02 at the same time.
 
-`sudo .venv/bin/python -m tests.benchmarks.hub_sizing 2` prints a line for each student; docs/jupyterhub.md has the
-figures. The students use the environment of this clone.
+`sudo .venv/bin/python -m tests.benchmarks.hub_sizing 2` prints a line for each student, and the highest sum of their
+memory; docs/jupyterhub.md has the figures. The students use the environment of this clone.
 """
 
 from __future__ import annotations
@@ -63,16 +63,20 @@ def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 2
     with tempfile.TemporaryDirectory(dir="/tmp") as scratch:
         Path(scratch).chmod(0o755)
-        with serving(Path(scratch), course_paths.ROOT) as hub, ThreadPoolExecutor(count) as pool:
-            names, pause = hub.students[:count], Event()
-            runs = {name: pool.submit(run_the_chapter, hub, name) for name in names}
-            peaks = dict.fromkeys(names, (0.0, 0.0))
+        names = [f"student{number}" for number in range(1, count + 1)]
+        with serving(Path(scratch), course_paths.ROOT, names=names) as hub, ThreadPoolExecutor(count) as pool:
+            runs = {name: pool.submit(run_the_chapter, hub, name) for name in hub.students}
+            peaks = dict.fromkeys(hub.students, (0.0, 0.0))
+            peak, pause = 0.0, Event()
             while not all(run.done() for run in runs.values()):
-                for name in names:
-                    peaks[name] = tuple(map(max, peaks[name], usage_of(name)))  # type: ignore[assignment]
+                usages = {name: usage_of(name) for name in hub.students}
+                peak = max(peak, sum(memory for memory, _ in usages.values()))
+                for name, usage in usages.items():
+                    peaks[name] = tuple(map(max, peaks[name], usage))  # type: ignore[assignment]
                 pause.wait(0.5)
             for name, run in runs.items():
                 print(f"{name}: {peaks[name][0]:.0f} MiB, {peaks[name][1]:.0f} core-seconds in {run.result():.0f} s")
+            print(f"all {count}: {peak:.0f} MiB at the same time")
 
 
 if __name__ == "__main__":

@@ -89,13 +89,14 @@ def install_proxy() -> Path:
 
 
 @contextmanager
-def serving(folder: Path, course: Path, port: int = 0) -> Iterator[Hub]:
+def serving(folder: Path, course: Path, port: int = 0, names: Sequence[str] = STUDENTS) -> Iterator[Hub]:
     """Run a hub with separate users on 127.0.0.1. Afterwards, stop it and remove its users.
 
     Args:
         folder: a folder that other users can enter, for all files of the hub.
         course: the students' release after `make setup`, which only root can change.
         port: the port of the hub; a free one by default.
+        names: the students' names, to each of which a suffix is added.
 
     Raises:
         UsageError: this user is not root, other users cannot enter the folders, or the hub does not start.
@@ -111,7 +112,7 @@ def serving(folder: Path, course: Path, port: int = 0) -> Iterator[Hub]:
         if problem := closed_to_other_users(Path(sys.executable).resolve(), path):
             raise UsageError(problem)
     suffix = hashlib.sha256(str(folder).encode()).hexdigest()[:6]  # each clone on a machine can run a hub
-    students = tuple(f"{name}-{suffix}" for name in STUDENTS)
+    students = tuple(f"{name}-{suffix}" for name in names)
     hub = Hub("", secrets.token_urlsafe(9), students, f"{TEACHER}-{suffix}", homes)
     groups = {f"students-{suffix}": students, f"teachers-{suffix}": (hub.teacher,)}
     configuration = state / "jupyterhub_config.py"
