@@ -1,4 +1,4 @@
-"""Containers of an image, which buildah runs as root, without a container runtime."""
+"""Containers of an image, which buildah and bubblewrap run as root, without a container runtime and without cgroups."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-# Through these files, the machine's pip reaches its package index; see assets/image/build.
-MACHINE = (Path("/etc/pip.conf"), Path("/etc/ssl/certs/ca-certificates.crt"))
+# Through these files, pip reaches a mirror or a proxy that the machine uses; see assets/image/build. The certificates
+# are mounted beside the container's own, because dpkg cannot replace a file that is a mount.
+CERTIFICATES = "/run/machine-certificates.pem"
+MACHINE = {"/etc/pip.conf": "/etc/pip.conf", "/etc/ssl/certs/ca-certificates.crt": CERTIFICATES}
 SHOWN_LINES = 60  # of the output of a failed command
 
 
@@ -42,9 +44,19 @@ class Container:
         Returns:
             The process, with any exit status.
         """
-        machine = [word for path in MACHINE if path.exists() for word in ("--volume", f"{path}:{path}:ro")]
+        mounts = {source: target for source, target in MACHINE.items() if Path(source).exists()}
+        machine = [word for source, target in mounts.items() for word in ("--volume", f"{source}:{target}:ro")]
+        if CERTIFICATES in mounts.values():
+            machine += ["--env", f"PIP_CERT={CERTIFICATES}"]
         place = ["--workingdir", folder] if folder else []
         command = ["buildah", "run", "--isolation", "chroot", *machine, *place, self.name, "--", *arguments]
+        return subprocess.run(command, capture_output=True, text=True, check=False)
+
+    def run_with_namespaces(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        """Run a program as root where it can create namespaces. The kernel forbids them in buildah's chroot."""
+        mounts = ["--bind", str(self.root), "/", "--dev-bind", "/dev", "/dev", "--bind", "/proc", "/proc"]
+        variables = ["--clearenv", "--setenv", "PATH", "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"]
+        command = ["bwrap", "--die-with-parent", *mounts, *variables, "--setenv", "HOME", "/root", "--", *arguments]
         return subprocess.run(command, capture_output=True, text=True, check=False)
 
     def copy(self, source: Path, target: str, owner: str = "root") -> None:

@@ -1,4 +1,4 @@
-"""The image of a student release, built and run by buildah.
+"""The image of a student release, and Gradescope's autograder, in roots that buildah builds.
 
 ROS2_IMAGE names an image that `make image` has built. Otherwise the tests build one, which takes minutes.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import secrets
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -34,6 +35,7 @@ SCRIPTS = course_paths.ROOT / "assets" / "image"
 ASSIGNMENT = "02_nodes"
 COURSE = "/home/student/course"
 STUDENT = "1000:1000"
+GRADESCOPE_ASSIGNMENT = "01_package_structure"
 # Starts containers as Docker does, apart from their network and memory.
 HUB = """\
 from jupyterhub.spawner import SimpleLocalProcessSpawner
@@ -86,6 +88,12 @@ def image(tmp_path_factory: pytest.TempPathFactory) -> str:
     built = subprocess.run([SCRIPTS / "build", release, name], capture_output=True, text=True, check=False)
     assert built.returncode == 0, end_of(built)
     return name
+
+
+@pytest.fixture(scope="module")
+def base() -> str:
+    """The name of a base image: a Debian or Ubuntu with Python."""
+    return subprocess.check_output([SCRIPTS / "base"], text=True).strip()
 
 
 @pytest.fixture(scope="module")
@@ -164,3 +172,39 @@ def test_a_hub_starts_a_server_in_the_image(course: Container, image: str, tmp_p
         (printed,) = student.run("mine.ipynb", ROS_CELL)
         assert printed == "hello\n"
         assert student.in_terminal("type -t autograder ros2 colcon | sort -u") == "file"
+
+
+@pytest.fixture(scope="module")
+def gradescope(base: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Container]:
+    """A container of the base after `setup.sh`, with the folder `/autograder` as Gradescope lays it out."""
+    folder = tmp_path_factory.mktemp("gradescope")
+    ran = CliRunner().invoke(group, ["gradescope", GRADESCOPE_ASSIGNMENT, "--out", str(folder / "upload.zip")])
+    assert ran.exit_code == 0, ran.output
+    subprocess.run(["unzip", "-q", str(folder / "upload.zip"), "-d", str(folder / "source")], check=True)
+    with container(base) as made:
+        made.copy(folder / "source", "/autograder/source")
+        done = made.run("bash", "/autograder/source/setup.sh")
+        assert done.returncode == 0, end_of(done)
+        shutil.copy2(folder / "source" / "run_autograder", made.root / "autograder")
+        (made.root / "autograder" / "results").mkdir()
+        yield made
+
+
+@pytest.mark.promise("The nightly tests also run `setup.sh` and `run_autograder` in a Debian")
+def test_gradescopes_autograder_grades_in_a_root_that_its_own_script_has_set_up(gradescope: Container) -> None:
+    home = gradescope.root / "autograder"
+    write_reference(suites.hidden(GRADESCOPE_ASSIGNMENT).sources, home / "submission" / "ws")
+    done = gradescope.run_with_namespaces("/autograder/run_autograder")
+    assert done.returncode == 0, end_of(done)
+    report = json.loads((home / "results" / "results.json").read_text())
+    assert report["score"] == suites.hidden(GRADESCOPE_ASSIGNMENT).max_score
+
+
+def test_gradescopes_autograder_gives_no_mark_where_namespaces_are_forbidden(gradescope: Container) -> None:
+    results = gradescope.root / "autograder" / "results" / "results.json"
+    results.unlink(missing_ok=True)
+    (gradescope.root / "autograder" / "submission").mkdir(exist_ok=True)
+    done = gradescope.run("/autograder/run_autograder")
+    assert done.returncode == 1, end_of(done)
+    assert "cannot isolate submissions" in done.stderr
+    assert not results.exists()
