@@ -1,6 +1,6 @@
 """Measure the memory and processor time that students need on a hub while several run chapter 02 at the same time.
 
-`sudo .venv/bin/python -m tests.benchmarks.hub_sizing 2` prints a line for each student, and the highest sum of their
+`sudo .venv/bin/python -m tests.benchmarks.hub_sizing 30` prints a line for each student, and the highest sum of their
 memory; docs/jupyterhub.md has the figures. The students use the environment of this clone.
 """
 
