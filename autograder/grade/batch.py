@@ -13,7 +13,7 @@ from autograder.grade.job import Job
 from autograder.grade.parallel import map_parallel
 from autograder.grade.pipeline import grade_submission
 from autograder.grade.store import LOG, NOTEBOOK, RESULT, remove_unfinished, write_result
-from autograder.result.class_folder import why_not_a_folder
+from autograder.result.class_folder import folder_name_problem
 from autograder.result.model import Result, Status, from_json
 from autograder.run.sandbox import Isolation
 from autograder.submission.intake.exercises import exercises_of
@@ -64,7 +64,7 @@ def discover(paths: tuple[Path, ...], assignment: str) -> Discovered:
             inside, beside = _of_folder(path, assignment)
             submissions += inside
             others += beside
-    refused = {student: why for student, _ in submissions if (why := why_not_a_folder(student))}
+    refused = {student: why for student, _ in submissions if (why := folder_name_problem(student))}
     others += [(path.name, refused[student]) for student, path in submissions if student in refused]
     submissions = [(student, path) for student, path in submissions if student not in refused]
     names = [student for student, _ in submissions]
