@@ -46,7 +46,7 @@ def in_own_sandbox(job: Job) -> WorkerReport:
 def view(job: Job) -> View:
     """Return the view of a job's worker: the submission, its chapter, and the files that its suite reads."""
     chapter = course_paths.chapter(job.assignment)
-    own = fingerprint.places(job.assignment, job.suite.reads)
+    own = fingerprint.suite_paths(job.assignment, job.suite.reads)
     built = (Path(job.options.built),) if job.options.built else ()
     return View(shown=(chapter, *own, *built), submitted=(job.path,))
 
