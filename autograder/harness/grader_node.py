@@ -21,7 +21,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 
 from autograder.harness.inflow import Inflow
-from autograder.ros.discovery import announcing_often
+from autograder.ros.discovery import fast_discovery
 from autograder.run.lockstep.lockstep_host import channels
 
 DEPTH = 1000
@@ -70,7 +70,7 @@ class GraderNode:
     def __init__(self, domain: int, on_exchange: OnExchange = lambda what, name, message: None) -> None:
         self.on_exchange = on_exchange
         self.context = Context()
-        with announcing_often():
+        with fast_discovery():
             rclpy.init(args=[], context=self.context, domain_id=domain)
             self.node = Node(NAME, context=self.context, enable_rosout=False, start_parameter_services=False)
         self.publishers: dict[str, Any] = {}

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from autograder.notebook.notices import Notice
-from autograder.ros.discovery import announcing_often
+from autograder.ros.discovery import fast_discovery
 from sim.grading import grading
 
 HIDDEN_TOPICS = ("/rosout", "/parameter_events", "/clock")  # of nearly every node; they would clutter the drawing
@@ -87,7 +87,7 @@ def graph(seconds: float = 10.0) -> Graph | Notice:
     from rclpy.node import Node
 
     context = Context()
-    with announcing_often():
+    with fast_discovery():
         rclpy.init(context=context)
     try:
         observer = Node("_graph", context=context, start_parameter_services=False, enable_rosout=False)

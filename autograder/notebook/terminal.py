@@ -18,7 +18,7 @@ from pathlib import Path
 
 from autograder.diagnosis import OK
 from autograder.exceptions import UsageError
-from autograder.ros.discovery import announcing_often
+from autograder.ros.discovery import fast_discovery
 from autograder.submission.exercise_stubs import explain
 from sim.grading import grading
 
@@ -77,7 +77,7 @@ def running(
         return
     texts = [until] if isinstance(until, str) else until
     # All programs in the block announce themselves often, so that `ros2 node list` finds them within a second.
-    with announcing_often(), _Terminal(command, Path(workspace)) as terminal:
+    with fast_discovery(), _Terminal(command, Path(workspace)) as terminal:
         terminal.wait(lambda: all(text in terminal.output() for text in texts), seconds)
         terminal.show()
         missing = [text for text in texts if text not in terminal.output()]

@@ -25,7 +25,7 @@ from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from rclpy.validate_node_name import validate_node_name
 
-from autograder.ros.discovery import announcing_often
+from autograder.ros.discovery import fast_discovery
 from autograder.ros.ros2.exceptions import Ros2Error
 
 NODE_NAME_PREFIX = "_ros2cli"
@@ -139,7 +139,7 @@ def open_session(args: argparse.Namespace, *, node_name: str | None = None) -> I
         raise Ros2Error(f"ROS_DOMAIN_ID is '{domain}', but must be a number from 0 to {LAST_DOMAIN}")
     parameters = [Parameter("use_sim_time", value=True)] if getattr(args, "use_sim_time", False) else []
     # Python's own handlers stay: Ctrl-C then leaves the context alive, so that a goal can still be cancelled.
-    with announcing_often():
+    with fast_discovery():
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     try:
         name = node_name or f"{NODE_NAME_PREFIX}_{os.getpid()}"
