@@ -25,7 +25,7 @@ SOME = range(0, 1000, 25)  # for slow tests
 
 
 def _allowed(name: str, value: float) -> bool:
-    specification = parameters.WANTED[name]
+    specification = parameters.SPECIFICATIONS[name]
     return (
         specification.low is not None
         and specification.high is not None
@@ -44,12 +44,12 @@ def test_05_starts_with_values_that_are_allowed_and_fit_each_other() -> None:
 
 def test_05_asks_for_changes_that_only_the_distances_forbid() -> None:
     for seed in SEEDS:
-        above, below = changes.draw_beyond(random.Random(seed))
+        above, below = changes.draw_contradictions(random.Random(seed))
         assert _allowed("safety_distance", above)
         assert _allowed("slow_distance", below)
         assert above > 1.0
         assert below < 0.5
-        safety, slow, far, near = changes.draw_four(random.Random(seed))
+        safety, slow, far, near = changes.draw_distances(random.Random(seed))
         assert _allowed("safety_distance", far)
         assert _allowed("slow_distance", near)
         assert near < safety < slow < far
@@ -58,7 +58,7 @@ def test_05_asks_for_changes_that_only_the_distances_forbid() -> None:
 
 
 def test_05_asks_for_values_outside_of_each_range() -> None:
-    limited = [specification for specification in parameters.WANTED.values() if specification.low is not None]
+    limited = [specification for specification in parameters.SPECIFICATIONS.values() if specification.low is not None]
     for seed in SEEDS:
         for specification in limited:
             low, high = declaration._outside(specification, random.Random(seed))
