@@ -177,7 +177,7 @@ def _is_submission(folder: Path, assignment: str) -> bool:
     if any((folder / name).exists() for name in (f"{assignment}.ipynb", "ws", "src")):
         return True
     exercises = exercises_of(assignment)
-    own = {path.parts[0] for path in exercises.beside if len(path.parts) > 1} if exercises is not None else ()
+    own = {path.parts[0] for path in exercises.other_files if len(path.parts) > 1} if exercises is not None else ()
     return any((folder / name).is_dir() for name in own)  # figures, which each release of the chapter has
 
 

@@ -6,7 +6,7 @@ import json
 import math
 from typing import Any
 
-from autograder.submission.json_size import holds_more
+from autograder.submission.json_size import exceeds
 
 RESULT_VALUES = 100_000  # of a result; those of the course have 4,000
 RUN_VALUES = 100_000  # of a run for the player, whose columns are packed
@@ -27,7 +27,7 @@ def read_json(data: bytes, most: int, *, is_strict: bool = True) -> Any:
         RecursionError: it is nested too deep.
     """
     text = data.decode()
-    if holds_more(data, most, 4 * most + 4):  # of quotation marks, keys and values have as many if all are strings
+    if exceeds(data, most, 4 * most + 4):  # of quotation marks, keys and values have as many if all are strings
         raise ValueError(f"it holds more than {most:,} values")
     if not is_strict:
         return json.loads(text)

@@ -1,8 +1,7 @@
 """The pytest plug-in of a grading: it turns a suite's checks into results, and other errors into failures.
 
-A check that raises any other exception fails if the student's data was read: if the check, or one of its fixtures,
-passed a door of `autograder.submission.reading`. The instructor is told. Without such data, it is a failure of the
-grader.
+A check that raises any other exception fails if the check, or one of its fixtures, read the student's data in a block
+of `autograder.submission.reading`. The instructor is told. Without such data, it is a failure of the grader.
 
 The checks of every chapter, visible and hidden, have its fixtures. A chapter's own fixtures are in its conftest.py, or
 in the one module that uses them. `autograder.harness.Shared` keeps a harness for several checks.
@@ -28,7 +27,7 @@ from autograder.result.artifacts import Artifacts
 from autograder.result.model import CheckResult
 from autograder.run import patience
 from autograder.run.workspace import Workspace
-from autograder.submission.reading import in_hand, is_of_data, is_of_the_machine, put_down
+from autograder.submission.reading import clear_recorded_data, is_data_error, is_machine_error, recorded_data
 from autograder.suite import Check, CheckFailed, Outcome, check_of
 
 
@@ -69,7 +68,7 @@ class GradingPlugin:
         self.diagnosis: Diagnosis = OK
         self.failures: list[str] = []
         self.unjudged: dict[str, str] = {}
-        self._held_by: dict[str, tuple[str, ...]] = {}  # data read by each fixture
+        self._data_by_fixture: dict[str, tuple[str, ...]] = {}  # data read by each fixture
         self._seconds: dict[str, float] = {}
 
     @property
@@ -119,7 +118,7 @@ class GradingPlugin:
 
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         check = _declared_by(item)
-        put_down()
+        clear_recorded_data()
         patience.require()
         self._workspace.exchanges.take()  # those before this check are not its own
         for needed in check.needs if check else ():
@@ -129,7 +128,7 @@ class GradingPlugin:
     @pytest.hookimpl(hookwrapper=True)
     def pytest_fixture_setup(self, fixturedef: Any) -> Iterator[None]:
         yield
-        self._held_by[fixturedef.argname] = in_hand()
+        self._data_by_fixture[fixturedef.argname] = recorded_data()
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         if report.failed:
@@ -158,7 +157,7 @@ class GradingPlugin:
             verdict = CheckResult.of(check, Outcome.FAILED, diagnosis.sentence, seconds=seconds, hints=diagnosis.hints)
         elif isinstance(error, pytest.skip.Exception):
             verdict = CheckResult.not_checked(check, str(error), seconds=seconds)
-        elif self._is_over_data(error) and (data := self._in_hand(item)):
+        elif self._is_over_data(error) and (data := self._data_of(item)):
             self.unjudged[check.id] = "".join(traceback.format_exception(error))
             sentence = (
                 f"{data} could not be judged, because it is nothing that this check expects "
@@ -179,12 +178,12 @@ class GradingPlugin:
     def _is_over_data(self, error: BaseException) -> bool:
         """Return whether the student's data may have caused an exception. In the last try, any exception counts."""
         any_can = self._is_last and isinstance(error, Exception) and not isinstance(error, AutograderError)
-        return is_of_data(error) or (any_can and not is_of_the_machine(error))
+        return is_data_error(error) or (any_can and not is_machine_error(error))
 
-    def _in_hand(self, item: pytest.Item) -> str:
-        """Return the name of the data that came last into a check's hands; an empty string if it has none."""
-        fixtures = (self._held_by.get(name, ()) for name in getattr(item, "fixturenames", ()))
-        return next(reversed([*itertools.chain(*fixtures), *in_hand()]), "")
+    def _data_of(self, item: pytest.Item) -> str:
+        """Return the name of the data that a check or its fixtures read last, or an empty string."""
+        fixtures = (self._data_by_fixture.get(name, ()) for name in getattr(item, "fixturenames", ()))
+        return next(reversed([*itertools.chain(*fixtures), *recorded_data()]), "")
 
 
 def _declared_by(item: pytest.Item) -> Check | None:

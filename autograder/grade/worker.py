@@ -134,7 +134,7 @@ class Grading:
                 # The notebook could write links and devices to all of this. Only plain files of it are taken.
                 written = intake.read_packages(self._folder / "ws")
                 self._clear()
-                counted = intake.what_counts(submission, written, self._job.assignment)
+                counted = intake.graded_packages(submission, written, self._job.assignment)
                 packages, self._notices = counted.packages, counted.notices
         assert packages is not None, "only a notebook creates packages that were not submitted"
         source = self._workspace.root / "src"

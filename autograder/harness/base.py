@@ -24,7 +24,7 @@ from autograder.ros.domains import Domain
 from autograder.run.lockstep.failures import diagnose_exit
 from autograder.run.sandbox import Mount, Process
 from autograder.run.workspace import Workspace
-from autograder.submission.reading import hold
+from autograder.submission.reading import record_data
 
 MATCH_SECONDS = 30.0  # real time for all endpoints to be matched
 NAME_SECONDS = 5.0  # real time for the names of their nodes
@@ -155,7 +155,7 @@ class Harness(ExitStack, ABC):
         self.callback(self._grader_node.close)
         self._actions = Actions(self._grader_node, self._arrival_seconds)
         self.node = self._grader_node.node
-        hold("What your program showed of itself")
+        record_data("What your program showed of itself")
         try:
             self._start()
             self._match()
@@ -167,7 +167,7 @@ class Harness(ExitStack, ABC):
     @property
     def output(self) -> str:
         """The output of the programs so far, including their logs."""
-        hold("What your program printed")
+        record_data("What your program printed")
         return "".join(process.output for process in self.processes)
 
     def require_running(self) -> None:
@@ -201,7 +201,7 @@ class Harness(ExitStack, ABC):
 
     def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[ReceivedMessage]:
         """Return the messages on a topic of `subscribes` after `since` and up to `until`, in s since the start."""
-        hold(f"What your program sent on {topic}")
+        record_data(f"What your program sent on {topic}")
         received = self._received[topic]
         first = bisect_right(received, since, key=_SECONDS)
         return received[first : bisect_right(received, until, first, key=_SECONDS)]
@@ -216,7 +216,7 @@ class Harness(ExitStack, ABC):
         Returns:
             The response, or None without such a service of that type, or without an answer in `seconds` of ROS time.
         """
-        hold(f"What {name} answered")
+        record_data(f"What {name} answered")
         answers: list[Any] = []
         began = self.seconds
         client = self._grader_node.client(service_type, name)
@@ -232,7 +232,7 @@ class Harness(ExitStack, ABC):
 
         Its `accepted` stays None if no server comes within `seconds` of ROS time.
         """
-        hold(f"What {name} answered")
+        record_data(f"What {name} answered")
         clients = self._actions.prepare(action_type, name)
         if not all(client is not None and self._reach(client, seconds) for client in clients):
             return Goal()

@@ -28,7 +28,7 @@ from autograder.run.sandbox import Mount, Process, Sandbox, procfs
 from autograder.run.sandbox.launcher import launch
 from autograder.run.sandbox.limits import LAUNCH
 from autograder.run.workspace import Workspace
-from autograder.submission.reading import hold, reading
+from autograder.submission.reading import reading, record_data
 
 RUNNER = Path(__file__).with_name("launch_runner.py")
 ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
@@ -146,7 +146,7 @@ class LaunchHarness(contextlib.ExitStack):
         profile = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
         for topic, kind in self._subscribes.items():
             self._grader_node.subscribe(topic, kind, _keep_in(self._received[topic]), profile)
-        hold("What the launch started")
+        record_data("What the launch started")
         self._pipe, theirs = os.pipe()
         self.callback(os.close, self._pipe)
         os.set_blocking(self._pipe, False)
@@ -162,7 +162,7 @@ class LaunchHarness(contextlib.ExitStack):
     @property
     def output(self) -> str:
         """The output of the launch and its processes so far."""
-        hold("What the launch printed")
+        record_data("What the launch printed")
         return self.process.output
 
     @property
@@ -207,7 +207,7 @@ class LaunchHarness(contextlib.ExitStack):
 
     def messages(self, topic: str) -> list[Any]:
         """Return the messages that came on a topic of `subscribes`."""
-        hold(f"What was sent on {topic}")
+        record_data(f"What was sent on {topic}")
         return self._received[topic]
 
     def parameters(self, node: str, names: Collection[str], seconds: float = ANSWER_SECONDS) -> dict[str, Any] | None:

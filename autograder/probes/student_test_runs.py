@@ -40,7 +40,7 @@ from autograder.run.sandbox.launcher import current_isolation, launch
 from autograder.run.sandbox.limits import TEST_RUN
 from autograder.run.workspace import Workspace
 from autograder.submission.intake import read_packages
-from autograder.submission.reading import hold, reading
+from autograder.submission.reading import reading, record_data
 
 RUNNER = Path(__file__).with_name("pytest_runner.py")
 STANDINS = Path(autograder.ros.__file__).parent / "standins"
@@ -75,7 +75,7 @@ def run(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun]) ->
         StudentError: the disk is full.
         GraderError: no domain is free to listen in.
     """
-    hold("What your tests reported")
+    record_data("What your tests reported")
     with ThreadPoolExecutor(JOBS) as pool:
         once = partial(_run, workspace, source)
         reports = list(pool.map(once, wanted_runs))
@@ -135,7 +135,7 @@ def _run_in(place: Path, workspace: Workspace, source: Source, test_run: TestRun
             spec = _confined(replace(there, domain=sniffer.domain), folder, test_run, place / "home")
             report = _start_pytest(spec, test_run, arguments, launches)
             report = replace(report, joined_domain=sniffer.take_announcements())
-    is_secret = test_run.version is not None and not test_run.shown
+    is_secret = test_run.version is not None and not test_run.is_public
     return report.closed(source.test_names(test_run.files)) if is_secret else report
 
 
@@ -153,7 +153,7 @@ def _arguments(source: Source, folder: Path, test_run: TestRun, launches: bool) 
     plain = ["-c", "/dev/null", "--rootdir", str(folder), "--confcutdir", str(folder)]
     plain += [word for plugin in _launch_plugins() for word in ("-p", plugin)] if launches else []
     quiet = ["-p", "no:cacheprovider", "-q", "--tb=short", "-o", "junit_family=xunit2"]
-    asked = [*(["-x"] if test_run.first_failure else []), *([] if test_run.conftest else ["--noconftest"])]
+    asked = [*(["-x"] if test_run.exit_first else []), *([] if test_run.conftest else ["--noconftest"])]
     asked += [
         f"--deselect=test/{module}.py::{rest}" for module, _, rest in (n.partition("::") for n in test_run.without)
     ]

@@ -227,11 +227,11 @@ def test_an_error_in_handling_a_student_s_data_fails_only_that_check_and_is_logg
     grade: Grade, phase: str
 ) -> None:
     plugin = grade(f"""
-        from autograder.submission.reading import hold
+        from autograder.submission.reading import record_data
 
         @pytest.fixture(scope="{"module" if phase == "module" else "function"}")
         def answer():
-            if "{phase}" != "check": hold("What /add answered")
+            if "{phase}" != "check": record_data("What /add answered")
 
         @check(points=1, group="g")
         def test_reads_first(answer):
@@ -240,7 +240,7 @@ def test_an_error_in_handling_a_student_s_data_fails_only_that_check_and_is_logg
         @check(points=1, group="g")
         def test_reads(answer):
             '''It is so.'''
-            if "{phase}" == "check": hold("What /add answered")
+            if "{phase}" == "check": record_data("What /add answered")
             secret = 10**400 * 1.0
 
         @check(points=1, group="g")
@@ -257,12 +257,12 @@ def test_an_error_in_handling_a_student_s_data_fails_only_that_check_and_is_logg
 
 def test_a_fraction_that_a_student_s_data_make_impossible_fails_only_that_check(grade: Grade) -> None:
     plugin = grade("""
-        from autograder.submission.reading import hold
+        from autograder.submission.reading import record_data
 
         @check(points=1, group="g")
         def test_reads():
             '''It is so.'''
-            hold("What /add answered")
+            record_data("What /add answered")
             expect(False, "wrong", fraction=float("nan"))
     """)
     assert plugin.results["reads"].outcome is Outcome.FAILED
@@ -273,12 +273,12 @@ def test_an_error_without_a_student_s_data_is_the_grader_s_failure_even_after_a_
     grade: Grade,
 ) -> None:
     plugin = grade("""
-        from autograder.submission.reading import hold
+        from autograder.submission.reading import record_data
 
         @check(points=1, group="g")
         def test_reads():
             '''It is so.'''
-            hold("What /add answered")
+            record_data("What /add answered")
 
         @check(points=1, group="g")
         def test_other():
@@ -292,12 +292,12 @@ def test_an_error_without_a_student_s_data_is_the_grader_s_failure_even_after_a_
 @pytest.mark.parametrize("error", ["GraderError('lost')", "OSError(5, 'EIO')", "RuntimeError()", "SystemExit(0)"])
 def test_an_error_that_data_cannot_cause_is_the_grader_s_failure(grade: Grade, error: str) -> None:
     plugin = grade(f"""
-        from autograder.submission.reading import hold
+        from autograder.submission.reading import record_data
 
         @check(points=1, group="g")
         def test_reads():
             '''It is so.'''
-            hold("What /add answered")
+            record_data("What /add answered")
             raise {error}
         """)
     assert (len(plugin.failures), plugin.unjudged) == (1, {})
@@ -306,7 +306,7 @@ def test_an_error_that_data_cannot_cause_is_the_grader_s_failure(grade: Grade, e
 def test_an_error_of_a_program_or_the_machine_counts_as_the_program_s_in_the_last_try(grade: Grade) -> None:
     text = """
         from autograder.exceptions import DoubtfulError
-        from autograder.submission.reading import hold
+        from autograder.submission.reading import record_data
 
         @check(points=1, group="g")
         def test_matches():
@@ -316,7 +316,7 @@ def test_an_error_of_a_program_or_the_machine_counts_as_the_program_s_in_the_las
         @check(points=1, group="g")
         def test_reads():
             '''It is so.'''
-            hold("What /add answered")
+            record_data("What /add answered")
             raise RuntimeError
 
         @check(points=1, group="g")

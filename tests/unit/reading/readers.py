@@ -265,7 +265,7 @@ READERS: dict[str, Reader] = {
     "metadata of an installed package": Reader(
         _written(
             "install/wheels/lib/python3.12/site-packages/wheels-1.0.egg-info/entry_points.txt",
-            lambda folder: installed.look(folder / "install", "wheels"),
+            lambda folder: installed.inspect_package(folder / "install", "wheels"),
         ),
         altered(METADATA),
         (b"[console_scripts]\na\n", b"a=b\n[console_scripts]\nc=d\n", b"[console_scripts]\na=b\n c=d\n[a\n"),
