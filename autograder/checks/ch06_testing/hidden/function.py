@@ -1,4 +1,4 @@
-"""Tests of the pure function: do they notice when safe_speed breaks its contract?"""
+"""Checks that tests of the pure function fail if safe_speed breaks its contract."""
 
 from __future__ import annotations
 

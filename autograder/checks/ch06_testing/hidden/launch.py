@@ -1,4 +1,4 @@
-"""The integration test: does it notice when what is launched is not what was promised?"""
+"""Checks that the integration test fails if the launched system breaks the contract."""
 
 from __future__ import annotations
 
