@@ -48,7 +48,7 @@ def prefix(tmp_path: Path) -> Path:
 
 def test_only_cmake_files_with_foreign_paths_are_rewritten_and_only_once(prefix: Path) -> None:
     folder = prefix / "share" / "std_msgs" / "cmake"
-    assert [path.name for path in patch_wheels.baked_files(prefix)] == ["baked.cmake"]
+    assert [path.name for path in patch_wheels.unpatched_cmake_files(prefix)] == ["baked.cmake"]
     assert patch_wheels.patch_wheels(prefix) == 1
     assert patch_wheels.patch_wheels(prefix) == 0
     text = (folder / "baked.cmake").read_text()
@@ -64,7 +64,7 @@ def test_a_prefix_without_wheels_is_not_changed(tmp_path: Path) -> None:
 
 
 def test_the_environment_of_the_tests_has_no_foreign_paths() -> None:
-    assert patch_wheels.baked_files(Path(sys.prefix)) == []
+    assert patch_wheels.unpatched_cmake_files(Path(sys.prefix)) == []
 
 
 @pytest.mark.promise(
