@@ -85,7 +85,7 @@ def test_08_launches_with_values_within_the_ranges() -> None:
 def test_08_shows_obstacles_that_a_lidar_measures_and_the_robot_turns_at() -> None:
     safety = capstone.PARAMETERS[capstone.CONTROLLER]["safety_distance"].default
     for seed in SEEDS:
-        for distance, narrow in commands.draw_rooms(random.Random(seed)).values():
+        for distance, narrow in commands.draw_distances(random.Random(seed)).values():
             assert RANGE_MIN < distance < safety
             assert RANGE_MIN < narrow - 0.4 < narrow < RANGE_MAX
 
