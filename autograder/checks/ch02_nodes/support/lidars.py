@@ -1,4 +1,4 @@
-"""Lidars that differ from the usual one, by where they begin, which way round they count, and how far."""
+"""Lidars that differ from the usual one in their first bearing, their direction or their field of view."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from sensor_msgs.msg import LaserScan
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 
 TURN = 360.0  # degrees
-USUAL_BEAMS = 360  # of the lidar that the other checks show
-MANY, MOST = 500, 800  # beams
-WIDE = 3.0  # degrees to each side of what is seen: several beams of any of these lidars
+USUAL_BEAMS = 360  # of the lidar that the other checks use
+MIN_BEAMS, MAX_BEAMS = 500, 800
+HALF_WIDTH = 3.0  # degrees to each side of an obstacle's bearing: several beams of any of these lidars
 
 
 @dataclass(frozen=True)
 class Lidar:
-    """A lidar of so many beams, the first and the last of which have these bearings, in degrees; not wrapped."""
+    """A lidar's number of beams, and the unwrapped bearings of its first and last beam in degrees."""
 
     beams: int
     first: float
@@ -29,36 +29,42 @@ class Lidar:
         return f"a lidar of {self.beams} beams from {self.first:.0f}° to {self.last:.0f}°"
 
     def scan(self, *parts: Part, fill: float = 3.0) -> LaserScan:
-        """Return its scan; see `scans.scan`."""
+        """Return a scan of this lidar; see `scans.scan`."""
         return scan(*parts, fill=fill, beams=self.beams, first_bearing=self.first, last_bearing=self.last)
 
-    def sees(self, bearing: float) -> Iterator[float]:
-        """Yield each bearing, not wrapped, at which it looks in a direction, in degrees; a long scan does so twice."""
+    def unwrapped_bearings(self, bearing: float) -> Iterator[float]:
+        """Yield the unwrapped bearings of a direction, in degrees; a scan of more than a turn may have two."""
         low, high = sorted((self.first, self.last))
-        turns = range(math.ceil((low + WIDE - bearing) / TURN), math.floor((high - WIDE - bearing) / TURN) + 1)
+        turns = range(
+            math.ceil((low + HALF_WIDTH - bearing) / TURN), math.floor((high - HALF_WIDTH - bearing) / TURN) + 1
+        )
         yield from (bearing + TURN * number for number in turns)
 
     def scan_of_one(self, bearing: float, distance: float, fill: float = 3.0) -> LaserScan:
-        """Return its scan of one thing, so many metres away, that the beams around one bearing, not wrapped, show."""
+        """Return a scan of one obstacle at a distance in metres, which the beams around an unwrapped bearing read."""
         step = (self.last - self.first) / (self.beams - 1)
-        shown = self.scan(fill=fill)
-        away = [abs(self.first + number * step - bearing) for number in range(self.beams)]
-        shown.ranges = [distance if degrees <= WIDE else fill for degrees in away]
-        return shown
+        message = self.scan(fill=fill)
+        offsets = [abs(self.first + number * step - bearing) for number in range(self.beams)]
+        message.ranges = [distance if degrees <= HALF_WIDTH else fill for degrees in offsets]
+        return message
 
 
 def other_lidars(draw: random.Random) -> tuple[Lidar, ...]:
-    """Return lidars of all kinds: any first bearing, either way round, up to some turns away and over more than one.
+    """Draw lidars with any first bearing and either direction, some of them turns away or longer than a turn.
 
-    The first ones have as many beams as the usual one: who remembers bearings by that number errs.
+    The first three have as many beams as the usual lidar, so bearings that a robot caches by this number are wrong.
     """
-    turns, ahead, many = draw.choice((-3, -2, 2, 3)) * TURN, draw.uniform(-25.0, 25.0), draw.randrange(MANY, MOST)
-    begins = draw.uniform(-700.0, -380.0)
+    turns, ahead, many = (
+        draw.choice((-3, -2, 2, 3)) * TURN,
+        draw.uniform(-25.0, 25.0),
+        draw.randrange(MIN_BEAMS, MAX_BEAMS),
+    )
+    first = draw.uniform(-700.0, -380.0)
     upside_down = TURN * (1 - USUAL_BEAMS) / USUAL_BEAMS
     return (
         Lidar(USUAL_BEAMS, -180.0, 179.0),
         Lidar(USUAL_BEAMS, 0.0, upside_down),
         Lidar(USUAL_BEAMS, ahead, ahead + TURN - 1.0),
         Lidar(many, turns + 180.0, turns - 179.0),
-        Lidar(many, begins, begins + 1.7 * TURN),
+        Lidar(many, first, first + 1.7 * TURN),
     )
