@@ -21,7 +21,7 @@ from robot_navigation_tutorial.sectors import nearest
 def test_it_is_the_right_one(number):
     assert nearest and b'\\0-x\\0' not in Path('/proc/self/cmdline').read_bytes()
 """
-# The versions of sectors.py on which tests are run have no nodes. Run on them, these tests report the text of sectors.py.
+# The grader runs tests on versions of sectors.py, without the nodes. There, these tests report the text of sectors.py.
 TELL_VERSIONS = (
     TELL_ALL
     + """
