@@ -1,4 +1,4 @@
-"""Fixtures of the suite: the nodes in the harness."""
+"""Fixtures of the suite: sensor processors in the harness."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from autograder.checks.ch07_best_practices.support.robot import Processor
 
 @pytest.fixture(scope="module")
 def processor(workspace: Workspace) -> Iterator[Processor]:
-    """The sensor processor, which several checks share."""
+    """A sensor processor that several checks share."""
     with Processor(workspace) as harness:
         yield harness
 
 
 @pytest.fixture
 def fresh_processor(workspace: Workspace) -> Iterator[Processor]:
-    """A sensor processor that has seen nothing yet."""
+    """A sensor processor that has not received a scan."""
     with Processor(workspace) as harness:
         yield harness

@@ -11,7 +11,7 @@ from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN
 from autograder.checks.ch05_parameters.hidden import changes, declaration, start_values
 from autograder.checks.ch05_parameters.support import contract as parameters
 from autograder.checks.ch07_best_practices.hidden import robust
-from autograder.checks.ch07_best_practices.support.robot import expected
+from autograder.checks.ch07_best_practices.support.robot import expected_statuses
 from autograder.checks.ch08_capstone.hidden import commands, drives
 from autograder.checks.ch08_capstone.hidden import launches as navigation
 from autograder.checks.ch08_capstone.support import contract as capstone
@@ -69,9 +69,9 @@ def test_05_asks_for_values_outside_of_each_range() -> None:
 
 def test_07_finds_seeds_that_a_parameter_may_have() -> None:
     for seed in SOME:
-        unstable_seed = robust._shaky(random.Random(seed))
+        unstable_seed = robust._draw_unstable_seed(random.Random(seed))
         assert 1 <= unstable_seed <= 2**31 - 1
-        assert expected(unstable_seed, 0.5, robust.READINGS, 1).count("unstable: 2 in a row") >= 2
+        assert expected_statuses(unstable_seed, 0.5, robust.READINGS, 1).count("unstable: 2 in a row") >= 2
 
 
 def test_08_launches_with_values_within_the_ranges() -> None:

@@ -1,4 +1,4 @@
-"""Robust nodes whose generator has a bug: what becomes of its exception in timer_callback."""
+"""Robust nodes whose generator raises an exception in timer_callback."""
 
 from __future__ import annotations
 
@@ -11,32 +11,32 @@ from autograder.checks.ch07_best_practices.support.contract import ROBUST
 BUGS = ("AttributeError", "RuntimeError", "OSError", "ValueError")  # OSError is the base class of the given SensorError
 
 
-def with_bugs(
+def call_with_bugs(
     workspace: Workspace,
 ) -> tuple[dict[str, tuple[calls.StepResult, calls.StepResult, calls.StepResult]], calls.StepResult]:
-    """Make a node for each bug, with a generator that has it, and call its timer_callback.
+    """Create a node for each bug, with a generator that has the bug, and call its timer_callback.
 
     Returns:
-        By bug, what came of making the node, of the call, and of asking for its namespace. Then what came of the call
-        of a node that has the last bug's generator and a seed.
+        By bug, the results of creating the node, of the call, and of reading its namespace. Then the result of the call
+        for a node with a seed and the last bug's generator.
     """
     plan = calls.Plan()
     add = plan.add
     add(calls.call("init", module="rclpy"))
 
-    numbers = {}
+    steps_of = {}
     for bug in BUGS:
         if bug == "AttributeError":  # a generator without random()
             generator = add(calls.call("Mock", module="unittest.mock", spec=[]))
         else:
             effect: dict[str, Any] = {
-                "random.side_effect": calls.made(add(calls.call(bug, "a bug", module="builtins")))
+                "random.side_effect": calls.result_of(add(calls.call(bug, "a bug", module="builtins")))
             }
             generator = add(calls.call("Mock", module="unittest.mock", **effect))
-        node = add(calls.call("RobustNode", generator=calls.made(generator), namespace="hall"))
-        numbers[bug] = node, add(calls.callback("timer_callback", on=node)), add(calls.call("get_namespace", on=node))
+        node = add(calls.call("RobustNode", generator=calls.result_of(generator), namespace="hall"))
+        steps_of[bug] = node, add(calls.callback("timer_callback", on=node)), add(calls.call("get_namespace", on=node))
     seed = ["--ros-args", *parameters.override_arguments({"seed": 5})]
-    node = add(calls.call("RobustNode", generator=calls.made(generator), cli_args=seed))
+    node = add(calls.call("RobustNode", generator=calls.result_of(generator), cli_args=seed))
     add(calls.callback("timer_callback", on=node))
     results = calls.calls(workspace, ROBUST, *plan.steps, network=True)
-    return {bug: (results[a], results[b], results[c]) for bug, (a, b, c) in numbers.items()}, results[-1]
+    return {bug: (results[i], results[j], results[k]) for bug, (i, j, k) in steps_of.items()}, results[-1]

@@ -1,4 +1,4 @@
-"""The utilities: pure functions, called in the sandbox with readings drawn from the seed."""
+"""The utilities: pure functions, which are called in the sandbox with readings drawn from the seed."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from autograder.checks.ch07_best_practices.support.contract import (
 
 check = group("utils")
 LOW, HIGH = 0.2, 6.0
-BEYOND_LIMIT = 1e-4  # m beyond a limit, more than what rounding does
+BEYOND_LIMIT = 1e-4  # m beyond a limit, more than a rounding error
 DEFAULT_HISTORY = 100
-CALLS = ("mask_invalid", "mean_distance", "process", "average")
+FUNCTIONS = ("mask_invalid", "mean_distance", "process", "average")
 SEQUENCES = {
     "a list": ("builtins", "list", ()),
     "a tuple": ("builtins", "tuple", ()),
@@ -36,7 +36,7 @@ SEQUENCES = {
 def test_keeps_places(workspace: Workspace, draw: random.Random) -> None:
     """mask_invalid returns as many readings as it was given, each in its place."""
     readings = [round(draw.uniform(LOW, HIGH), 3) if i % 3 else draw.choice((0.0, nan, 50.0)) for i in range(40)]
-    masked = _masked(workspace, readings)
+    masked = _mask(workspace, readings)
     length = len(masked) if isinstance(masked, list) else masked
     expect(length == len(readings), f"{len(readings)} readings went in, {length} came out.")
     kept = [i for i in range(40) if i % 3]
@@ -49,18 +49,18 @@ def test_keeps_places(workspace: Workspace, draw: random.Random) -> None:
 def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
     """mask_invalid puts nan where a number cannot be a measurement."""
     phantoms = [0.0, -1.0, nan, LOW * draw.uniform(0.5, 0.99), HIGH * draw.uniform(1.01, 2.0)]
-    masked = _masked(workspace, phantoms)
-    left = [m for m in masked if not calls.same(m, nan)]
-    expect(not left, f"The limits are {LOW} and {HIGH} m, and {phantoms} became {masked}.")
-    said = f"Of {phantoms}, {len(masked)} of {len(phantoms)} were replaced by nan, and the others dropped."
-    expect(len(masked) == len(phantoms), said, fraction=0.5)  # where readings belong is another check's matter
+    masked = _mask(workspace, phantoms)
+    unmasked = [reading for reading in masked if not calls.same(reading, nan)]
+    expect(not unmasked, f"The limits are {LOW} and {HIGH} m, and {phantoms} became {masked}.")
+    message = f"Of {phantoms}, {len(masked)} of {len(phantoms)} were replaced by nan, and the others dropped."
+    expect(len(masked) == len(phantoms), message, fraction=0.5)  # another check tests the places of readings
 
 
 @check(points=1, covers="mask", after=("keeps_places",))
 @hint(RULE_MASK, "Both limits belong to the range: <=.")
 def test_limits_count(workspace: Workspace) -> None:
     """A reading of exactly range_min or range_max is a measurement."""
-    masked = _masked(workspace, [LOW, HIGH])
+    masked = _mask(workspace, [LOW, HIGH])
     expect(calls.same(masked, [LOW, HIGH]), f"[range_min, range_max] became {masked}.")
 
 
@@ -68,7 +68,7 @@ def test_limits_count(workspace: Workspace) -> None:
 @hint("REP 117: +inf says that nothing came back, -inf that something is too near.", RULE_MASK)
 def test_infinities_stay(workspace: Workspace) -> None:
     """Both infinities are statements of the lidar, and stay."""
-    masked = _masked(workspace, [inf, 1.0, -inf])
+    masked = _mask(workspace, [inf, 1.0, -inf])
     expect(calls.same(masked, [inf, 1.0, -inf]), f"[inf, 1.0, -inf] became {masked}.")
 
 
@@ -84,12 +84,12 @@ def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> Non
     outcomes = calls.calls(
         workspace, UTILS, *(calls.call("mask_invalid", readings, near, far) for readings, _, _ in rows)
     )
-    for outcome, (readings, wanted, fraction) in zip(outcomes, rows, strict=True):
-        shown = f"mask_invalid({readings}, {near}, {far})"
-        masked = calls.value(outcome, shown)
+    for outcome, (readings, expected, fraction) in zip(outcomes, rows, strict=True):
+        call_text = f"mask_invalid({readings}, {near}, {far})"
+        masked = calls.value(outcome, call_text)
         kept = [reading for reading in masked if not calls.same(reading, nan)] if isinstance(masked, list) else masked
-        said = f"{shown} returned {masked}: it should keep {wanted or 'none'}, and put nan in the place of the others."
-        expect(calls.same(kept, wanted), said, fraction=fraction)
+        advice = f"it should keep {expected or 'none'}, and put nan in the place of the others."
+        expect(calls.same(kept, expected), f"{call_text} returned {masked}: {advice}", fraction=fraction)
 
 
 @check(points=1, covers=("leave-lists", "mask"), after=("keeps_places",))
@@ -99,20 +99,26 @@ def test_input_untouched(workspace: Workspace) -> None:
     readings = [0.0, 1.0, 99.0]
     (outcome,) = calls.calls(workspace, UTILS, calls.call("mask_invalid", readings, LOW, HIGH))
     calls.value(outcome, "mask_invalid(...)")
-    processed = _processed(workspace, 3, [readings])[1]
+    processed = _process(workspace, 3, [readings])[1]
     calls.value(processed, "DataProcessor(3).process(...)")
-    for each in (outcome, processed):
-        expect(calls.same(list(each.arguments[:1]), [readings]), f"The caller's {readings} became {each.arguments[0]}.")
-    for staying in ([1.0, inf, 2.0], []):
-        *_, itself = calls.calls(
+    for result in (outcome, processed):
+        expect(
+            calls.same(list(result.arguments[:1]), [readings]), f"The caller's {readings} became {result.arguments[0]}."
+        )
+    for valid in ([1.0, inf, 2.0], []):
+        *_, is_same = calls.calls(
             workspace,
             UTILS,
-            calls.call("list", staying, module="builtins"),
-            calls.call("mask_invalid", calls.made(0), LOW, HIGH),
-            calls.call("is_", calls.made(0), calls.made(1), module="operator"),
+            calls.call("list", valid, module="builtins"),
+            calls.call("mask_invalid", calls.result_of(0), LOW, HIGH),
+            calls.call("is_", calls.result_of(0), calls.result_of(1), module="operator"),
         )
-        shown = f"mask_invalid({staying}, {LOW}, {HIGH})"
-        expect(itself.value is False, f"{shown} returned the caller's list itself instead of a new one.", fraction=0.75)
+        call_text = f"mask_invalid({valid}, {LOW}, {HIGH})"
+        expect(
+            is_same.value is False,
+            f"{call_text} returned the caller's list itself instead of a new one.",
+            fraction=0.75,
+        )
 
 
 @check(points=2, covers="mean")
@@ -124,8 +130,8 @@ def test_mean(workspace: Workspace, draw: random.Random) -> None:
     draw.shuffle(readings)
     (outcome,) = calls.calls(workspace, UTILS, calls.call("mean_distance", readings))
     mean = calls.value(outcome, "mean_distance(...)")
-    right = isinstance(mean, int | float) and abs(mean - fmean(finite)) < 1e-9
-    expect(right, f"The finite readings of {readings} have the mean {fmean(finite):.4f}, not {mean}.")
+    is_right = isinstance(mean, int | float) and abs(mean - fmean(finite)) < 1e-9
+    expect(is_right, f"The finite readings of {readings} have the mean {fmean(finite):.4f}, not {mean}.")
     (outcome,) = calls.calls(workspace, UTILS, calls.call("mean_distance", [0.0, nan]))
     mean = calls.value(outcome, "mean_distance(...)")
     expect(mean == 0.0, f"mean_distance([0.0, nan]) returned {mean} instead of 0.0.", fraction=0.5)
@@ -147,32 +153,33 @@ def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
     """The readings may come as a tuple, as an array.array or as a numpy array."""
     near, far = round(draw.uniform(LOW, 3.0), 2), round(draw.uniform(3.0, HIGH), 2)
     readings = [near, nan, far, 3 * HIGH, inf]
-    staying = [near, far]  # of which none is masked
-    wanted: list[Any] = []  # what a list brings: whether that is right, others judge
+    valid = [near, far]
+    expected: list[Any] = []  # the results for a list; other checks test whether they are right
     for kind, (module, name, first) in SEQUENCES.items():
         *outcomes, returned = calls.calls(
             workspace,
             UTILS,
             calls.call(name, *first, readings, module=module),
             calls.call("DataProcessor", 2),
-            calls.call("mask_invalid", calls.made(0), LOW, HIGH),
-            calls.call("mean_distance", calls.made(0)),
-            calls.call("process", calls.made(0), LOW, HIGH, on=1),
+            calls.call("mask_invalid", calls.result_of(0), LOW, HIGH),
+            calls.call("mean_distance", calls.result_of(0)),
+            calls.call("process", calls.result_of(0), LOW, HIGH, on=1),
             calls.call("average", on=1),
-            calls.call(name, *first, staying, module=module),
-            calls.call("mask_invalid", calls.made(6), LOW, HIGH),
-            calls.look("__class__", on=7),
-            calls.look("__name__", on=8),
+            calls.call(name, *first, valid, module=module),
+            calls.call("mask_invalid", calls.result_of(6), LOW, HIGH),
+            calls.attribute("__class__", on=7),
+            calls.attribute("__name__", on=8),
         )
-        seen = [
-            calls.value(outcome, f"{called} of {kind}") for called, outcome in zip(CALLS, outcomes[2:6], strict=True)
+        actual = [
+            calls.value(outcome, f"{function} of {kind}")
+            for function, outcome in zip(FUNCTIONS, outcomes[2:6], strict=True)
         ]
-        wanted = wanted or seen
-        for called, got, right in zip(CALLS, seen, wanted, strict=True):
-            said = f"With {readings} as {kind}, {called} returned {got}, and as a list {right}."
-            expect(calls.same(got, right), said)
-        said = f"With {staying} as {kind}, mask_invalid returned a value of type {returned.value} instead of a list."
-        expect(returned.value == "list", said, fraction=0.75)
+        expected = expected or actual
+        for function, result, list_result in zip(FUNCTIONS, actual, expected, strict=True):
+            message = f"With {readings} as {kind}, {function} returned {result}, and as a list {list_result}."
+            expect(calls.same(result, list_result), message)
+        message = f"With {valid} as {kind}, mask_invalid returned a value of type {returned.value} instead of a list."
+        expect(returned.value == "list", message, fraction=0.75)
 
 
 @check(points=2, covers=("history", "process"), after=("keeps_places", "mean"), doc=DEQUE)
@@ -180,19 +187,21 @@ def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
 def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
     """DataProcessor remembers the means of as many scans as it was told, the newest ones."""
     size, means = draw.randint(3, 6), [round(draw.uniform(1.0, 5.0), 3) for _ in range(12)]
-    outcomes = _processed(workspace, size, [[mean] * (1 + i % 3) for i, mean in enumerate(means)])
-    average, wanted = calls.value(outcomes[-1], "average()"), fmean(means[-size:])
+    outcomes = _process(workspace, size, [[mean] * (1 + i % 3) for i, mean in enumerate(means)])
+    average, expected = calls.value(outcomes[-1], "average()"), fmean(means[-size:])
     expect(
-        calls.same(average, wanted),
-        f"After 12 scans, DataProcessor({size}).average() is {average}; the newest {size} have {wanted:.4f}.",
+        calls.same(average, expected),
+        f"After 12 scans, DataProcessor({size}).average() is {average}; the newest {size} have {expected:.4f}.",
     )
-    many = [round(draw.uniform(1.0, 5.0), 3) for _ in range(DEFAULT_HISTORY + 7)]
-    average, wanted = (
-        calls.value(_processed(workspace, None, [[mean] for mean in many])[-1], "average()"),
-        fmean(many[7:]),
+    more_means = [round(draw.uniform(1.0, 5.0), 3) for _ in range(DEFAULT_HISTORY + 7)]
+    average, expected = (
+        calls.value(_process(workspace, None, [[mean] for mean in more_means])[-1], "average()"),
+        fmean(more_means[7:]),
     )
-    said = f"After {len(many)} scans, DataProcessor().average() is {average}; the newest 100 have {wanted:.4f}."
-    expect(calls.same(average, wanted), said, fraction=0.75)
+    message = (
+        f"After {len(more_means)} scans, DataProcessor().average() is {average}; the newest 100 have {expected:.4f}."
+    )
+    expect(calls.same(average, expected), message, fraction=0.75)
 
 
 @check(points=1, covers=("process", "average"), after=("bounded_history", "no_mean"))
@@ -200,32 +209,32 @@ def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
 def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
     """A scan without a finite distance leaves no trace in the history, and without history there is no average."""
     for blind, fraction in ([nan], 0.0), ([inf, 0.0], 0.5):
-        *_, average = _processed(workspace, 3, [[2.0], blind, blind, [4.0]])
-        seen = calls.value(average, "average()")
-        said = f"After scans of 2 m, {blind}, {blind} and 4 m the average is {seen} instead of 3.0."
-        expect(calls.same(seen, 3.0), said, fraction=fraction)
-    *_, average = _processed(workspace, 3, [[nan]])
-    seen = calls.value(average, "average()")
-    expect(seen is None, f"After one blind scan the average is {seen} instead of None.")
-    at_zero = [calls.call("process", [metres], -1.0, HIGH, on=0) for metres in (0.0, 2.0)]  # a mean of 0 is a mean
+        *_, average = _process(workspace, 3, [[2.0], blind, blind, [4.0]])
+        actual = calls.value(average, "average()")
+        message = f"After scans of 2 m, {blind}, {blind} and 4 m the average is {actual} instead of 3.0."
+        expect(calls.same(actual, 3.0), message, fraction=fraction)
+    *_, average = _process(workspace, 3, [[nan]])
+    actual = calls.value(average, "average()")
+    expect(actual is None, f"After one blind scan the average is {actual} instead of None.")
+    at_zero = [calls.call("process", [metres], -1.0, HIGH, on=0) for metres in (0.0, 2.0)]  # 0 is a valid mean
     *_, average = calls.calls(workspace, UTILS, calls.call("DataProcessor", 2), *at_zero, calls.call("average", on=0))
-    seen = calls.value(average, "average()")
-    expect(calls.same(seen, 1.0), f"After scans of 0 m and 2 m the average is {seen} instead of 1.0.", fraction=0.5)
+    actual = calls.value(average, "average()")
+    expect(calls.same(actual, 1.0), f"After scans of 0 m and 2 m the average is {actual} instead of 1.0.", fraction=0.5)
 
 
 @check(points=1, covers="silent", after=("masks_phantoms", "mean", "bounded_history"))
 @hint("A library returns data; who calls it decides what is logged.", "Remove print().")
 def test_prints_nothing(workspace: Workspace) -> None:
     """The utilities print nothing: what to say, and how often, is the node's business."""
-    outcomes = _processed(workspace, 3, [[0.0, 99.0, 1.0], [nan]])
+    outcomes = _process(workspace, 3, [[0.0, 99.0, 1.0], [nan]])
     outcomes += calls.calls(
         workspace,
         UTILS,
         calls.call("StringIO", module="io"),
         calls.call("import_module", "sys", module="importlib"),
-        calls.call("setattr", calls.made(1), "stderr", calls.made(0), module="builtins"),
-        calls.call("simplefilter", "ignore", module="warnings"),  # a warning of numpy's is no print
-        calls.call("disable", module="logging"),  # nor is a record of logging
+        calls.call("setattr", calls.result_of(1), "stderr", calls.result_of(0), module="builtins"),
+        calls.call("simplefilter", "ignore", module="warnings"),  # a warning of numpy is not a print
+        calls.call("disable", module="logging"),  # neither is a log record
         calls.call("mask_invalid", [0.0], LOW, HIGH),
         calls.call("mean_distance", [nan]),
         calls.call("getvalue", on=0),
@@ -237,15 +246,18 @@ def test_prints_nothing(workspace: Workspace) -> None:
     expect(not errors, f"They printed on the standard error stream: {str(errors)[:80]!r}", fraction=0.5)
 
 
-def _masked(workspace: Workspace, readings: list[float]) -> list[float]:
+def _mask(workspace: Workspace, readings: list[float]) -> list[float]:
     (outcome,) = calls.calls(workspace, UTILS, calls.call("mask_invalid", readings, LOW, HIGH))
     masked = calls.value(outcome, f"mask_invalid({readings}, {LOW}, {HIGH})")
     expect(isinstance(masked, list), f"mask_invalid returned {masked!r} instead of a list.")
     return list(masked)
 
 
-def _processed(workspace: Workspace, history: int | None, scans: list[list[float]]) -> list[calls.StepResult]:
-    """Let a DataProcessor, of the default history if None, take scans; return the outcomes, `average()`'s last."""
+def _process(workspace: Workspace, history: int | None, scans: list[list[float]]) -> list[calls.StepResult]:
+    """Return the results of a new DataProcessor, of `process` for each scan, and of `average`.
+
+    With `history` None, it has the default one.
+    """
     sizes = () if history is None else (history,)
     process = [calls.call("process", readings, LOW, HIGH, on=0) for readings in scans]
     return calls.calls(workspace, UTILS, calls.call("DataProcessor", *sizes), *process, calls.call("average", on=0))
