@@ -1,4 +1,4 @@
-"""Bounds the messages that a harness takes from a student's programs: kept ones would fill the grader's memory."""
+"""Limits the messages that a harness takes from a student's programs, because they stay in the grader's memory."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Inflow:
         """Count a message of `size` bytes, before it is parsed.
 
         Raises:
-            StudentError: it is one too many, or too large; the sentence names the topic with the greatest part.
+            StudentError: there are too many messages or bytes. The sentence names the topic with the largest share.
         """
         self._messages[topic] += 1
         self._bytes[topic] += size

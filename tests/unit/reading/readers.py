@@ -91,7 +91,7 @@ def _use(event: str, record: Any) -> object:
     if isinstance(record, protocol.Description):
         counts = _sum([record.early, record.kept, record.early]) + _sum([record.kept])
         json.dumps({"kept": dict(counts), "reads": sorted(record.reads)})
-        grader: Any = SimpleNamespace(readers=[], written={}, publishers={}, clients=list)
+        grader: Any = SimpleNamespace(readers=[], publisher_channels={}, publishers={}, clients=list)
         return connected([record, record], grader), tick_of(10**8, record.timers)
     if isinstance(record, protocol.Reply):
         counts = _sum([*record.sent, *record.sent])
@@ -119,7 +119,7 @@ def _status_of_launch(data: bytes, folder: Path) -> object:
     os.set_blocking(ours, False)
     os.write(theirs, data)
     harness = LaunchHarness.__new__(LaunchHarness)
-    harness._pipe, harness._status_text = ours, b""
+    harness._status_pipe, harness._status_text = ours, b""
     try:
         return [harness.status for _ in range(2 + len(data))]
     finally:
