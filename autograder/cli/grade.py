@@ -89,11 +89,11 @@ def grade(
     suites.hidden(assignment)
     if dry_run:
         with find_submissions(paths, assignment, roster) as (submissions, all_match):
-            jobs_to_do = [
+            preview_jobs = [
                 Job(path, assignment, name, seed, out / name, Isolation(isolation))
                 for name, path in submissions.items()
             ]
-            sys.exit(0 if _preview(jobs_to_do, resume) and all_match else 1)
+            sys.exit(0 if _preview(preview_jobs, resume) and all_match else 1)
     with (
         find_submissions(paths, assignment, roster, out=out) as (submissions, all_match),
         Progress(len(submissions)) as progress,

@@ -11,7 +11,7 @@ from autograder.notebook.notices import Notice
 from autograder.ros.discovery import fast_discovery
 from sim.grading import grading
 
-HIDDEN_TOPICS = ("/rosout", "/parameter_events", "/clock")  # of nearly every node; they would clutter the drawing
+HIDDEN_TOPICS = ("/rosout", "/parameter_events", "/clock")  # nearly every node has them; they clutter the drawing
 STABLE_SECONDS = 1.0  # real time without a change until discovery counts as finished
 ROW, NODE, TOPIC, GAP = 46, 190, 210, 110  # pixels: row height, box widths, space between columns
 

@@ -23,7 +23,7 @@ from autograder.submission.exercise_stubs import explain
 from sim.grading import grading
 
 NOT_WHILE_GRADING = "Commands are not run while the notebook is graded."
-STOP_SECONDS = 30.0  # real time for a command to end after Ctrl-C; `ros2 launch` itself gives its nodes 10
+STOP_SECONDS = 30.0  # real time for a command to end after Ctrl-C; `ros2 launch` waits 10 s for its nodes
 _STEP = 0.05
 _BUILD = re.compile(r"\bcolcon\b[^|;&]*\bbuild\b(?:[^|;&]*--packages-select(?P<packages>(?: +[\w.]+)+))?")
 _SOURCED = '[ ! -f "$0" ] || . "$0" || exit; eval "$1"'

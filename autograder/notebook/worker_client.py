@@ -60,7 +60,7 @@ def run_on(
     early: Callable[[dict[str, Any]], None] | None = None,
     **arguments: Any,
 ) -> Iterator[tuple[dict[str, Any], Path]]:
-    """Do the same as `run_in_worker`, at an isolation level. For a check, `source` may be a whole submission."""
+    """Do the same as `run_in_worker`, at a given isolation level. For a check, `source` may be a submission."""
     own_end, worker_end = Pipe()
     with tempfile.TemporaryDirectory(prefix="request-") as folder, own_end:
 

@@ -77,7 +77,7 @@ def grade_on(
         with _first_interrupt() as interrupted:
             dispatch.run(interrupted)
     finally:
-        dispatch.forget()
+        dispatch.cancel()
     if interrupted.is_set():
         raise KeyboardInterrupt
 
@@ -119,7 +119,7 @@ class _Dispatch:
         self._threads = 0
         self._last_poll = float("-inf")
         self._last_suitable = time.monotonic()
-        self._queue = self._packed(jobs)
+        self._queue = self._pending_submissions(jobs)
         self._in_progress: dict[Future, _Pending] = {}
         self._done: queue.SimpleQueue[Future] = queue.SimpleQueue()
 
@@ -136,7 +136,7 @@ class _Dispatch:
                     self._send(pending)
             self._receive()
 
-    def forget(self) -> None:
+    def cancel(self) -> None:
         """Tell the scheduler to cancel the submissions in progress."""
         with contextlib.suppress(Exception):  # the scheduler may be lost
             self._client.cancel(list(self._in_progress), force=True)
@@ -171,8 +171,8 @@ class _Dispatch:
                 self._rejected.add(address)
                 self._report(f"The worker {address} is rejected: {reason}.")
 
-    def _packed(self, jobs: Sequence[Job]) -> Iterator[_Pending]:
-        """Yield the submissions to send. Report a result for each one that intake rejects."""
+    def _pending_submissions(self, jobs: Sequence[Job]) -> Iterator[_Pending]:
+        """Yield the submissions to send. Store a result for each one that intake rejects."""
         for job in jobs:
             try:
                 files = read_files(job.path, job.assignment)

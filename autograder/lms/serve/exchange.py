@@ -1,7 +1,7 @@
 """Hands in the submissions that students make through nbgrader's exchange.
 
-A submission is a folder STUDENT+ASSIGNMENT+TIME+RANDOM in the course's folder of the exchange. It belongs to the
-student, who can still change it. Therefore a process with the student's own rights packs it, without following links.
+A submission is a folder STUDENT+ASSIGNMENT+TIME+RANDOM in the course's folder of the exchange. The student owns it and
+can still change it. Therefore, a process that runs as the student packs it, without following links.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def pack(submission: ExchangeSubmission) -> bytes:
     is_root = os.geteuid() == 0
     with subprocess.Popen(
         ["tar", "--create", "--gzip", "--directory", str(submission.folder), "."],
-        cwd="/",  # tar enters `--directory` with the student's rights
+        cwd="/",  # tar changes to `--directory` as the student
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         env={"PATH": os.defpath},

@@ -67,7 +67,7 @@ class Grader:
 
     async def _work(self, pool: ThreadPoolExecutor) -> None:
         while True:
-            hand_in = await self._take()
+            hand_in = await self._next_hand_in()
             try:
                 answer = self._store.begin(hand_in.number)
                 out = self._store.folder(hand_in.number)
@@ -80,7 +80,7 @@ class Grader:
                 del self._busy[hand_in.student]
                 await self.notify()  # the student may have another waiting answer
 
-    async def _take(self) -> HandIn:
+    async def _next_hand_in(self) -> HandIn:
         """Wait for an answer to grade, mark its student as busy, and return it."""
         async with self._queue_changed:
             while True:
@@ -91,7 +91,7 @@ class Grader:
                 await self._queue_changed.wait()
 
     def _grade(self, hand_in: HandIn, answer: bytes, out: Path) -> Mark:
-        """Grade an answer, and write its result and feedback page to `out`, which a killed process may have filled."""
+        """Grade an answer, and write its result and feedback page to `out`, replacing those of a killed process."""
         with TemporaryDirectory(prefix="answer-") as scratch:
             path = Path(scratch) / ANSWER
             path.write_bytes(answer)

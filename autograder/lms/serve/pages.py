@@ -1,6 +1,6 @@
 """The content of the service's pages. Their templates escape all text.
 
-The pages have the hub's own origin and may contain a student's text. Therefore only the player's script may run.
+The pages have the hub's own origin and may contain a student's text. Therefore, only the player's script is allowed.
 """
 
 from __future__ import annotations

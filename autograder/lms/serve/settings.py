@@ -133,7 +133,7 @@ def _assignment(read: Reader, name: str, node: yaml.Node, zone: tzinfo) -> Assig
     extensions = _extensions(read, fields.get("extensions"), zone)
     if extensions and due is None:
         raise bad(read.path, fields["extensions"], f"{name} has extensions and is never due", "Add `due`")
-    shown = read.choice(fields.get("shown"), "shown", [each.value for each in Shown], Shown.EVERYTHING.value)
+    shown = read.choice(fields.get("shown"), "shown", [choice.value for choice in Shown], Shown.EVERYTHING.value)
     counts = read.choice(fields.get("counts"), "counts", ("best", "last"), "last")
     return AssignmentSettings(due, _tries(read, fields.get("tries_a_day")), Shown(shown), counts == "best", extensions)
 

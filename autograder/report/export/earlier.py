@@ -1,7 +1,7 @@
-"""Keeps the earlier marks of a class while it is graded again, until the changes have been listed.
+"""Stores the earlier marks of a class while it is graded again, until the changes have been listed.
 
-They are stored in a file beside the results. It is written before the first submission is graded and deleted after the
-changes were listed, so that an interruption does not lose any of them.
+The file is beside the results. It is written before the first submission is graded and deleted after the changes have
+been listed, so that an interrupted grading does not lose any of them.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from autograder.exceptions import UsageError
-from autograder.result.class_folder import RESULTS, RESULT, folder_name_problem
+from autograder.result.class_folder import RESULT, RESULTS, folder_name_problem
 from autograder.result.model import UNFINISHED, Result, from_json
 
 
@@ -62,6 +62,6 @@ def _read(file: Path) -> tuple[Result, ...]:
     return tuple(replace(result, folder=_folder(result, file.parent)) for result in results)
 
 
-def _folder(result: Result, beside: Path) -> Path:
-    own_folder = beside / result.student
-    return own_folder if own_folder.is_dir() else beside
+def _folder(result: Result, parent: Path) -> Path:
+    student_folder = parent / result.student
+    return student_folder if student_folder.is_dir() else parent
