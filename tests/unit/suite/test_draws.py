@@ -43,9 +43,9 @@ def test_a_battery_lasts_for_a_trip_and_its_rest_does_not_depend_on_rounding() -
         for trip in draw_trips(random.Random(f"{seed}:test_trip_level")):
             used = sum(trip.legs) / METRES_PER_PERCENT
             assert all(0.0 <= leg < math.inf for leg in trip.legs)
-            assert 0 <= trip.left(trip.level) < trip.level <= 100
+            assert 0 <= trip.level_at_end(trip.level) < trip.level <= 100
             assert min(used % 1.0, -used % 1.0) > EXACT
-            assert math.floor(trip.level + trip.over + 0.5) == trip.level
+            assert math.floor(trip.level + trip.excess + 0.5) == trip.level
 
 
 def test_a_short_trip_leaves_a_reserve_to_choose() -> None:

@@ -38,8 +38,7 @@ def test_fails(workspace: Workspace) -> None:
     case = f"Started with a node name of {len(LONG_NAME)} letters, which ROS refuses,"
     expect(status is not None, f"{case} it did not end within {START_SECONDS:.0f} s.")
     expect(status != 0, f"{case} it ended with exit status 0, as if it had been asked to: the error was swallowed.")
-    names_error = (
-        "error" in output.lower()
-    )  # the class or text of an exception contains it, and rclpy's warnings here do not
+    # The class or text of an exception contains the word, and rclpy's warnings here do not.
+    names_error = "error" in output.lower()
     expect(names_error, f"{case} it ended with exit status {status}, and did not say which error it was.", fraction=0.5)
     expect("another exception" not in output, f"{case} its clean-up failed, too: {last_line(output)}", fraction=0.5)

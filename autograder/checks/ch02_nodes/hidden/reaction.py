@@ -19,7 +19,7 @@ EDGE = 1.0  # degrees around the sector's edge that are not tested; half a radia
 # A lidar's number of beams, and half the width of an obstacle in degrees. One beam of the first lidar reads it. Three
 # beams of the second read it, for a robot that ignores a single beam.
 COARSE, FINE = (360, 0.6), (1800, 0.3)
-JUST_BELOW = 0.003  # m: rounded to centimetres, such a distance is the limit
+JUST_BELOW = 0.003  # m: a distance that is rounded to centimetres would be the limit
 REPEAT_SECONDS = 0.5  # s for which each of many scans is repeated
 BESIDE = Part(40.0, 180.0, 0.0), Part(-180.0, -40.0, 0.0)  # degrees: every bearing that is not ahead
 SINGLE_SCAN_SECONDS = 0.4  # s after a single scan: there are commands after SETTLED, and the scan is not stale yet

@@ -74,8 +74,10 @@ def test_recovers(robot: Robot, reactions: Reactions, draw: random.Random) -> No
     blind = robot.leave_alone(1.0)
     reactions.expect_forward(robot.see(scan(fill=distance)), "When scans come again after a break of 2 s")
     expect_stop(blind, "In the last second of a break of 2 s, which began in front of a wall", fraction=0.5)
-    age = robot.see(scan(fill=distance), age=STAMP_AGE)
-    reactions.expect_forward(age, f"With scans that arrive now, and whose stamps are {STAMP_AGE:g} s old", fraction=0.5)
+    commands = robot.see(scan(fill=distance), age=STAMP_AGE)
+    reactions.expect_forward(
+        commands, f"With scans that arrive now, and whose stamps are {STAMP_AGE:g} s old", fraction=0.5
+    )
 
 
 def _expect_timeout(robot: Robot, reactions: Reactions, message: LaserScan) -> None:
