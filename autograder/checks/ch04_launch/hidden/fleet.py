@@ -55,7 +55,7 @@ def test_includes(launches: Launches) -> None:
 @hint("DeclareLaunchArgument('first', default_value='robot1', description='...')")
 def test_fleet_arguments(launches: Launches) -> None:
     """two_robots.launch.py declares first, second and speed, each with its default and a description."""
-    arguments = launch_probe.shown_arguments(
+    arguments = launch_probe.declared_arguments(
         launches.fleet_workspace(), PACKAGE, FLEET
     )  # those of what it includes, too
     for name, default in (("first", FIRST), ("second", SECOND), ("speed", str(contract.SPEED))):

@@ -33,5 +33,5 @@ def given_parameters() -> str:
 def changed(workspace: Workspace) -> list[str]:
     """Return the paths of the modules and parameters that are missing or not as they were given."""
     return given_files.changed_files(
-        student_test_runs.take(workspace, PACKAGE).files, versions.read_files(_HOME), (PACKAGE, "config")
+        student_test_runs.read_source(workspace, PACKAGE).files, versions.read_files(_HOME), (PACKAGE, "config")
     )

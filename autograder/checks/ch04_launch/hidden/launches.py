@@ -67,7 +67,7 @@ class Launches:
         return self._harness(ROBOT, {"robot_name": self._inputs.quoted_name}, {}, programs="still")
 
     def robot_arguments(self) -> dict[str, launch_arguments.Argument]:
-        """Return the arguments that the student's robot.launch.py declares; raises as `shown_arguments` does."""
+        """Return the arguments that the student's robot.launch.py declares; raises as `declared_arguments` does."""
         return self._shown(ROBOT)
 
     def fleet(self, **arguments: object) -> LaunchHarness:
@@ -107,7 +107,7 @@ class Launches:
         return harness in self._early
 
     def safe_arguments(self) -> dict[str, launch_arguments.Argument]:
-        """Return the arguments that safe_start.launch.py declares; raises as `shown_arguments` does."""
+        """Return the arguments that safe_start.launch.py declares; raises as `declared_arguments` does."""
         return self._shown(SAFE)
 
     def close(self) -> None:
@@ -116,7 +116,7 @@ class Launches:
 
     def _shown(self, file: str) -> dict[str, launch_arguments.Argument]:
         if file not in self._arguments:
-            self._arguments[file] = launch_probe.shown_arguments(self._workspace, PACKAGE, file)
+            self._arguments[file] = launch_probe.declared_arguments(self._workspace, PACKAGE, file)
         return self._arguments[file]
 
     def _harness(
@@ -140,7 +140,7 @@ class Launches:
             copy = self._copy(beside or file, robot, programs)
             harness = LaunchHarness(copy, PACKAGE, file, words, subscribes=subscribes, environment=environment)
             self._harnesses[key] = self._stack.enter_context(harness)
-            if finishes and short_lived.run_together(harness, finishes, "driver"):
+            if finishes and short_lived.ran_together(harness, finishes, "driver"):
                 self._early.add(harness)
             if finishes and short_lived.hangs(harness, finishes):
                 self._harnesses[key] = self._stack.enter_context(harness.another())

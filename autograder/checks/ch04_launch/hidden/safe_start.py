@@ -81,7 +81,7 @@ def test_whole_battery(launches: Launches, inputs: Inputs) -> None:
     expect(DRIVER in nodes, f"{what} {launch_probe.failure(harness.output)}".strip())
     declared = launches.safe_arguments().get("battery")
     expect(declared is not None, "safe_start.launch.py does not declare the argument battery.", fraction=0.5)
-    default = "80" if declared and declared.is_worked_out else declared.default if declared else None
+    default = "80" if declared and declared.is_computed else declared.default if declared else None
     said = "no default" if default is None else f"the default {default!r}"
     expect(default == "80", f"The argument battery has {said}, instead of '80'.", fraction=0.5)
 

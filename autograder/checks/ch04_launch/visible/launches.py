@@ -53,7 +53,7 @@ def launches(workspace: Workspace) -> Iterator[Launches]:
 @hint("The names are robot_name, speed and report.")
 def test_arguments(workspace: Workspace) -> None:
     """robot.launch.py declares robot_name, speed and report."""
-    arguments = launch_probe.shown_arguments(workspace, PACKAGE, ROBOT)
+    arguments = launch_probe.declared_arguments(workspace, PACKAGE, ROBOT)
     for name, default in (("robot_name", contract.ROBOT_NAME), ("speed", str(contract.SPEED)), ("report", "true")):
         launch_probe.expect_argument(arguments, name, default)
 

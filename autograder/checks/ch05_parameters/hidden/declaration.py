@@ -63,7 +63,7 @@ def test_names(robot: Robot) -> None:
 def test_types(robot: Robot) -> None:
     """Each has the type of the table."""
     wrong = [
-        f"{name} is {_type_text(robot.descriptors.get(name))} instead of {parameters.TYPES[spec.type]}"
+        f"{name} is {_type_text(robot.descriptors.get(name))} instead of {parameters.TYPE_NAMES[spec.type]}"
         for name, spec in SPECIFICATIONS.items()
         if name not in robot.descriptors or robot.descriptors[name].type != spec.type
     ]
@@ -196,7 +196,7 @@ def _is_description(text: str, unit: str) -> bool:
 
 
 def _type_text(descriptor: ParameterDescriptor | None) -> str:
-    return "not declared" if descriptor is None else parameters.TYPES.get(descriptor.type, "an array")
+    return "not declared" if descriptor is None else parameters.TYPE_NAMES.get(descriptor.type, "an array")
 
 
 def _range_fault(spec: Specification, descriptor: ParameterDescriptor | None) -> str:

@@ -38,7 +38,7 @@ def test_table(robot: Robot) -> None:
     expect(not (sentence := parameters.missing_sentence(SPECIFICATIONS, names)), sentence)
     expect(not (others := sorted(names - set(SPECIFICATIONS))), f"It also declares {', '.join(others)}.")
     wrong = [
-        f"{name} is {parameters.TYPES.get(actual, 'an array')} instead of {parameters.TYPES[expected]}"
+        f"{name} is {parameters.TYPE_NAMES.get(actual, 'an array')} instead of {parameters.TYPE_NAMES[expected]}"
         for name, descriptor in robot.parameters.descriptors(*SPECIFICATIONS).items()
         if (actual := descriptor.type) != (expected := SPECIFICATIONS[name].type)
     ]

@@ -36,7 +36,7 @@ class Launched:
 def launched(workspace: Workspace, builds: Mapping[str, Diagnosis], types: Types, hot: int) -> Iterator[Launched]:
     """One launch, for all checks of this module; a second one if the guard refuses a whole number."""
     require_built(builds, PACKAGE)
-    there = installed.look(workspace.install, PACKAGE).shared
+    there = installed.inspect_package(workspace.install, PACKAGE).shared
     expect(f"launch/{LAUNCH_FILE}" in there, f"launch/{LAUNCH_FILE} is not installed: look at data_files in setup.py.")
     subscribes = {"/decision": types.decision}
     with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": str(hot)}, subscribes=subscribes) as whole:
@@ -77,7 +77,7 @@ def test_argument(workspace: Workspace, launched: Launched, hot: int, draw: Rand
     launch_probe.expect_parameters(harness, f"/{GUARD}", {"hot": float(hot)})
     why = launch_probe.failure(launched.whole.output)
     expect(harness is launched.whole, f"Launched with hot:={hot}, guard does not run. {why}", fraction=0.5)
-    arguments = launch_probe.shown_arguments(workspace, PACKAGE, LAUNCH_FILE)
+    arguments = launch_probe.declared_arguments(workspace, PACKAGE, LAUNCH_FILE)
     launch_probe.expect_argument(arguments, "hot", "60.0", described=False)
     try:
         launch_probe.expect_parameters(harness, f"/{GUARD}", {"cool": COOL})

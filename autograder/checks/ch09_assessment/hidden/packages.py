@@ -28,7 +28,7 @@ def test_definitions(workspace: Workspace) -> None:
 def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds motor_guard_interfaces, with both messages."""
     require_built(builds, INTERFACES)
-    shared = installed.look(workspace.install, INTERFACES).shared
+    shared = installed.inspect_package(workspace.install, INTERFACES).shared
     absent = [path for path in contract.MESSAGES if path not in shared]
     expect(not absent, f"The build made no code for {' and '.join(absent)}: CMakeLists.txt does not list it.")
 
@@ -44,7 +44,7 @@ def test_interface_manifest(workspace: Workspace, builds: Mapping[str, Diagnosis
     _expect_licence(found)
     if builds[INTERFACES] is OK:
         said = f"The ament index does not know {INTERFACES}: CMakeLists.txt does not call ament_package()."
-        expect(installed.look(workspace.install, INTERFACES).marker, said, fraction=0.5)
+        expect(installed.inspect_package(workspace.install, INTERFACES).marker, said, fraction=0.5)
 
 
 @check(points=2, covers="packages", after=("messages_are_generated",), doc=contract.PACKAGES_DOC)
@@ -53,7 +53,7 @@ def test_interface_manifest(workspace: Workspace, builds: Mapping[str, Diagnosis
 def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds motor_guard, and installs three programs where ros2 finds them."""
     require_built(builds, PACKAGE)
-    found = installed.look(workspace.install, PACKAGE)
+    found = installed.inspect_package(workspace.install, PACKAGE)
     expect_executables(found.executables, found.misplaced, PROGRAMS)
 
 
@@ -70,7 +70,7 @@ def test_dependencies(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> 
     """package.xml of motor_guard declares all that it needs and its licence; setup.py agrees, and installs it."""
     require_built(builds, PACKAGE)
     source = source_of(workspace, PACKAGE)
-    found, installation = manifest.read(source), installed.look(workspace.install, PACKAGE)
+    found, installation = manifest.read(source), installed.inspect_package(workspace.install, PACKAGE)
     missing = imports.missing(source, found)["exec"]
     expect(not missing, f"{imports.describe(missing)}: package.xml does not declare it.")
     absent = [name for name in contract.FOR_TESTS if name not in found.needs("test")]

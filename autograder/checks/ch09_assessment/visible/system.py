@@ -34,7 +34,7 @@ def test_builds(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Question 3: colcon builds both packages, installs three programs and the launch file; imports are declared."""
     require_built(builds, INTERFACES)
     require_built(builds, PACKAGE)
-    found = installed.look(workspace.install, PACKAGE)
+    found = installed.inspect_package(workspace.install, PACKAGE)
     expect_executables(found.executables, found.misplaced, PROGRAMS)
     expect(f"launch/{contract.LAUNCH_FILE}" in found.shared, f"launch/{contract.LAUNCH_FILE} is not installed.")
     source = source_of(workspace, PACKAGE)
