@@ -80,8 +80,8 @@ class _Worker:
 
     def __init__(self, isolation: Isolation) -> None:
         self._stack = ExitStack()
-        ours, theirs = Pipe()
-        self._server, self._isolation = self._stack.enter_context(ours), isolation
+        own_end, server_end = Pipe()
+        self._server, self._isolation = self._stack.enter_context(own_end), isolation
         # The sandbox sees later files only in a folder that is mounted from the start, and its user must be able to
         # read them.
         self._shared = Path(self._stack.enter_context(TemporaryDirectory(prefix="verification-shared-")))
@@ -89,11 +89,13 @@ class _Worker:
 
         def command(scratch: Path) -> list[str]:
             module = "autograder.author.verification.fork_server"
-            return [sys.executable, "-m", module, str(scratch), str(theirs.fileno())]
+            return [sys.executable, "-m", module, str(scratch), str(server_end.fileno())]
 
         view = View(shown=(*{course_paths.ROOT, course_paths.course().root}, self._shared))
-        with theirs:
-            sandbox = in_worker_sandbox(command, isolation, VERIFICATION_WORKER, view=view, pass_fds=(theirs.fileno(),))
+        with server_end:
+            sandbox = in_worker_sandbox(
+                command, isolation, VERIFICATION_WORKER, view=view, pass_fds=(server_end.fileno(),)
+            )
             self._process, self._scratch = self._stack.enter_context(sandbox)
 
     def grade(self, job: Job) -> WorkerReport:
@@ -105,14 +107,14 @@ class _Worker:
             path = Path(folder, job.path.name)
             copy_submission(job.path, path)
             options = replace(job.options, built=job.options.built and str(self._share(Path(job.options.built))))
-            sent = replace(job, path=path, options=options, scratch=scratch, out=self._scratch / OUT)
+            remote_job = replace(job, path=path, options=options, scratch=scratch, out=self._scratch / OUT)
             try:
-                self._server.send_bytes(sent.to_json().encode())
+                self._server.send_bytes(remote_job.to_json().encode())
                 is_over = lambda: self._process.exit_reason is not None or time.monotonic() > deadline  # noqa: E731
                 files, reply = attend(self._server, self._isolation, is_over)
             except (MessageError, OSError):
                 files, reply = {}, {}
-        return WorkerReport(ExitReason.EXITED, reply["status"], reply["output"], files) if reply else self._end()
+        return WorkerReport(ExitReason.EXITED, reply["status"], reply["output"], files) if reply else self._stop()
 
     def _share(self, built: Path) -> Path:
         """Copy a built workspace to the shared folder, once for many jobs, and return the copy."""
@@ -121,8 +123,8 @@ class _Worker:
             shutil.copytree(built, copy, symlinks=True)
         return copy
 
-    def _end(self) -> WorkerReport:
-        """End a server that did not reply, and return a report with the reason."""
+    def _stop(self) -> WorkerReport:
+        """Stop a server that did not reply, and return a report with the reason."""
         self._process.wait(_EXIT_TIMEOUT)
         self._process.kill()
         exit_reason = self._process.exit_reason or ExitReason.WALL_TIME
@@ -130,5 +132,5 @@ class _Worker:
         return WorkerReport(exit_reason, self._process.returncode or 1, self._process.output)
 
     def close(self) -> None:
-        """End the server and all its child processes."""
+        """Stop the server and all its child processes."""
         self._stack.close()
