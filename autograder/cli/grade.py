@@ -22,7 +22,7 @@ from autograder.grade.job import Job
 from autograder.grade.store import LOG, RESULT
 from autograder.report import feedback
 from autograder.report.export import load
-from autograder.report.export.earlier import EarlierMarks
+from autograder.report.export.earlier_marks import EarlierMarks
 from autograder.result.model import Result, Status, write_json
 from autograder.run.sandbox import Isolation
 from autograder.suite import suites

@@ -65,7 +65,7 @@ def _only_fitting(
     """Keep only replacements that do not overlap, stay within one line, and do not make it too long."""
 
     @functools.wraps(rewriting)
-    def fitting(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
+    def filtered(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
         last_end = -1
         for start, end, new in sorted(rewriting(source, nodes), key=lambda change: (change[0], -change[1])):
             first, last = source.data.rfind(b"\n", 0, start) + 1, source.data.find(b"\n", end)
@@ -74,7 +74,7 @@ def _only_fitting(
                 yield start, end, new
                 last_end = end
 
-    return fitting
+    return filtered
 
 
 @_only_fitting

@@ -43,7 +43,7 @@ def serve(scratch: Path, client: Connection) -> None:
         )  # computed here, so that the children inherit the cached values
         child = os.fork()
         if child == 0:
-            line.take(client)
+            line.set_line(client)
             _work(job, log_file)
         _, status = os.waitpid(child, 0)
         _reap_orphans()

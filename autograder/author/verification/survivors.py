@@ -47,12 +47,12 @@ class ChapterMutationResult:
 
     @property
     def killed(self) -> int:
-        """How many mutants a check killed."""
+        """The number of mutants that a check killed."""
         return len(self.results) - len(self.survivors)
 
     @property
     def killable(self) -> int:
-        """How many mutants were graded, except survivors that are equivalent to the reference."""
+        """The number of graded mutants, except survivors that are equivalent to the reference."""
         return len(self.results) - sum(reason.startswith("equivalent: ") for reason in self.survivors.values())
 
     @property

@@ -121,7 +121,7 @@ class _Dispatch:
         self._last_suitable = time.monotonic()
         self._queue = self._pending_submissions(jobs)
         self._in_progress: dict[Future, _Pending] = {}
-        self._done: queue.SimpleQueue[Future] = queue.SimpleQueue()
+        self._finished: queue.SimpleQueue[Future] = queue.SimpleQueue()
 
     def run(self, interrupted: threading.Event) -> None:
         """Send submissions and receive results until all are done. After an interrupt, only receive."""
@@ -186,12 +186,12 @@ class _Dispatch:
             self._grade, pending.task, key=f"grade-{uuid.uuid4()}", resources={self._resource: 1}, pure=False
         )
         self._in_progress[future] = pending
-        future.add_done_callback(self._done.put)
+        future.add_done_callback(self._finished.put)
 
     def _receive(self) -> None:
         """Wait up to `TICK` seconds for a result, and process it."""
         try:
-            future = self._done.get(timeout=TICK)
+            future = self._finished.get(timeout=TICK)
         except queue.Empty:
             self._suitable_threads()  # notices if the scheduler or the last worker is gone
             return

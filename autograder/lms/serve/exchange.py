@@ -59,7 +59,7 @@ def find_submissions(inbound: Path) -> Iterator[ExchangeSubmission]:
     if not inbound.exists():
         return
     for entry in sorted(os.scandir(inbound), key=lambda item: item.name):
-        student, separator, rest = entry.name.partition("+")
+        student, separator, suffix = entry.name.partition("+")
         status = entry.stat(follow_symlinks=False)
         if not separator or not stat.S_ISDIR(status.st_mode) or not os.path.lexists(Path(entry.path, LAST_FILE)):
             continue
@@ -70,7 +70,7 @@ def find_submissions(inbound: Path) -> Iterator[ExchangeSubmission]:
         if owner.pw_name == student:
             # A student could forge the time in the name, but not this one.
             at = datetime.fromtimestamp(status.st_ctime, timezone.utc)
-            assignment = rest.partition("+")[0]
+            assignment = suffix.partition("+")[0]
             yield ExchangeSubmission(Path(entry.path), student, owner.pw_uid, owner.pw_gid, assignment, at)
 
 

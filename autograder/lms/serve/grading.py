@@ -15,7 +15,7 @@ from autograder.grade.job import Job
 from autograder.lms.serve import visible
 from autograder.lms.serve.hand_in import HandIn, Mark
 from autograder.lms.serve.queue import ahead_of, next_turn
-from autograder.lms.serve.settings import Settings, Shown
+from autograder.lms.serve.settings import Settings, ShownParts
 from autograder.lms.serve.store import Store
 from autograder.report import feedback
 from autograder.result.model import Result
@@ -29,7 +29,7 @@ Grade = Callable[[Job], Result]
 
 @dataclass(frozen=True)
 class GradingOptions:
-    """How answers are graded: the number of simultaneous jobs, the seed, the isolation level, and the function."""
+    """The number of simultaneous gradings, the seed, the isolation level, and the function that grades an answer."""
 
     jobs: int
     seed: int
@@ -99,7 +99,7 @@ class Grader:
             job = Job(path, hand_in.assignment, hand_in.student, options.seed, out, options.isolation)
             result = options.grade(job)
             settings = self._settings.assignments.get(hand_in.assignment)
-            if settings is not None and settings.shown is Shown.VISIBLE:
+            if settings is not None and settings.shown is ShownParts.VISIBLE:
                 visible.write(visible.run_visible(path, hand_in.assignment, options.isolation), out)
         feedback.write(result, out)
         return Mark(result.status, result.score, result.max_score)

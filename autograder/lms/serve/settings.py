@@ -36,7 +36,7 @@ MAX_INSTRUCTORS = 100_000
 MAX_BYTES = 1024 * 1024
 
 
-class Shown(str, Enum):
+class ShownParts(str, Enum):
     """The parts of a grading that a student sees before the assignment is due. After that, everything is shown."""
 
     EVERYTHING = "everything"  # the feedback page
@@ -51,7 +51,7 @@ class AssignmentSettings:
 
     due: datetime | None = None
     tries_a_day: int = TRIES_A_DAY
-    shown: Shown = Shown.EVERYTHING
+    shown: ShownParts = ShownParts.EVERYTHING
     best_counts: bool = False
     extensions: Mapping[str, datetime] = field(default_factory=dict)
 
@@ -64,9 +64,9 @@ class AssignmentSettings:
         due = self.due_of(student)
         return due is None or now <= due
 
-    def shown_to(self, student: str, now: datetime) -> Shown:
+    def shown_to(self, student: str, now: datetime) -> ShownParts:
         """Return the parts of a grading that the student sees."""
-        return self.shown if self.is_open(student, now) else Shown.EVERYTHING
+        return self.shown if self.is_open(student, now) else ShownParts.EVERYTHING
 
 
 @dataclass(frozen=True)
@@ -133,9 +133,13 @@ def _assignment(read: Reader, name: str, node: yaml.Node, zone: tzinfo) -> Assig
     extensions = _extensions(read, fields.get("extensions"), zone)
     if extensions and due is None:
         raise bad(read.path, fields["extensions"], f"{name} has extensions and is never due", "Add `due`")
-    shown = read.choice(fields.get("shown"), "shown", [choice.value for choice in Shown], Shown.EVERYTHING.value)
+    shown = read.choice(
+        fields.get("shown"), "shown", [choice.value for choice in ShownParts], ShownParts.EVERYTHING.value
+    )
     counts = read.choice(fields.get("counts"), "counts", ("best", "last"), "last")
-    return AssignmentSettings(due, _tries(read, fields.get("tries_a_day")), Shown(shown), counts == "best", extensions)
+    return AssignmentSettings(
+        due, _tries(read, fields.get("tries_a_day")), ShownParts(shown), counts == "best", extensions
+    )
 
 
 def _extensions(read: Reader, node: yaml.Node | None, zone: tzinfo) -> dict[str, datetime]:

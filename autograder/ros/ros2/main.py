@@ -16,7 +16,7 @@ from autograder.ros import RosError, activate
 from autograder.ros.ros2.exceptions import Ros2Error
 from autograder.ros.ros2.parsing import Command, ExitCode, parse
 
-STAND_INS = Path(__file__).parents[1] / "standins"
+STANDINS_FOLDER = Path(__file__).parents[1] / "standins"
 
 COMMANDS = {
     "action": Command("Various action related sub-commands", "action", ("echo", "find", "info", "type")),
@@ -66,8 +66,8 @@ def main(argv: Sequence[str] | None = None) -> ExitCode:
 
 def run_stand_in(arguments: Sequence[str]) -> ExitCode:
     """Run the stand-in for `ros2`, with ROS active. Return its exit code, or the text of an error."""
-    if str(STAND_INS) not in sys.path:
-        sys.path.append(str(STAND_INS))
+    if str(STANDINS_FOLDER) not in sys.path:
+        sys.path.append(str(STANDINS_FOLDER))
     if "--use-python-default-buffering" not in arguments:
         sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
     previous_handler = signal.signal(signal.SIGTERM, _terminate)

@@ -100,8 +100,8 @@ class Session:
     def _min_settling(self, limit: float) -> float:
         if self.spin_time is not None:
             return 0.0
-        alone = len(self.node.get_node_names()) < 2
-        return min(limit, MIN_SETTLING_ALONE if alone else MIN_SETTLING)
+        is_alone = len(self.node.get_node_names()) < 2
+        return min(limit, MIN_SETTLING_ALONE if is_alone else MIN_SETTLING)
 
     def _graph(self) -> tuple[object, ...]:
         node = self.node

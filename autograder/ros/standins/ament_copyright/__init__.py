@@ -4,13 +4,13 @@ It is found only where the real package is not importable. Covered: `main(argv)`
 `--verbose`, `--list-licenses` and `--xunit-file`. Get the real one by sourcing a ROS 2 Jazzy installation.
 """
 
-from standin_notice import guard
-from standin_submodules import offer_submodules
+from standin_notice import make_getattr
+from standin_submodules import install_submodule_finder
 
 from .main import main
 
 __all__ = ["main"]
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)
 
-offer_submodules()
+install_submodule_finder()

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .headers import IDENTIFIERS, UNKNOWN, licence_of_text, read_header
 
@@ -121,4 +121,4 @@ def _write_xunit(path: Path, verdicts: Sequence[Verdict], elapsed: float) -> Non
     ET.ElementTree(suite).write(path, encoding="utf-8", xml_declaration=True)
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .condition import Condition
 from .exceptions import InvalidConditionExpressionError
@@ -31,7 +31,7 @@ _FALSE = ("false", "0")
 
 
 def evaluate_condition_expression(context: LaunchContext, expression: Iterable[Substitution]) -> bool:
-    """Return whether `expression` comes out as true or 1 (True), or as false or 0 (False).
+    """Return whether the text of `expression` is true or 1 (True), or false or 0 (False).
 
     Raises InvalidConditionExpressionError for any other text.
     """
@@ -45,7 +45,7 @@ def evaluate_condition_expression(context: LaunchContext, expression: Iterable[S
 
 
 class IfCondition(Condition):
-    """True when the expression is true or 1, false when it is false or 0."""
+    """True if the expression is true or 1, False if it is false or 0."""
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
         self._expression = normalize_to_list_of_substitutions(predicate_expression)
@@ -73,7 +73,7 @@ def _warn(condition: Condition) -> None:
 
 
 class LaunchConfigurationEquals(Condition):
-    """True when a launch configuration has the given text, or when it is not set and None is expected."""
+    """True if a launch configuration has the given text, or is not set and None is expected."""
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
         _warn(self)
@@ -90,4 +90,4 @@ class LaunchConfigurationNotEquals(Condition):
         super().__init__(predicate=lambda context: not _equals(context, launch_configuration_name, expected))
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

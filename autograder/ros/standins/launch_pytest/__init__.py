@@ -12,15 +12,15 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from standin_notice import guard
-from standin_submodules import offer_submodules
+from standin_notice import make_getattr
+from standin_submodules import install_submodule_finder
 
 from ._fixture import fixture
 
 __all__ = ["actions", "fixture", "tools"]
 
 _SUBMODULES = ("actions", "tools")
-_missing = guard(__name__)
+_missing = make_getattr(__name__)
 
 
 def __getattr__(name: str) -> Any:
@@ -30,4 +30,4 @@ def __getattr__(name: str) -> Any:
     return _missing(name)
 
 
-offer_submodules()
+install_submodule_finder()

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from launch_testing.actions import ReadyToTest
-from standin_notice import guard
+from standin_notice import make_getattr
 
 __all__ = ["ReadyToTest"]
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

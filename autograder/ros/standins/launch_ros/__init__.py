@@ -9,8 +9,8 @@ real package run `make real-launch`, or source an installation of ROS 2 Jazzy.
 
 from __future__ import annotations
 
-from standin_notice import guard
-from standin_submodules import offer_submodules
+from standin_notice import make_getattr
+from standin_submodules import install_submodule_finder
 
 from . import (
     _frontend,
@@ -30,6 +30,6 @@ __all__ = [
     "utilities",
 ]
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)
 
-offer_submodules()
+install_submodule_finder()

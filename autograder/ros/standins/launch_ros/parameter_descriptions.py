@@ -12,7 +12,7 @@ from launch.frontend import parse_substitution
 from launch.substitutions import SubstitutionFailure
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from launch.utilities.type_utils import normalize_typed_substitution, perform_typed_substitution
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ._temporary import temporary_parameter_file
 
@@ -84,4 +84,4 @@ class ParameterFile:
         return temporary_parameter_file(substituted)
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -13,7 +13,7 @@ from launch import LaunchContext, SomeSubstitutionsType, Substitution
 from launch.substitutions import SubstitutionFailure
 from launch.substitutions.paths import DirectorySubstitution
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
-from standin_notice import guard
+from standin_notice import make_getattr
 
 __all__ = ["ExecutableInPackage", "FindPackage", "FindPackagePrefix", "FindPackageShare", "Parameter"]
 
@@ -112,4 +112,4 @@ class Parameter(Substitution):
         return perform_substitutions(context, self.default)
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

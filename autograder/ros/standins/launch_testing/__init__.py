@@ -13,8 +13,8 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from standin_notice import guard
-from standin_submodules import offer_submodules
+from standin_notice import make_getattr
+from standin_submodules import install_submodule_finder
 
 __all__ = [
     "ActiveIoHandler",
@@ -38,7 +38,7 @@ _HOMES = {
     "ready_to_test_action_timeout": "markers",
 }
 _SUBMODULES = ("actions", "asserts", "event_handlers", "markers", "tools", "util")
-_missing = guard(__name__)
+_missing = make_getattr(__name__)
 
 
 def __getattr__(name: str) -> Any:
@@ -50,4 +50,4 @@ def __getattr__(name: str) -> Any:
     return _missing(name)
 
 
-offer_submodules()
+install_submodule_finder()

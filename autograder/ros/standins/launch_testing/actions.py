@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from launch import Action, LaunchContext
-from standin_notice import guard
+from standin_notice import make_getattr
 
 __all__ = ["ReadyToTest"]
 
@@ -31,4 +31,4 @@ class ReadyToTest(Action):
                 logging.getLogger(__name__).error(error)
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

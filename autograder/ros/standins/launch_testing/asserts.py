@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from launch.actions import ExecuteLocal
 from launch.events.process import ProcessExited
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .util import NO_CMD_ARGS, resolveProcesses
 
@@ -172,4 +172,4 @@ def assertSequentialStdout(
     yield SequentialTextChecker([event.text.decode() for event in proc_output[meant]])
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -8,7 +8,7 @@ from launch import LaunchDescriptionEntity, SomeEntitiesType
 from launch.actions import ExecuteLocal
 from launch.event_handlers import OnProcessIO
 from launch.events.process import ProcessIO
-from standin_notice import guard
+from standin_notice import make_getattr
 
 __all__ = ["StdoutReadyListener"]
 
@@ -28,4 +28,4 @@ class StdoutReadyListener(OnProcessIO):
         return super().describe()[0], self._actions
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

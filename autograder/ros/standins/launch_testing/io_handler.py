@@ -8,7 +8,7 @@ from typing import Any, cast
 
 from launch.actions import ExecuteLocal
 from launch.events.process import ProcessIO
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .asserts import assertInStream
 from .util import NoMatchingProcessException, resolveProcesses
@@ -134,4 +134,4 @@ class ActiveIoHandler:
         assert self.waitFor(*args, **kwargs), "Waiting for output timed out"
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

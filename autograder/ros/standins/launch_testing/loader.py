@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Any
 
 from launch import LaunchDescription, LaunchDescriptionEntity
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .actions import ReadyToTest
 
@@ -165,4 +165,4 @@ def _given_to(function: Callable[..., Any], given: Mapping[str, Any]) -> Callabl
     return call
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

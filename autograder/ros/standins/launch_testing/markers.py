@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 __all__ = ["keep_alive", "parametrize", "post_shutdown_test", "ready_to_test_action_timeout", "retry_on_failure"]
 
@@ -89,4 +89,4 @@ def retry_on_failure(*, times: int, delay: float | None = None) -> Callable[[Fun
     return decorate
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

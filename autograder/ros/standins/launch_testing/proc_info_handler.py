@@ -8,7 +8,7 @@ from typing import Any, cast
 
 from launch.actions import ExecuteLocal
 from launch.events.process import ProcessExited, RunningProcessEvent
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .util import NoMatchingProcessException, resolveProcesses
 
@@ -106,4 +106,4 @@ class ActiveProcInfoHandler:
             return self._changed.wait_for(came, timeout)
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

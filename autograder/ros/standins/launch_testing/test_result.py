@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import unittest
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .loader import TestRun
 
@@ -46,4 +46,4 @@ def skipped(run: TestRun, reason: str) -> unittest.TestResult:
     return result
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

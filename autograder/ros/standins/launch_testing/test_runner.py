@@ -11,7 +11,7 @@ from launch import LaunchDescription, LaunchDescriptionSource, LaunchService
 from launch.actions import IncludeLaunchDescription, RegisterEventHandler
 from launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
 from launch.events.process import ProcessExited
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .io_handler import ActiveIoHandler
 from .loader import TestRun
@@ -130,4 +130,4 @@ def _run_tests(suite: unittest.TestSuite) -> TestResult:
     return cast(TestResult, unittest.TextTestRunner(verbosity=2, resultclass=TestResult).run(suite))  # type: ignore[arg-type]
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -5,7 +5,7 @@ It is found only where the real package is not importable, has its import names,
 sourcing a ROS 2 Jazzy installation.
 """
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .convert import get_message_slot_types, message_to_csv, message_to_ordereddict, message_to_yaml
 from .get_interfaces import (
@@ -36,4 +36,4 @@ __all__ = [
     "set_message_fields",
 ]
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

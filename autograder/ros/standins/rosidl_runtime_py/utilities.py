@@ -6,7 +6,7 @@ import importlib
 from typing import Any
 
 from rosidl_parser.definition import NamespacedType
-from standin_notice import guard
+from standin_notice import make_getattr
 
 
 def get_interface(identifier: str) -> Any:
@@ -57,4 +57,4 @@ def _load(package: str, kind: str, name: str) -> Any:
     return getattr(importlib.import_module(f"{package}.{kind}"), name)
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ..event import Event
 from ..launch_description_entity import LaunchDescriptionEntity
@@ -57,4 +57,4 @@ class TimerEvent(Event):
         self.timer_action = timer_action
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

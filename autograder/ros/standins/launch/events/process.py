@@ -6,7 +6,7 @@ import signal
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ..event import Event
 
@@ -142,4 +142,4 @@ def matches_executable(executable: str) -> ProcessMatcher:
     return lambda action: (action.process_details or {}).get("cmd", [None])[0] == executable
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 
 class Entity(ABC):
@@ -47,4 +47,4 @@ class Entity(ABC):
         """
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ..substitution import Substitution, TextSubstitution
 from .expose import instantiate_substitution
@@ -122,4 +122,4 @@ class _Reader:
         return SubstitutionSyntaxError(f"this substitution has no end or cannot be read: {line}")
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

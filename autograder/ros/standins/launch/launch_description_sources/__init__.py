@@ -8,7 +8,7 @@ from importlib.machinery import SourceFileLoader
 from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ..exceptions import InvalidLaunchFileError, InvalidPythonLaunchFileError
 from ..frontend import InvalidFrontendLaunchFileError, Parser
@@ -139,4 +139,4 @@ class AnyLaunchDescriptionSource(LaunchDescriptionSource):
         )
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

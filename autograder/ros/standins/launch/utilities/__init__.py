@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ..substitution import normalize_to_list_of_substitutions, perform_substitutions
 
@@ -41,4 +41,4 @@ def ensure_argument_type(
         )
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

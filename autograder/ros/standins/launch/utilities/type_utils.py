@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, get_args, get_origin
 
 import yaml
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ..launch_context import LaunchContext
 from ..substitution import Substitution, normalize_to_list_of_substitutions, perform_substitutions
@@ -149,4 +149,4 @@ def perform_typed_substitution(context: LaunchContext, value: Any, data_type: An
     return items
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

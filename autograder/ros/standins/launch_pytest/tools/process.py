@@ -18,7 +18,7 @@ from launch import LaunchContext
 from launch.actions import ExecuteLocal
 from launch.event_handler import BaseEventHandler
 from launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
-from standin_notice import guard
+from standin_notice import make_getattr
 
 Validator = Callable[[str], object]
 
@@ -217,4 +217,4 @@ def assert_stderr_sync(
         validate_output(execute_process_action.get_stderr())
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

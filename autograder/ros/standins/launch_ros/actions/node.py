@@ -11,7 +11,7 @@ from launch import LaunchContext, SomeSubstitutionsType
 from launch.actions import ExecuteProcess
 from launch.logging import get_logger
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .._temporary import temporary_parameter_file
 from ..substitutions import ExecutableInPackage
@@ -186,4 +186,4 @@ def _rule(name: str, value: Any) -> str:
     return f"{name}:={yaml.dump(value)}"
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 from launch.actions import ExecuteProcess
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .proc_lookup import NO_CMD_ARGS, NoMatchingProcessException, resolveProcesses
 
@@ -19,4 +19,4 @@ def KeepAliveProc() -> ExecuteProcess:  # the real one's name
     return ExecuteProcess(cmd=[sys.executable, "-c", _WAIT])
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)
