@@ -16,40 +16,45 @@ from autograder.checks.ch09_assessment.support.robot import Types, require_built
 
 check = group("launch", doc=contract.LAUNCH_DOC)
 NODES = tuple(f"/{name}" for name in PROGRAMS)
-FIRST_SECONDS = 20.0  # real time for the first decision; it takes one period
+FIRST_SECONDS = 20.0  # real time for the first decision, which takes one period
 
 
 def draw_hot(seed: int) -> int:
-    """Return a whole number of degrees Celsius."""
+    """Return the argument hot, a whole number of degrees Celsius."""
     return Random(f"{seed}:hot").randint(52, 58)
 
 
 @dataclass(frozen=True)
 class Launched:
-    """The launch that all checks look at, and the one with a whole number for hot, where the nodes did not all run."""
+    """The launches that all checks share.
+
+    Attributes:
+        harness: the launch that the checks test.
+        with_integer: the launch with a whole number for hot; the same one unless the guard did not run in it.
+    """
 
     harness: LaunchHarness
-    whole: LaunchHarness
+    with_integer: LaunchHarness
 
 
 @pytest.fixture(scope="module")
 def launched(workspace: Workspace, builds: Mapping[str, Diagnosis], types: Types, hot: int) -> Iterator[Launched]:
-    """One launch, for all checks of this module; a second one if the guard refuses a whole number."""
+    """One launch for all checks of this module, and a second one if the guard refuses a whole number."""
     require_built(builds, PACKAGE)
-    there = installed.inspect_package(workspace.install, PACKAGE).shared
-    expect(f"launch/{LAUNCH_FILE}" in there, f"launch/{LAUNCH_FILE} is not installed: look at data_files in setup.py.")
+    shared = installed.inspect_package(workspace.install, PACKAGE).shared
+    expect(f"launch/{LAUNCH_FILE}" in shared, f"launch/{LAUNCH_FILE} is not installed: look at data_files in setup.py.")
     subscribes = {"/decision": types.decision}
-    with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": str(hot)}, subscribes=subscribes) as whole:
-        if f"/{GUARD}" in launch_probe.settle(whole, NODES):
-            yield Launched(whole, whole)
+    with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": str(hot)}, subscribes=subscribes) as with_integer:
+        if f"/{GUARD}" in launch_probe.settle(with_integer, NODES):
+            yield Launched(with_integer, with_integer)
             return
     with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": f"{hot}.0"}, subscribes=subscribes) as harness:
-        yield Launched(harness, whole)
+        yield Launched(harness, with_integer)
 
 
 @pytest.fixture(scope="module")
 def hot(seed: int) -> int:
-    """The argument with which it is launched, a whole number in degrees Celsius."""
+    """The argument hot of the launch, a whole number of degrees Celsius."""
     return draw_hot(seed)
 
 
@@ -64,8 +69,8 @@ def test_launches(launched: Launched) -> None:
     """The launch file is installed, starts the three nodes under their names, and decisions come out."""
     harness = launched.harness
     launch_probe.expect_nodes(harness, NODES)
-    came = harness.wait_for(lambda: bool(harness.messages("/decision")), FIRST_SECONDS)
-    expect(came, f"All three run, and no decision came in {FIRST_SECONDS:.0f} s.", fraction=0.5)
+    has_decision = harness.wait_for(lambda: bool(harness.messages("/decision")), FIRST_SECONDS)
+    expect(has_decision, f"All three run, and no decision came in {FIRST_SECONDS:.0f} s.", fraction=0.5)
 
 
 @check(points=2, covers=("hot-argument", "hot-cool"), after=("launches",))
@@ -75,8 +80,8 @@ def test_argument(workspace: Workspace, launched: Launched, hot: int, draw: Rand
     """Its argument hot, by default 60.0, becomes the guard's parameter, always as a float."""
     harness = launched.harness
     launch_probe.expect_parameters(harness, f"/{GUARD}", {"hot": float(hot)})
-    why = launch_probe.failure(launched.whole.output)
-    expect(harness is launched.whole, f"Launched with hot:={hot}, guard does not run. {why}", fraction=0.5)
+    reason = launch_probe.failure(launched.with_integer.output)
+    expect(harness is launched.with_integer, f"Launched with hot:={hot}, guard does not run. {reason}", fraction=0.5)
     arguments = launch_probe.declared_arguments(workspace, PACKAGE, LAUNCH_FILE)
     launch_probe.expect_argument(arguments, "hot", "60.0", described=False)
     try:

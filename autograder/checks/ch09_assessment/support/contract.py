@@ -1,4 +1,4 @@
-"""The contract of the practical question, in numbers, and the names that the checks use."""
+"""Names and numbers of the practical question's contract, and links that several checks use."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MESSAGES = {
 }
 
 PERIOD, MEAN, SWING = 0.5, 50.0, 20.0  # s, degrees Celsius, degrees
-READINGS_A_TURN = 20
+READINGS_PER_TURN = 20
 WINDOW = 5
 HOT, COOL = 60.0, 50.0  # degrees Celsius
 TOLERANCE = 1e-3  # degrees: a temperature is a 32-bit float
@@ -36,17 +36,17 @@ LAUNCH_DOC = f"{_DOCS}/Tutorials/Intermediate/Launch/Creating-Launch-Files.html"
 
 
 def reading(number: int, mean: float = MEAN, swing: float = SWING) -> float:
-    """Return what the thermometer measures in its reading of this number, from 0, in degrees Celsius."""
-    return mean + swing * math.sin(math.tau * number / READINGS_A_TURN)
+    """Return the thermometer's reading with this number, which starts from 0, in degrees Celsius."""
+    return mean + swing * math.sin(math.tau * number / READINGS_PER_TURN)
 
 
 def averages(readings: list[float], window: int = WINDOW) -> list[float]:
-    """Return the average after each of the readings, all of them numbers."""
-    return [fmean(readings[max(0, end - window) : end]) for end in range(1, len(readings) + 1)]
+    """Return the average after each reading. All readings are finite."""
+    return [fmean(readings[max(0, stop - window) : stop]) for stop in range(1, len(readings) + 1)]
 
 
 def decisions(temperatures: Iterable[float], hot: float = HOT, cool: float = COOL) -> list[bool]:
-    """Return for each temperature whether the fan runs; it is off before the first."""
+    """Return whether the fan runs after each temperature. It is off at first."""
 
     def decide(cooling: bool, celsius: float) -> bool:
         if not math.isfinite(celsius) or celsius >= hot:
