@@ -62,7 +62,7 @@ def driver(shared_driver: Shared[Driver]) -> Driver:
 @pytest.fixture
 def free_driver(placed_driver: Driver) -> Driver:
     """A distance driver that has received its pose and no goal."""
-    if placed_driver.used:
+    if placed_driver.has_goals:
         placed_driver.restart()
     return placed_driver
 

@@ -27,7 +27,7 @@ print("[INFO] [self_test-1]: process has finished cleanly [pid 6]", flush=True)
 
 
 def attacks() -> tuple[Attack, ...]:
-    """Return the attacks."""
+    """Return the attacks on the chapter."""
     return (
         Attack(
             "launch thief",

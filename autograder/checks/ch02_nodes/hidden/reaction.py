@@ -108,8 +108,8 @@ def test_only_forward_counts(robot: Robot, reactions: Reactions, draw: random.Ra
 def test_other_lidars(robot: Robot, reactions: Reactions, draw: random.Random) -> None:
     """It reads bearings from the message: any number of beams, any first bearing."""
     near = draw.uniform(*NEAR)
-    many = draw.randrange(500, 800)
-    for beams, first, last in ((many, -180.0, None), (1081, -135.0, 135.0), (181, -90.0, 90.0)):
+    beam_count = draw.randrange(500, 800)
+    for beams, first, last in ((beam_count, -180.0, None), (1081, -135.0, 135.0), (181, -90.0, 90.0)):
         name = f"from a lidar of {beams} beams that starts at {first:.0f}°"
         ahead = scan(Part(-5.0, 5.0, near), beams=beams, first_bearing=first, last_bearing=last)
         aside = scan(Part(60.0, 85.0, near), beams=beams, first_bearing=first, last_bearing=last)
@@ -121,8 +121,8 @@ def test_other_lidars(robot: Robot, reactions: Reactions, draw: random.Random) -
         (-28.0, -22.0, reactions.expect_turn),
         (22.0, 28.0, reactions.expect_turn),
     ):
-        message = scan(Part(right, left, near), beams=many, first_bearing=-180.0)
-        position = f"away, from {right:.0f}° to {left:.0f}°, from a lidar of {many} beams that starts at -180°"
+        message = scan(Part(right, left, near), beams=beam_count, first_bearing=-180.0)
+        position = f"away, from {right:.0f}° to {left:.0f}°, from a lidar of {beam_count} beams that starts at -180°"
         expect_reaction(robot.see(message), f"With something {near:.2f} m {position}", fraction=0.75)
     for lidar in other_lidars(draw):
         for bearing in (draw.uniform(-26.0, -8.0), draw.uniform(8.0, 26.0)):

@@ -54,7 +54,7 @@ def other_lidars(draw: random.Random) -> tuple[Lidar, ...]:
 
     The first three have as many beams as the usual lidar, so bearings that a robot caches by this number are wrong.
     """
-    turns, ahead, many = (
+    turns, ahead, beam_count = (
         draw.choice((-3, -2, 2, 3)) * TURN,
         draw.uniform(-25.0, 25.0),
         draw.randrange(MIN_BEAMS, MAX_BEAMS),
@@ -65,6 +65,6 @@ def other_lidars(draw: random.Random) -> tuple[Lidar, ...]:
         Lidar(USUAL_BEAMS, -180.0, 179.0),
         Lidar(USUAL_BEAMS, 0.0, upside_down),
         Lidar(USUAL_BEAMS, ahead, ahead + TURN - 1.0),
-        Lidar(many, turns + 180.0, turns - 179.0),
-        Lidar(many, first, first + 1.7 * TURN),
+        Lidar(beam_count, turns + 180.0, turns - 179.0),
+        Lidar(beam_count, first, first + 1.7 * TURN),
     )

@@ -162,6 +162,5 @@ def _velocity(received: ReceivedMessage) -> Velocity:
 
 
 def _matches(velocity: tuple[float, float], expected: tuple[float, float]) -> bool:
-    return all(
-        abs(value - target) <= TOLERANCE for value, target in zip(velocity, expected, strict=True)
-    )  # false for nan
+    pairs = zip(velocity, expected, strict=True)
+    return all(abs(value - target) <= TOLERANCE for value, target in pairs)  # false for nan

@@ -226,14 +226,14 @@ def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
 @hint("0.0 < goal.distance <= MAX_DISTANCE is false for nan, too.")
 def test_drive_rejects(free_driver: Driver, draw: random.Random) -> None:
     """A goal whose distance or speed is out of its range is rejected, the robot stays, and there is room for a goal."""
-    over, factor = draw.uniform(0.05, 2.0), draw.uniform(1.02, 1.06)
+    excess, factor = draw.uniform(0.05, 2.0), draw.uniform(1.02, 1.06)
     invalid_goals = (
         (0.0, 0.2),
-        (-over, 0.2),
+        (-excess, 0.2),
         (MAX_DISTANCE * factor, 0.2),
         (math.nan, 0.2),
         (1.0, 0.0),
-        (1.0, -over),
+        (1.0, -excess),
         (1.0, MAX_SPEED * factor),
         (1.0, math.nan),
     )

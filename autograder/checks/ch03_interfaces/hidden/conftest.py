@@ -20,7 +20,7 @@ FAST, SLOW = 4.0, 0.02  # s by the machine's clocks in 1 s of ROS time
 
 @pytest.fixture(scope="session")
 def tuned_name(seed: int) -> str:
-    """The name that the tuned status publisher is given."""
+    """The robot name of the tuned status publisher."""
     return f"Rover{random.Random(f'{seed}:name').randrange(100, 1000)}"
 
 

@@ -31,7 +31,7 @@ class Driver(AutoHarness):
         height: the robot's height in m, which must not count as distance.
         stuck: whether the wheels are held.
         is_silent: whether the odometry is silent.
-        used: whether the program has been sent a goal.
+        has_goals: whether the program has been sent a goal.
     """
 
     def __init__(self, workspace: Workspace, types: Types, clock_rate: float = 1.0) -> None:
@@ -39,7 +39,7 @@ class Driver(AutoHarness):
         super().__init__(workspace, PACKAGE, DRIVER, publishes=publishes, subscribes=subscribes, clock_rate=clock_rate)
         self.types = types
         self.x, self.y, self.heading, self.height = 0.0, 0.0, 0.0, 0.0
-        self.stuck = self.is_silent = self.used = False
+        self.stuck = self.is_silent = self.has_goals = False
         self._first_command = 0  # the number of commands before the last goal was sent
 
     def restart(self) -> None:
@@ -47,7 +47,7 @@ class Driver(AutoHarness):
         stuck, is_silent = self.stuck, self.is_silent
         self.__exit__(None, None, None)
         self.__enter__()
-        self.used = False
+        self.has_goals = False
         self.place(self.x, self.y, self.heading)
         self.stuck, self.is_silent = stuck, is_silent
 
@@ -70,16 +70,16 @@ class Driver(AutoHarness):
             request.speed = speed
         self._first_command = len(self.messages(COMMANDS))
         goal: Goal = self.send_goal(self.types.drive_distance, ACTION, request, ANSWER_SECONDS)
-        self.used = True
+        self.has_goals = True
         self.until(lambda: goal.accepted is not None, ANSWER_SECONDS)
         expect(goal.accepted is not None, "The action server drive_distance did not answer a goal.")
         return goal
 
     def start(self, distance: float, speed: float | None = None) -> Goal:
         """Send a goal that must be accepted, if necessary after a restart of the program."""
-        used = self.used
+        has_goals = self.has_goals
         goal = self.send(distance, speed)
-        if used and not goal.accepted:
+        if has_goals and not goal.accepted:
             self.restart()
             goal = self.send(distance, speed)
         expect(goal.accepted is True, f"A goal of {distance:.2f} m was rejected, and nothing stood against it.")

@@ -14,7 +14,7 @@ from autograder.checks.ch04_launch.hidden.launches import Launches
 
 @pytest.fixture(scope="session")
 def inputs(seed: int) -> Inputs:
-    """The hidden inputs of this run."""
+    """The hidden inputs of this grading."""
     return draw_inputs(random.Random(f"{seed}:launch"))
 
 

@@ -55,9 +55,8 @@ def test_includes(launches: Launches) -> None:
 @hint("DeclareLaunchArgument('first', default_value='robot1', description='...')")
 def test_fleet_arguments(launches: Launches) -> None:
     """two_robots.launch.py declares first, second and speed, each with its default and a description."""
-    arguments = launch_probe.declared_arguments(
-        launches.fleet_workspace(), PACKAGE, FLEET
-    )  # also those of the included file
+    # They include the arguments of the included file.
+    arguments = launch_probe.declared_arguments(launches.fleet_workspace(), PACKAGE, FLEET)
     for name, default in (("first", FIRST), ("second", SECOND), ("speed", str(contract.SPEED))):
         launch_probe.expect_argument(arguments, name, default)
 
@@ -150,8 +149,8 @@ def test_own_commands(launches: Launches, inputs: Inputs) -> None:
 def test_fleet_stop(launches: Launches) -> None:
     """Ctrl-C ends all four nodes cleanly and leaves nothing behind."""
     launch_probe.settle(launches.fleet(), nodes_in_namespaces(FIRST, SECOND))
-    running = launches.fleet().programs()
-    expect(bool(running), f"No node is up. {launch_probe.failure(launches.fleet().output)}".strip())
+    programs = launches.fleet().programs()
+    expect(bool(programs), f"No node is up. {launch_probe.failure(launches.fleet().output)}".strip())
     launch_probe.expect_clean_stop(launches.fleet())
 
 

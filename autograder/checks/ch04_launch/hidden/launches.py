@@ -35,9 +35,7 @@ SCRIPTS = {
     "reporter": "#!/bin/sh\nexec sleep 0.1\n",
     "driver": "#!/bin/sh\ntrap 'exit 3' TERM\nwhile sleep 0.2; do :; done\n",
 }
-STILL = {
-    "driver": "#!/bin/sh\nexec sleep 600\n"
-}  # for a check of the reporter alone: a script starts faster than a node
+STILL = {"driver": "#!/bin/sh\nexec sleep 600\n"}  # for a check of the reporter alone; it starts faster than a node
 PROGRAMS = {"scripts": SCRIPTS, "still": STILL, **{ending: {"self_test": text} for ending, text in UNUSUAL.items()}}
 # Arguments for two_robots.launch.py. Only one check tests whether they are its defaults.
 DEFAULTS = {"first": FIRST, "second": SECOND, "speed": SPEED}
@@ -57,7 +55,7 @@ class Launches:
         self._stack = ExitStack()
         self._harnesses: dict[str, LaunchHarness] = {}
         self._copies: dict[str, Workspace] = {}
-        self._early_drivers: set[LaunchHarness] = set()
+        self._early_launches: set[LaunchHarness] = set()
         self._arguments: dict[str, dict[str, launch_arguments.Argument]] = {}
 
     def robot(self, **arguments: object) -> LaunchHarness:
@@ -97,7 +95,7 @@ class Launches:
         return self._harness(SAFE, arguments, {}, finishes="self_test")
 
     def unusual(self, ending: str) -> LaunchHarness:
-        """Return a launch of safe_start.launch.py with a self-test of `UNUSUAL` and a full enough battery."""
+        """Return a launch of safe_start.launch.py with a self-test of `UNUSUAL` and a sufficient battery level."""
         return self._harness(SAFE, {"battery": self._inputs.enough}, {}, programs=ending)
 
     def scripted(self) -> LaunchHarness:
@@ -106,7 +104,7 @@ class Launches:
 
     def is_early(self, harness: LaunchHarness) -> bool:
         """Return whether the driver ran during the self-test, in a launch of `safe` or `scripted`."""
-        return harness in self._early_drivers
+        return harness in self._early_launches
 
     def safe_arguments(self) -> dict[str, launch_arguments.Argument]:
         """Return the arguments that safe_start.launch.py declares; raises as `declared_arguments` does."""
@@ -143,7 +141,7 @@ class Launches:
             harness = LaunchHarness(copy, PACKAGE, file, argument_texts, subscribes=subscribes, environment=environment)
             self._harnesses[key] = self._stack.enter_context(harness)
             if finishes and short_lived.ran_together(harness, finishes, "driver"):
-                self._early_drivers.add(harness)
+                self._early_launches.add(harness)
             if finishes and short_lived.hangs(harness, finishes):
                 self._harnesses[key] = self._stack.enter_context(harness.another())
         return self._harnesses[key]
