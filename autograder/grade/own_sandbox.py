@@ -9,13 +9,13 @@ from multiprocessing import Pipe
 from pathlib import Path
 
 from autograder import course_paths
-from autograder.building.keeper import attend
+from autograder.building.bundle_server import serve_worker
 from autograder.grade.job import Job
 from autograder.run.sandbox.bubblewrap import OUT
 from autograder.run.sandbox.limits import GRADING_WORKER
 from autograder.run.sandbox.messages import MessageError
 from autograder.run.sandbox.spec import View
-from autograder.run.sandbox.worker_sandbox import WorkerReport, ended, in_worker_sandbox, place_of
+from autograder.run.sandbox.worker_sandbox import WorkerReport, in_worker_sandbox, path_in_sandbox, wait_and_report
 from autograder.suite import fingerprint
 
 GRACE = 30.0  # s for a worker to stop its programs and report, after its time is over
@@ -26,7 +26,7 @@ def in_own_sandbox(job: Job) -> WorkerReport:
     ours, theirs = Pipe()
 
     def command(scratch: Path) -> list[str]:
-        path = place_of(job.path, job.isolation, scratch)
+        path = path_in_sandbox(job.path, job.isolation, scratch)
         return _worker(replace(job, path=path, scratch=scratch, out=scratch / OUT), theirs.fileno())
 
     limits = replace(GRADING_WORKER, wall_seconds=job.seconds + GRACE)
@@ -35,11 +35,11 @@ def in_own_sandbox(job: Job) -> WorkerReport:
             sandbox = in_worker_sandbox(command, job.isolation, limits, view=view(job), pass_fds=(theirs.fileno(),))
             process, _ = stack.enter_context(sandbox)
         try:
-            files, _ = attend(ours, job.isolation, lambda: process.exit_reason is not None)
-            return replace(ended(process), files=files)
+            files, _ = serve_worker(ours, job.isolation, lambda: process.exit_reason is not None)
+            return replace(wait_and_report(process), files=files)
         except MessageError as error:
             process.kill()
-            report = ended(process)
+            report = wait_and_report(process)
             return replace(report, returncode=report.returncode or 1, output=f"{report.output}\n{error}")
 
 

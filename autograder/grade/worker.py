@@ -198,7 +198,7 @@ def work(job: Job) -> None:
     """Grade a job, and send the files that it left over this process's line."""
     job.out.mkdir(parents=True, exist_ok=True)
     write_json(job.out / RESULT, Grading(job).grade().to_json())
-    with line.held() as connection:
+    with line.exclusive_line() as connection:
         if connection is not None:
             send_message(connection, {"do": "result"})
             send_tree(connection, read_tree(job.out, RESULT_FILES))
@@ -207,7 +207,7 @@ def work(job: Job) -> None:
 def main() -> None:
     """Grade the job that the command line holds."""
     job = Job.from_json(sys.argv[1])
-    line.take(Connection(int(sys.argv[2])))
+    line.set_line(Connection(int(sys.argv[2])))
     prepare()
     work(job)
 

@@ -91,7 +91,7 @@ def _record_output(harness: Harness, seconds: float, recorder: Recorder, recorde
     `recorded_bytes` counts what was recorded of each program.
     """
     for process in harness.processes:
-        text = process.written(recorded_bytes.get(process, 0))
+        text = process.output_from(recorded_bytes.get(process, 0))
         end = text.rfind(b"\n") + 1
         recorded_bytes[process] = recorded_bytes.get(process, 0) + end
         for line in clean(text[:end].decode("utf-8", errors="replace")).split("\n"):

@@ -6,13 +6,13 @@ from collections import Counter
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.run.sandbox.limits import MIB, RECEIVED, Received
+from autograder.run.sandbox.limits import MIB, RECEIVED_MESSAGES, MessageLimits
 
 
 class Inflow:
     """Counts the messages of all topics of one harness, and their bytes on the wire."""
 
-    def __init__(self, limits: Received = RECEIVED) -> None:
+    def __init__(self, limits: MessageLimits = RECEIVED_MESSAGES) -> None:
         self._limits = limits
         self._messages: Counter[str] = Counter()  # by topic
         self._bytes: Counter[str] = Counter()

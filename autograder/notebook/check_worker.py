@@ -42,7 +42,7 @@ NEEDS_NOTEBOOK = "The visible checks need the executed notebook: run check(...) 
 def main() -> None:
     """Run the request in the file from the command line."""
     request = json.loads(Path(sys.argv[1]).read_text())
-    line.take(Connection(int(sys.argv[2])))
+    line.set_line(Connection(int(sys.argv[2])))
     restore_sigint()
     ros = activate()
     from autograder.run.workspace import Workspace  # imports rclpy, so ROS must be active

@@ -175,7 +175,7 @@ class Stepper:
             self._buffer += chunk
         waited = time.monotonic() - began
         self._held += waited
-        patience.add_held(waited)
+        patience.add_answer_time(waited)
         self._require_patience()
         line, _, rest = bytes(self._buffer).partition(b"\n")
         self._buffer = bytearray(rest)
@@ -183,16 +183,16 @@ class Stepper:
 
     def _require_patience(self, waiting: float = 0.0) -> None:
         """Raise a StudentError if programs have held the grading for too long, this one for `waiting` just now."""
-        if patience.is_held(waiting):
+        if patience.is_too_slow(waiting):
             self._excuse()
-            if patience.is_held(waiting):
-                raise patience.too_slow()
+            if patience.is_too_slow(waiting):
+                raise patience.too_slow_error()
 
     def _excuse(self) -> None:
         """Take back the time for which the program was ready to answer, and others did not let it run."""
         waited = starvation.starved(self._at_start, starvation.look((self.process.innermost(),)))
         excused = min(max(0.0, waited), self._held)
-        patience.add_held(self._excused - excused)
+        patience.add_answer_time(self._excused - excused)
         self._excused = excused
 
     def _no_answer(self, kind: Kind, waited: str) -> StudentError:
