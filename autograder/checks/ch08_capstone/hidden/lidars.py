@@ -59,7 +59,7 @@ def _far_bearing_errors(system: System, draw: random.Random) -> list[str]:
     for lidar in other_lidars(draw):
         for name, middle in MIDDLES.items():
             bearing, distance = middle + draw.uniform(-25.0, 25.0), round(draw.uniform(0.7, 2.0), 2)
-            for lidar_bearing in lidar.sees(bearing):
+            for lidar_bearing in lidar.unwrapped_bearings(bearing):
                 published, expected = (
                     lidar.scan_of_one(lidar_bearing, distance),
                     dict.fromkeys(MIDDLES, 3.0) | {name: distance},
