@@ -11,7 +11,7 @@ from autograder.checks.ch09_assessment.support.robot import NodeHarness, Start, 
 @pytest.fixture(scope="session")
 def types(workspace: Workspace) -> Types:
     """The student's message types."""
-    return Types.of(workspace)
+    return Types.load(workspace)
 
 
 @pytest.fixture(scope="session")

@@ -61,7 +61,7 @@ def test_05_asks_for_values_outside_of_each_range() -> None:
     limited = [specification for specification in parameters.SPECIFICATIONS.values() if specification.low is not None]
     for seed in SEEDS:
         for specification in limited:
-            low, high = declaration._outside(specification, random.Random(seed))
+            low, high = declaration._values_outside(specification, random.Random(seed))
             assert low < specification.low
             assert high > specification.high
             assert type(low) is type(high) is type(specification.default)

@@ -107,7 +107,7 @@ def test_no_side_effects(fresh_robot: Robot, workspace: Workspace) -> None:
     current, rate, speed = robot.parameters.values(*request), robot.command_rate(), robot.speed_at(2.5)
     start = robot.seconds
     answer = robot.change(request)
-    robot.live(0.2)  # shorter than the time without a scan after which the robot stops
+    robot.advance(0.2)  # shorter than the time without a scan after which the robot stops
     if not answer.accepted:
         commands = robot.messages("/cmd_vel", since=start)
         present_speed = commands[-1].message.linear.x if commands else math.nan
@@ -163,7 +163,7 @@ def test_distance_change(robot: Robot, draw: random.Random) -> None:
 @hint("The threshold is asked for at each command, as it is then.")
 def test_threshold_change(robot: Robot) -> None:
     """A new battery_threshold decides immediately whether it stands still."""
-    robot.charge(50.0)
+    robot.publish_charge(50.0)
     driven = robot.speed_at(2.5) > 0.0  # at any speed
     expect(driven, "With a threshold of 20 percent and a charge of 50, it does not drive.")
     _change(robot, {"battery_threshold": 60})
@@ -211,7 +211,7 @@ def test_undisturbed(robot: Robot) -> None:
             robot.publish("/scan", scan(2.5))
         speed = robot.allowed("max_linear_velocity", i / (change_count - 1))  # from one limit to the other
         _change(robot, {"max_linear_velocity": speed}, fraction=0.5)
-        robot.live(0.05)
+        robot.advance(0.05)
     expect_rate(robot.rate_since(start), before, "While max_linear_velocity was changed all the time")
 
 

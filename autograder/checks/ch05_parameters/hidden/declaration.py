@@ -121,7 +121,7 @@ def test_ranges(robot: Robot, draw: random.Random) -> None:
         name: fault for name, spec in limited.items() if (fault := _range_fault(spec, robot.descriptors.get(name)))
     }
     for name, spec in limited.items():
-        for value in _outside(spec, draw):
+        for value in _values_outside(spec, draw):
             answer = robot.change({name: value})
             if answer.accepted or (not answer.reason and name not in wrong):
                 text = parameters.value_text(value)
@@ -212,7 +212,7 @@ def _range_fault(spec: Specification, descriptor: ParameterDescriptor | None) ->
     return f"its range has steps of {ranges[0].step:g}" if ranges[0].step > max_step else ""
 
 
-def _outside(spec: Specification, draw: random.Random) -> tuple[parameters.Value, parameters.Value]:
+def _values_outside(spec: Specification, draw: random.Random) -> tuple[parameters.Value, parameters.Value]:
     assert spec.low is not None, "the parameter has no limits"
     assert spec.high is not None, "the parameter has no limits"
     if isinstance(spec.default, int):

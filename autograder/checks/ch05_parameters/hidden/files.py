@@ -14,7 +14,7 @@ from autograder.checks.ch05_parameters.support.contract import DEFAULTS, PER_ROB
 from autograder.checks.ch05_parameters.support.robot import fleet_path
 
 check = group("files", needs=("file",))
-JOINER = "joiner"  # a robot that the file does not name
+OTHER_ROBOT = "joiner"  # a robot that the file does not name
 Entries = dict[str, dict[str, parameters.Value]]
 Values = Callable[[str], dict[str, parameters.Value]]
 
@@ -31,7 +31,7 @@ def start_values(workspace: Workspace) -> Values:
     by_robot: dict[str, dict[str, parameters.Value]] = {}
 
     def values(name: str) -> dict[str, parameters.Value]:
-        by_robot.update(by_robot or _start_values(workspace, (JOINER, *PER_ROBOT)))
+        by_robot.update(by_robot or _start_values(workspace, (OTHER_ROBOT, *PER_ROBOT)))
         return by_robot[name]
 
     return values
@@ -63,7 +63,7 @@ def test_file_names(fleet: Callable[[], Entries]) -> None:
 @hint("What every robot has stands under /**, which fits every name.")
 def test_any_robot(start_values: Values) -> None:
     """A robot that the file does not name gets what every robot has."""
-    wrong = parameters.differences(start_values(JOINER), {**DEFAULTS, **SHARED})
+    wrong = parameters.differences(start_values(OTHER_ROBOT), {**DEFAULTS, **SHARED})
     expect(not wrong, f"For a robot of another name, {'; '.join(wrong)}.")
 
 
@@ -105,7 +105,7 @@ def _expect_values(start_values: Values, name: str) -> None:
     """Fail the check unless a robot has its own values, and otherwise those of the table or of any other robot."""
     values = start_values(name)
     wrong = parameters.differences(values, fleet_values(name)) and parameters.differences(
-        values, {**start_values(JOINER), **PER_ROBOT[name]}
+        values, {**start_values(OTHER_ROBOT), **PER_ROBOT[name]}
     )
     expect(not wrong, f"For the robot {name}, {'; '.join(wrong)}.")
 

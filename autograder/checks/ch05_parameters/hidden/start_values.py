@@ -11,7 +11,7 @@ import pytest
 from autograder.checking import Artifacts, CheckFailed, Shared, Workspace, drive, expect, group, hint, temporal
 from autograder.checking.probes import calls, parameters
 from autograder.checks.ch05_parameters.support import contract
-from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, refusal
+from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, start_error
 from sim import Pose, RobotSpec, Simulation, World, box
 
 check = group("start")
@@ -98,9 +98,9 @@ def test_start_threshold(configured: Configured) -> None:
     """It stands still with a battery below its threshold, and drives with one above."""
     situation = f"With a threshold of {configured.threshold} percent and a charge of"
     low, high = configured.threshold - 5, configured.threshold + 5
-    configured.robot.charge(low)
+    configured.robot.publish_charge(low)
     expect_speed(configured.robot.speed_at(3.0), 0.0, f"{situation} {low}")
-    configured.robot.charge(high)
+    configured.robot.publish_charge(high)
     drives = configured.robot.speed_at(3.0) > 0.0  # at any speed
     expect(drives, f"{situation} {high}, it does not drive.")
 
@@ -110,7 +110,7 @@ def test_start_threshold(configured: Configured) -> None:
 @hint("Drive it yourself: drive(..., parameters={'safety_distance': 0.9, 'slow_distance': 1.4}).")
 def test_stops(configured: Configured, draw: Random, artifacts: Artifacts) -> None:
     """In the simulator, it drives up to a wall and stops at its safety distance."""
-    recording = drive(configured.robot, _towards_a_wall(draw), SECONDS).recording
+    recording = drive(configured.robot, _hall(draw), SECONDS).recording
     ahead = (recording.simulation.world.bounds[2] - recording.poses[:, 0, 0]).tolist()
     final_distance = ahead[-1]
     sentence = (
@@ -139,7 +139,7 @@ def test_contradictory_start(robot: Robot, workspace: Workspace, draw: Random) -
     distance = robot.allowed("slow_distance", robot.allowed("safety_distance", draw.randrange(40, 90) / 100))
     for safety, slow in ((robot.allowed("safety_distance", distance + 0.4), distance), (distance, distance)):
         values = {"safety_distance": safety, "slow_distance": slow}
-        error = refusal(workspace, parameters.as_declared(values, robot.initial))
+        error = start_error(workspace, parameters.as_declared(values, robot.initial))
         values_text = f"safety_distance {safety} and slow_distance {slow}"
         fraction = 0.75 if safety == slow else 0.0
         expect(error is not None, f"Started with {values_text}, the node runs.", fraction=fraction)
@@ -182,7 +182,7 @@ def _outcomes(workspace: Workspace, distance: float, frequency: float) -> tuple[
     return outcomes[0], outcomes[1], outcomes[4], outcomes[6]
 
 
-def _towards_a_wall(draw: Random) -> Simulation:
+def _hall(draw: Random) -> Simulation:
     """Return a hall whose east wall is straight ahead of the robot, far beyond any slow distance."""
     world = World.from_segments(
         box(draw.uniform(6.5, 7.5), 4.0).tolist(),

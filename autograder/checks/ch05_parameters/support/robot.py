@@ -33,12 +33,12 @@ from autograder.checks.ch05_parameters.support.contract import (
 )
 
 BEAMS = 360
-SETTLED = 0.2  # s: by then, a node at 10 Hz has reacted to a scan
+SETTLE_SECONDS = 0.2  # s: by then, a node at 10 Hz has reacted to a scan
 TOLERANCE = 0.01  # m/s: a speed may be rounded to centimetres
 RATE_TOLERANCE = 0.08  # of the rate: commands are late in real time, and an error of a tenth must be found
 ROUNDED = 0.0051  # m: a value in a sentence may be rounded to centimetres
 STEP_SHARE = 0.05  # of a parameter's range: less than the difference between any drawn start value and the default
-REFUSED = (Kind.CRASHED_AT_START, Kind.ENDED_EARLY)
+REFUSAL_KINDS = (Kind.CRASHED_AT_START, Kind.ENDED_EARLY)
 
 
 class Robot(AutoHarness):
@@ -113,29 +113,29 @@ class Robot(AutoHarness):
         """Set parameters in one request, with numbers in the types that the node declares."""
         return self.parameters.change(parameters.as_declared(values, self.initial))
 
-    def see(self, distance: float, seconds: float = 0.5) -> list[ReceivedMessage]:
+    def show_wall(self, distance: float, seconds: float = 0.5) -> list[ReceivedMessage]:
         """Publish scans of a wall `distance` metres straight ahead; return the commands after `SETTLED`."""
         start = self.seconds
         for _ in range(round(seconds / SCAN_SECONDS)):
             self.publish("/scan", scan(distance))
-            self.live(SCAN_SECONDS)
-        return self.messages("/cmd_vel", since=start + SETTLED)
+            self.advance(SCAN_SECONDS)
+        return self.messages("/cmd_vel", since=start + SETTLE_SECONDS)
 
-    def live(self, seconds: float) -> None:
+    def advance(self, seconds: float) -> None:
         """Let time pass in steps fine enough for any new timer period. `run` only suits the periods at the start."""
         for _ in range(round(seconds * 1e9) // self.finest_tick_ns):
             self.step(self.finest_tick_ns)
 
     def speed_at(self, distance: float) -> float:
         """Return the speed in m/s on which the node settles; nan without a command."""
-        commands = self.see(distance)
+        commands = self.show_wall(distance)
         return float(commands[-1].message.linear.x) if commands else math.nan
 
     def command_rate(self, seconds: float = 2.0) -> float:
         """Return the number of commands per second while the way is clear."""
-        self.see(3.0, 0.3)  # after a change of the timer, the new period starts here
+        self.show_wall(3.0, 0.3)  # after a change of the timer, the new period starts here
         start = self.seconds
-        self.see(3.0, seconds)
+        self.show_wall(3.0, seconds)
         return self.rate_since(start)
 
     def rate_since(self, start: float) -> float:
@@ -143,7 +143,7 @@ class Robot(AutoHarness):
         period = message_period.mean_period(self.messages("/cmd_vel", since=start))
         return 1.0 / period if period else math.inf
 
-    def charge(self, percent: float) -> None:
+    def publish_charge(self, percent: float) -> None:
         """Publish the battery's charge."""
         self.publish("/battery_state", BatteryState(percentage=percent / 100.0))
 
@@ -165,7 +165,7 @@ def restore(robot: Robot) -> bool:
     return not parameters.differences(values, defaults) or robot.parameters.change(defaults).accepted
 
 
-def refusal(workspace: Workspace, values: Mapping[str, parameters.Value]) -> str | None:
+def start_error(workspace: Workspace, values: Mapping[str, parameters.Value]) -> str | None:
     """Return the error of a program that refuses to start with these values; None if it starts.
 
     Raises:
@@ -175,7 +175,7 @@ def refusal(workspace: Workspace, values: Mapping[str, parameters.Value]) -> str
         with Robot(workspace, values):
             return None
     except StudentError as error:
-        if error.diagnosis.kind not in REFUSED:
+        if error.diagnosis.kind not in REFUSAL_KINDS:
             raise
         return f"{error.diagnosis.sentence}\n{error.diagnosis.detail}"
 

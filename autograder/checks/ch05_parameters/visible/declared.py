@@ -6,7 +6,7 @@ from autograder.checking import Workspace, expect, group, hint
 from autograder.checking.probes import parameters
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, NODE, SPECIFICATIONS
-from autograder.checks.ch05_parameters.support.robot import Robot, refusal
+from autograder.checks.ch05_parameters.support.robot import Robot, start_error
 
 check = group("declaration")
 
@@ -85,5 +85,5 @@ def test_described(robot: Robot) -> None:
 @hint("After the last declare_parameter: get both values, ask contradiction, and raise ValueError with its sentence.")
 def test_start_refused(workspace: Workspace) -> None:
     """It does not start with a safety distance of 2.2 m and a slow distance of 2.0 m."""
-    error = refusal(workspace, {"safety_distance": 2.2, "slow_distance": 2.0})
+    error = start_error(workspace, {"safety_distance": 2.2, "slow_distance": 2.0})
     expect(error is not None, "Started with 2.2 m and 2.0 m, the node runs.")

@@ -61,11 +61,11 @@ def reworded(draw: random.Random) -> versions.Version:
     """Return a right version of the first style with one expression of each file reworded, obfuscated."""
     files = dict(style(STYLES[0]).files)
     for name, edits in yaml.safe_load((FOLDER / "reworded.yaml").read_text()).items():
-        files[name] = _edited(files[name], draw.choice(edits), f"{name} in other words")
+        files[name] = _edit(files[name], draw.choice(edits), f"{name} in other words")
     return versions.obfuscate(versions.Version(files, SCRIPTS), draw.getrandbits(32))
 
 
-def _edited(text: str, edit: dict[str, str], label: str) -> str:
+def _edit(text: str, edit: dict[str, str], label: str) -> str:
     if text.count(edit["find"]) != 1:
         raise GraderError(f"{label}: {edit['find']!r} stands {text.count(edit['find'])} times in the file")
     return text.replace(edit["find"], edit["replace"])

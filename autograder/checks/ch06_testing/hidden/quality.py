@@ -11,8 +11,8 @@ from autograder.checks.ch06_testing.support.assertions import expect_no_sleep
 from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, MIN_TESTS, PACKAGE
 
 check = group("craft")
-SHARED = ("launch", "config")  # folders whose files setup.py installs
-GIVEN = (PACKAGE, *SHARED)  # given folders; students write test/, and may replace setup.py
+SHARE_FOLDERS = ("launch", "config")  # folders whose files setup.py installs
+GIVEN_FOLDERS = (PACKAGE, *SHARE_FOLDERS)  # given folders; students write test/, and may replace setup.py
 LINTERS = ("test_flake8", "test_pep257")
 EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use pytest, with every version of setuptools."
 
@@ -25,11 +25,11 @@ def test_as_given(workspace: Workspace, examination: Examination) -> None:
     examination.expect_any_usable()
     given = style(STYLES[0]).files
     texts = {name: text.encode() for name, text in given.items()}
-    changed = given_files.changed_files(examination.source.files, texts, GIVEN)
+    changed = given_files.changed_files(examination.source.files, texts, GIVEN_FOLDERS)
     expect(not changed, f"{' and '.join(changed)} of your package is not as it was given.")
     # The runs install each version without setup.py, so only this finds files that it does not install.
     installation = installed.inspect_package(workspace.install, PACKAGE)
-    missing = [name for name in given if name.split("/")[0] in SHARED and installation.read(name) is None]
+    missing = [name for name in given if name.split("/")[0] in SHARE_FOLDERS and installation.read(name) is None]
     expect(
         not missing,
         f"{' and '.join(missing)} of your package is not installed in share/{PACKAGE}: the given setup.py names it "

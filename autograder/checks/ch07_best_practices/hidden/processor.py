@@ -80,10 +80,10 @@ def test_filtered(workspace: Workspace, processor: Processor, draw: random.Rando
     """A scan comes out with its phantoms masked, by the lidar's own limits."""
     far = round(draw.uniform(11.0, 15.0), 1)
     sent, low, high = [1.0, 0.0, inf, nan, far, -inf, far + 5.0], 0.05, far + 1.0
-    (filtered, _) = processor.show(scan(sent, range_min=low, range_max=high))
+    (filtered, _) = processor.send_scans(scan(sent, range_min=low, range_max=high))
     expect(len(filtered) == 1, f"One scan went in, {len(filtered)} came out.")
     actual, expected = list(filtered[0].ranges), [1.0, nan, inf, nan, far, -inf, nan]
-    is_right = _all_close(actual, expected) or _all_close(actual, _masked(workspace, sent, low, high))
+    is_right = _all_close(actual, expected) or _all_close(actual, _student_masked(workspace, sent, low, high))
     expect(is_right, f"{sent} ({low} to {high} m) came out as {[round(r, 3) for r in actual]}.")
 
 
@@ -96,7 +96,7 @@ def test_rest_untouched(workspace: Workspace, processor: Processor, draw: random
     sent.header.stamp.sec = draw.randint(1, 1000)
     sent.angle_min, sent.intensities = -1.5, [5.0, 6.0, 7.0]
     sent.time_increment = draw.uniform(0.01, 0.03)
-    filtered, _ = processor.show(sent)
+    filtered, _ = processor.send_scans(sent)
     expect(len(filtered) == 1, f"One scan went in, {len(filtered)} came out.")
     for field in (name for name in sent.get_fields_and_field_types() if name != "ranges"):
         actual, expected = getattr(filtered[0], field), getattr(sent, field)
@@ -108,7 +108,7 @@ def test_rest_untouched(workspace: Workspace, processor: Processor, draw: random
         f"After a scan with other limits, [1.0, 0.06, 9.0] (0.12 to 3.5 m) came out as {[round(r, 3) for r in actual]}."
     )
     is_right = _all_close(actual, [1.0, nan, nan]) or _all_close(
-        actual, _masked(workspace, [1.0, 0.06, 9.0], 0.12, 3.5)
+        actual, _student_masked(workspace, [1.0, 0.06, 9.0], 0.12, 3.5)
     )
     expect(is_right, message, fraction=0.5)
 
@@ -120,8 +120,8 @@ def test_mean_of_ten(workspace: Workspace, fresh_processor: Processor, draw: ran
     means = [round(draw.uniform(0.5, 3.0), 2) for _ in range(14)]
     blind = set(draw.sample(range(1, len(means)), 4))  # these have no mean, and do not count among the ten
     scans = [ranges for i, mean in enumerate(means) for ranges in ([nan], [mean, nan, mean])[i not in blind :]]
-    _, averages = fresh_processor.show(*map(scan, scans))
-    if not _all_close(averages, _means(workspace, scans)):
+    _, averages = fresh_processor.send_scans(*map(scan, scans))
+    if not _all_close(averages, _student_averages(workspace, scans)):
         expect(
             len(averages) == len(means), f"{len(means)} scans with a distance went in, {len(averages)} means came out."
         )
@@ -137,7 +137,7 @@ def test_mean_of_ten(workspace: Workspace, fresh_processor: Processor, draw: ran
 @hint("mean_distance(msg.ranges) is None: warn instead of publishing.", "Float32 cannot hold None.")
 def test_blind_scan(processor: Processor) -> None:
     """A scan without a distance comes out masked, and no mean with it."""
-    filtered, means = processor.show(scan([nan, 0.0, inf]))
+    filtered, means = processor.send_scans(scan([nan, 0.0, inf]))
     expect(len(filtered) == 1, f"One blind scan went in, {len(filtered)} came out.")
     expect(not means, f"A scan without any distance made it say {means} m.")
 
@@ -148,9 +148,9 @@ def test_warns_now_and_then(workspace: Workspace, fresh_processor: Processor) ->
     """While the lidar sees nothing, it warns once a second; while it sees something, it does not."""
     good, blind = scan([0.05, 1.0, nan, inf, -inf, 9.0]), scan([inf, nan, -inf, 0.05])
     scan_count = round(SECONDS * 10) // 2
-    needless_count = _warnings(fresh_processor, [good] * 5)
-    blind_count = _warnings(fresh_processor, [blind] * scan_count)
-    empty_count = _warnings(fresh_processor, [scan([])] * scan_count)
+    needless_count = _count_warnings(fresh_processor, [good] * 5)
+    blind_count = _count_warnings(fresh_processor, [blind] * scan_count)
+    empty_count = _count_warnings(fresh_processor, [scan([])] * scan_count)
     expect(blind_count + empty_count > 0, f"Blind for {SECONDS:.0f} s, it said nothing at level WARN.")
     too_many = f"Blind for {SECONDS:.0f} s, it warned {blind_count + empty_count} times."
     expect(blind_count + empty_count <= SECONDS + 2, too_many, fraction=0.5)
@@ -160,25 +160,28 @@ def test_warns_now_and_then(workspace: Workspace, fresh_processor: Processor) ->
     too_few = f"Blind for {SECONDS:.0f} s, it warned only {blind_count + empty_count} times."
     expect(min(blind_count, empty_count) >= int(SECONDS / 2 / MAX_SILENCE), too_few, fraction=0.5)
     seconds = 2 * ALTERNATIONS * SCAN_SECONDS
-    alternating_count = _warnings(fresh_processor, [blind, good] * ALTERNATIONS)
+    alternating_count = _count_warnings(fresh_processor, [blind, good] * ALTERNATIONS)
     too_often = f"With blind and good scans by turns for {seconds:.0f} s, it warned {alternating_count} times."
     expect(alternating_count <= seconds + 2, too_often, fraction=0.5)
     causes = [scan([]), scan([inf, -inf]), scan([nan]), scan([0.05])]
-    seconds, mixed_count = len(causes) * ALTERNATIONS * SCAN_SECONDS, _warnings(fresh_processor, causes * ALTERNATIONS)
+    seconds, mixed_count = (
+        len(causes) * ALTERNATIONS * SCAN_SECONDS,
+        _count_warnings(fresh_processor, causes * ALTERNATIONS),
+    )
     too_often = (
         "Scans without beams, of infinities, of nan and of phantoms by turns "
         f"for {seconds:.0f} s: {mixed_count} warnings."
     )
     expect(mixed_count <= seconds + 2, too_often, fraction=0.5)
-    slow_count = _warnings(fresh_processor, [blind] * SLOW_SCANS, apart=SLOW_SECONDS)
+    slow_count = _count_warnings(fresh_processor, [blind] * SLOW_SCANS, apart=SLOW_SECONDS)
     too_seldom = f"Blind for {SLOW_SCANS * SLOW_SECONDS} s, with two scans a second, it warned {slow_count} times."
     expect(slow_count >= 2, too_seldom, fraction=0.75)  # three are due, but real time needs tolerance
-    filtered, _ = fresh_processor.show(blind)
+    filtered, _ = fresh_processor.send_scans(blind)
     actual = [list(message.ranges) for message in filtered]
     masked_ranges = [inf, nan, -inf, nan]
     is_masked = len(actual) == 1 and (
         _all_close(actual[0], masked_ranges)
-        or _all_close(actual[0], _masked(workspace, [inf, nan, -inf, 0.05], 0.12, 3.5))
+        or _all_close(actual[0], _student_masked(workspace, [inf, nan, -inf, 0.05], 0.12, 3.5))
     )
     expect(is_masked, f"A blind scan of [inf, nan, -inf, 0.05] (0.12 to 3.5 m) came out as {actual}.", fraction=0.75)
 
@@ -188,7 +191,7 @@ def test_warns_now_and_then(workspace: Workspace, fresh_processor: Processor) ->
 def test_any_lidar(processor: Processor) -> None:
     """It takes scans of any length, an empty one too."""
     for beams in (0, 1, 7, 1080):
-        filtered, _ = processor.show(scan([1.0] * beams))
+        filtered, _ = processor.send_scans(scan([1.0] * beams))
         lengths = [len(message.ranges) for message in filtered]
         expect(lengths == [beams], f"A scan of {beams} beams came out as {lengths or 'nothing'}.")
 
@@ -231,14 +234,14 @@ def _averages_of_two(workspace: Workspace) -> list[float]:
     return [average for step in average_steps if isinstance(average := outcomes[step].value, float)]
 
 
-def _warnings(processor: Processor, scans: list[LaserScan], apart: float = SCAN_SECONDS) -> int:
+def _count_warnings(processor: Processor, scans: list[LaserScan], apart: float = SCAN_SECONDS) -> int:
     """Return the number of warnings while it receives these scans, which are `apart` seconds apart."""
     before = logged(processor.output, "WARN")
-    processor.show(*scans, apart=apart)
+    processor.send_scans(*scans, apart=apart)
     return logged(processor.output, "WARN") - before
 
 
-def _masked(workspace: Workspace, readings: list[float], low: float, high: float) -> list[float]:
+def _student_masked(workspace: Workspace, readings: list[float], low: float, high: float) -> list[float]:
     """Return the result of the student's mask_invalid. Other checks test whether it is right."""
     (outcome,) = calls.calls(workspace, UTILS, calls.call("mask_invalid", readings, low, high))
     return (
@@ -246,7 +249,7 @@ def _masked(workspace: Workspace, readings: list[float], low: float, high: float
     )
 
 
-def _means(workspace: Workspace, scans: list[list[float]]) -> list[float]:
+def _student_averages(workspace: Workspace, scans: list[list[float]]) -> list[float]:
     """Return the averages of the student's DataProcessor, for scans for which their mean_distance returns a mean."""
     plan = calls.Plan()
     processor = plan.add(calls.call("DataProcessor", HISTORY))

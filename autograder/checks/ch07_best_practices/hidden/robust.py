@@ -36,7 +36,7 @@ LIMITS = {"failure_probability": (0.0, 1.0), "seed": (0, 2**31 - 1), "max_errors
 def test_once_a_second(workspace: Workspace) -> None:
     """robust_node publishes its state on status once a second; with a sensor that never fails, ok."""
     with Robust(workspace, failure_probability=0.0) as harness:
-        statuses = harness.live(10)
+        statuses = harness.advance(10)
         rate = harness.rate(STATUS, 0.0)
     expect(len(statuses) == 10, f"In 10 s it published its state {len(statuses)} times.")
     expect(abs(rate - 1.0) < 0.1, f"It published its state {rate:.1f} times a second, instead of once.")

@@ -216,8 +216,10 @@ def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
     *_, average = _process(workspace, 3, [[nan]])
     actual = calls.value(average, "average()")
     expect(actual is None, f"After one blind scan the average is {actual} instead of None.")
-    at_zero = [calls.call("process", [metres], -1.0, HIGH, on=0) for metres in (0.0, 2.0)]  # 0 is a valid mean
-    *_, average = calls.calls(workspace, UTILS, calls.call("DataProcessor", 2), *at_zero, calls.call("average", on=0))
+    process_calls = [calls.call("process", [metres], -1.0, HIGH, on=0) for metres in (0.0, 2.0)]  # 0 is a valid mean
+    *_, average = calls.calls(
+        workspace, UTILS, calls.call("DataProcessor", 2), *process_calls, calls.call("average", on=0)
+    )
     actual = calls.value(average, "average()")
     expect(calls.same(actual, 1.0), f"After scans of 0 m and 2 m the average is {actual} instead of 1.0.", fraction=0.5)
 

@@ -31,7 +31,7 @@ class Processor(AutoHarness):
             subscribes={FILTERED: LaserScan, MEAN: Float32},
         )
 
-    def show(self, *scans: LaserScan, apart: float = SCAN_SECONDS) -> tuple[list[LaserScan], list[float]]:
+    def send_scans(self, *scans: LaserScan, apart: float = SCAN_SECONDS) -> tuple[list[LaserScan], list[float]]:
         """Publish scans, `apart` seconds apart; return the received filtered scans and means."""
         start = self.seconds
         for scan in scans:
@@ -52,7 +52,7 @@ class Robust(AutoHarness):
         super().__init__(workspace, PACKAGE, "robust_node", subscribes={STATUS: String}, arguments=arguments)
         self._count = 0  # statuses that were already returned
 
-    def live(self, seconds: int) -> list[str]:
+    def advance(self, seconds: int) -> list[str]:
         """Let time pass, with one reading per second; return the statuses that it published meanwhile."""
         if self.time != LOCKSTEP:  # its timer did not start together with the harness
             return self.receive(seconds)

@@ -75,7 +75,7 @@ def test_filters_scans(processor: Processor) -> None:
     """sensor_processor publishes a scan again: masked by its own limits, everything else as it came."""
     sent = scan([8.0, 0.0, 2.0], range_min=0.5, range_max=8.0)
     sent.intensities = [4.0, 0.0, 2.0]
-    filtered, _ = processor.show(sent)
+    filtered, _ = processor.send_scans(sent)
     expect(len(filtered) == 1, f"One scan went in, {len(filtered)} came out on scan_filtered.")
     ranges = list(filtered[0].ranges)
     is_right = len(ranges) == 3 and isnan(ranges[1]) and ranges[::2] == [8.0, 2.0]
@@ -105,11 +105,11 @@ def test_sensor_profile(processor: Processor) -> None:
 @hint("mean_distance(masked) is None: warn, with throttle_duration_sec, and publish no mean.")
 def test_means(fresh_processor: Processor) -> None:
     """mean_distance is the average over the newest ten scans; scans without a distance bring a warning and no mean."""
-    _, means = fresh_processor.show(*(scan([metres]) for metres in (2.0, *[1.0] * 10)))
+    _, means = fresh_processor.send_scans(*(scan([metres]) for metres in (2.0, *[1.0] * 10)))
     expect(len(means) == 11, f"11 scans went in, {len(means)} means came out.")
     newest = [round(means[i], 3) for i in (0, 1, -1)]
     expect(newest == [2.0, 1.5, 1.0], f"After 1, 2 and 11 scans the mean was {newest} instead of [2.0, 1.5, 1.0].")
-    _, means = fresh_processor.show(*(scan([nan]) for _ in range(BLIND_SECONDS * 10)))
+    _, means = fresh_processor.send_scans(*(scan([nan]) for _ in range(BLIND_SECONDS * 10)))
     expect(not means, f"Scans without a distance brought {len(means)} means.")
     warnings = logged(fresh_processor.output, "WARN")
     message = f"Scans without a distance for {BLIND_SECONDS} s brought {warnings} warnings instead of one a second."
@@ -189,7 +189,7 @@ def test_recovers(workspace: Workspace) -> None:
 @hint("except SensorError as error: nothing wider. The generator that is handed in is the one that is used.")
 def test_shows_bugs(workspace: Workspace) -> None:
     """It does not catch a bug: with range(3) for a generator, timer_callback raises AttributeError."""
-    *_, called = calls.calls(
+    *_, result = calls.calls(
         workspace,
         contract.ROBUST,
         calls.call("init", module="rclpy"),
@@ -198,4 +198,4 @@ def test_shows_bugs(workspace: Workspace) -> None:
         calls.call("timer_callback", on=2),
         network=True,
     )
-    expect("AttributeError" in called.kinds, f"It raised {called.raised or 'nothing'}.")
+    expect("AttributeError" in result.kinds, f"It raised {result.raised or 'nothing'}.")

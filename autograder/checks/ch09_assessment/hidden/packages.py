@@ -73,7 +73,7 @@ def test_dependencies(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> 
     package_manifest, installation = manifest.read(source), installed.inspect_package(workspace.install, PACKAGE)
     missing = imports.missing(source, package_manifest)["exec"]
     expect(not missing, f"{imports.describe(missing)}: package.xml does not declare it.")
-    absent_names = [name for name in contract.FOR_TESTS if name not in package_manifest.needs("test")]
+    absent_names = [name for name in contract.TEST_DEPENDENCIES if name not in package_manifest.needs("test")]
     expect(not absent_names, f"package.xml has no test_depend on {', '.join(absent_names)}.", fraction=0.5)
     _expect_licence(package_manifest)
     packaging.expect_same_facts(installation, package_manifest, fraction=0.5)

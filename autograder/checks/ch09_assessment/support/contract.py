@@ -15,7 +15,7 @@ PACKAGE, INTERFACES = "motor_guard", "motor_guard_interfaces"
 THERMOMETER, SMOOTHER, GUARD = PROGRAMS = ("thermometer", "smoother", "guard")
 LAUNCH_FILE = "motor_guard.launch.py"
 LICENCE = "Apache-2.0"
-FOR_TESTS = ("ament_copyright", "ament_flake8", "ament_pep257", "python3-pytest")
+TEST_DEPENDENCIES = ("ament_copyright", "ament_flake8", "ament_pep257", "python3-pytest")
 MESSAGES = {
     "msg/Temperature.msg": "builtin_interfaces/Time stamp\nfloat32 celsius\n",
     "msg/Decision.msg": "builtin_interfaces/Time stamp\nbool cooling\nfloat32 celsius\n",

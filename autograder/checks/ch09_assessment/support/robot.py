@@ -55,7 +55,7 @@ class Types:
     decision: Any
 
     @classmethod
-    def of(cls, workspace: Workspace) -> Types:
+    def load(cls, workspace: Workspace) -> Types:
         """Read the message types of a workspace.
 
         Raises:
@@ -64,8 +64,8 @@ class Types:
         package = load_interfaces(workspace, INTERFACES)
         for name, fields in FIELDS.items():
             message = getattr(package.msg, name, None)
-            present = message.get_fields_and_field_types() if message is not None else {}
-            absent = [field for field in fields if field not in present]
+            field_names = message.get_fields_and_field_types() if message is not None else {}
+            absent = [field for field in fields if field not in field_names]
             expect(not absent, f"{name}.msg has no {' and no '.join(absent)}: nobody can talk to the nodes.")
         return cls(package.msg.Temperature, package.msg.Decision)
 

@@ -21,13 +21,13 @@ def parse(text: str) -> dict[str, str]:
     answers_by_question = {}
     for line in text.splitlines():
         question, colon, answer = (part.strip() for part in line.partition("#")[0].partition(":"))
-        question, answer = _unquoted(question), _unquoted(answer)
+        question, answer = _unquote(question), _unquote(answer)
         if colon and _QUESTION.fullmatch(question) and not any(quote in answer for quote in QUOTES):
             answers_by_question[question.lower()] = answer.lower()
     return answers_by_question
 
 
-def _unquoted(text: str) -> str:
+def _unquote(text: str) -> str:
     return text[text.startswith(QUOTES) : len(text) - text.endswith(QUOTES)].strip()
 
 

@@ -67,7 +67,7 @@ class Harness:
 
 
 @contextlib.contextmanager
-def guarded(**parameters):
+def running_guard(**parameters):
     """Start a guard and a harness in a new context."""
     context = Context()
     rclpy.init(context=context, domain_id=random.randint(2, 90))
@@ -87,20 +87,20 @@ def guarded(**parameters):
 
 def test_name():
     """The node has the name that parameter files use."""
-    with guarded() as harness:
+    with running_guard() as harness:
         assert "speed_guard" in harness.node.get_node_names()
 
 
 def test_unknown_at_first():
     """It does not move before the first distance."""
-    with guarded(timeout=30.0) as harness:
+    with running_guard(timeout=30.0) as harness:
         assert harness.answer(0.5).linear.x == 0.0
         assert harness.answer(-0.5).linear.x == -0.5
 
 
 def test_newest():
     """The last distance counts, farther or nearer."""
-    with guarded(timeout=30.0) as harness:
+    with running_guard(timeout=30.0) as harness:
         for value, expected in [(1.0, 0.25), (9.0, 0.5), (0.4, 0.0), (1.25, 0.375)]:
             harness.distance(value)
             assert harness.answer(0.5).linear.x == pytest.approx(expected, abs=1e-6)
@@ -108,7 +108,7 @@ def test_newest():
 
 def test_turn():
     """A turn is not changed, in front of a wall or on a clear way."""
-    with guarded(timeout=30.0) as harness:
+    with running_guard(timeout=30.0) as harness:
         for value in (0.4, 9.0):
             harness.distance(value)
             answer = harness.answer(0.5, z=-1.25, y=0.25)
@@ -117,14 +117,14 @@ def test_turn():
 
 def test_one_answer():
     """Each command has exactly one answer."""
-    with guarded(timeout=30.0) as harness:
+    with running_guard(timeout=30.0) as harness:
         harness.answer(0.5)
         assert harness.silence(0.3)
 
 
 def test_parameters():
     """Both distances are parameters."""
-    with guarded(timeout=30.0, stop_distance=2.0, slow_distance=4.0) as harness:
+    with running_guard(timeout=30.0, stop_distance=2.0, slow_distance=4.0) as harness:
         for value, expected in [(1.9, 0.0), (3.0, 0.25), (4.5, 0.5)]:
             harness.distance(value)
             assert harness.answer(0.5).linear.x == pytest.approx(expected, abs=1e-6)
@@ -132,7 +132,7 @@ def test_parameters():
 
 def test_stale():
     """An old distance is forgotten."""
-    with guarded(timeout=0.15) as harness:
+    with running_guard(timeout=0.15) as harness:
         harness.distance(9.0)
         assert harness.answers.get(timeout=8.0) == Twist()
         assert harness.answer(0.5).linear.x == 0.0
@@ -140,7 +140,7 @@ def test_stale():
 
 def test_stale_under_command():
     """A distance becomes old although commands continue."""
-    with guarded(timeout=1.0) as harness:
+    with running_guard(timeout=1.0) as harness:
         harness.distance(9.0)
         speeds = (harness.answer(0.5).linear.x for _ in range(60) if harness.silence(0.05))
         assert 0.0 in speeds
@@ -148,14 +148,14 @@ def test_stale_under_command():
 
 def test_defaults():
     """The defaults are those of the class's docstring."""
-    with guarded() as harness:
+    with running_guard() as harness:
         defaults = {"stop_distance": 0.5, "slow_distance": 1.5, "timeout": 0.5}
         assert {name: harness.guard.get_parameter(name).value for name in defaults} == defaults
 
 
 def test_watchdog():
     """The guard publishes one stop after a silence, and none before the first command."""
-    with guarded(timeout=0.15) as harness:
+    with running_guard(timeout=0.15) as harness:
         assert harness.silence(0.5)
         for _ in range(2):
             harness.answer(-0.5)

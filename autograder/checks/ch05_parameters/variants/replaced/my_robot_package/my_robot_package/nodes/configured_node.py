@@ -48,9 +48,9 @@ class ConfiguredNode(Node):
         self.ahead, self.charge = None, None
         self.out = self.create_publisher(Twist, 'cmd_vel', 10)
         for kind, topic, callback in (
-                (LaserScan, 'scan', self.scanned), (BatteryState, 'battery_state', self.charged)):
+                (LaserScan, 'scan', self.on_scan), (BatteryState, 'battery_state', self.on_battery)):
             self.create_subscription(kind, topic, callback, qos_profile_sensor_data, callback_group=self.group)
-        self.sight = self.create_timer(0.5, self.lose_sight, callback_group=self.group)
+        self.watchdog = self.create_timer(0.5, self.forget_distance, callback_group=self.group)
         self.timer = self.create_timer(
             1.0 / self.settings.control_frequency, self.drive, callback_group=self.group)
         self.add_on_set_parameters_callback(self.on_request)
@@ -74,18 +74,18 @@ class ConfiguredNode(Node):
         if self.settings.control_frequency != before.control_frequency:
             self.timer.timer_period_ns = round(10**9 / self.settings.control_frequency)
 
-    def scanned(self, scan):
+    def on_scan(self, scan):
         """Store the distance straight ahead."""
         with self.lock:
             self.ahead = scan.ranges[round(-scan.angle_min / scan.angle_increment)]
-        self.sight.reset()
+        self.watchdog.reset()
 
-    def lose_sight(self):
+    def forget_distance(self):
         """Forget a distance that is too old."""
         with self.lock:
             self.ahead = None
 
-    def charged(self, battery):
+    def on_battery(self, battery):
         """Store the charge in percent."""
         with self.lock:
             self.charge = 100.0 * battery.percentage

@@ -4,7 +4,7 @@ import rclpy
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 
 
-def serve(factory, args):
+def run_node(factory, args):
     """Spin the node that factory() returns with two threads until it is interrupted."""
     rclpy.init(args=args)
     try:

@@ -11,7 +11,7 @@ from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPo
 from std_msgs.msg import Float32, String
 from std_srvs.srv import Trigger
 
-from my_robot_package.nodes.common import serve
+from my_robot_package.nodes.common import run_node
 
 STATUS_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE,
@@ -105,7 +105,7 @@ class RobustNode(Node):
 
 def main(args=None):
     """Run the node until it is interrupted."""
-    serve(RobustNode, args)
+    run_node(RobustNode, args)
 
 
 if __name__ == '__main__':

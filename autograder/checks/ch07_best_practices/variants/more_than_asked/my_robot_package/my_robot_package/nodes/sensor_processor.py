@@ -9,7 +9,7 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float32, String
 
-from my_robot_package.nodes.common import serve
+from my_robot_package.nodes.common import run_node
 from my_robot_package.utils.data_processing import DataProcessor, mean_distance
 
 
@@ -56,7 +56,7 @@ class SensorProcessor(Node):
 
 def main(args=None):
     """Run the node until it is interrupted."""
-    serve(SensorProcessor, args)
+    run_node(SensorProcessor, args)
 
 
 if __name__ == '__main__':

@@ -13,7 +13,7 @@ from std_msgs.msg import Float32
 BEST_EFFORT = QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
-def clean(node, processor, scans, means, msg):
+def publish_masked(node, processor, scans, means, msg):
     """Publish the masked scan and the mean."""
     msg.ranges = processor.process(list(msg.ranges), msg.range_min, msg.range_max)
     scans.publish(msg)
@@ -35,7 +35,7 @@ def main(args=None):
         node.create_subscription(
             LaserScan,
             "scan",
-            partial(clean, node, DataProcessor(10), scans, means),
+            partial(publish_masked, node, DataProcessor(10), scans, means),
             BEST_EFFORT,
             callback_group=ReentrantCallbackGroup(),
         )

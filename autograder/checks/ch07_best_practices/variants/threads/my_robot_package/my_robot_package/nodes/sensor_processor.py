@@ -23,10 +23,10 @@ class SensorProcessor(Node):
         self.filtered = self.create_publisher(LaserScan, "scan_filtered", qos_profile_sensor_data)
         self.mean = self.create_publisher(Float32, "mean_distance", 10)
         self.create_subscription(LaserScan, "scan", self.scans.put, qos_profile_sensor_data)
-        self.worker = threading.Thread(target=self.work)
+        self.worker = threading.Thread(target=self.run_worker)
         self.worker.start()
 
-    def work(self):
+    def run_worker(self):
         """Mask scans until the queue contains None."""
         while (scan := self.scans.get()) is not None:
             scan.ranges = self.processor.process(scan.ranges, scan.range_min, scan.range_max)
