@@ -145,7 +145,7 @@ def test_contradictory_start(robot: Robot, workspace: Workspace, draw: Random) -
         expect(error is not None, f"Started with {values_text}, the node runs.", fraction=fraction)
         expect(not missing_from(error or "", values), f"It ends, but does not name {values_text}.", fraction=0.5)
     frequency = draw.randrange(55, 90) + 0.5  # above the limits
-    fits, equal, start, beyond = _outcomes(workspace, distance, frequency)
+    fits, equal, start, beyond = _call_configuration(workspace, distance, frequency)
     raised, message, sentence = (
         start.raised,
         parameters.shortened(start.message),
@@ -163,7 +163,7 @@ def test_contradictory_start(robot: Robot, workspace: Workspace, draw: Random) -
     )
 
 
-def _outcomes(workspace: Workspace, distance: float, frequency: float) -> tuple[calls.StepResult, ...]:
+def _call_configuration(workspace: Workspace, distance: float, frequency: float) -> tuple[calls.StepResult, ...]:
     """Call contradiction with distances that fit and with equal ones, and declare with equal ones and a frequency."""
     equal = parameters.override_arguments({"safety_distance": distance, "slow_distance": distance})
     beyond = parameters.override_arguments({"control_frequency": frequency})

@@ -114,7 +114,7 @@ class Robot(AutoHarness):
         return self.parameters.change(parameters.as_declared(values, self.initial))
 
     def show_wall(self, distance: float, seconds: float = 0.5) -> list[ReceivedMessage]:
-        """Publish scans of a wall `distance` metres straight ahead; return the commands after `SETTLED`."""
+        """Publish scans of a wall `distance` metres straight ahead; return the commands after `SETTLE_SECONDS`."""
         start = self.seconds
         for _ in range(round(seconds / SCAN_SECONDS)):
             self.publish("/scan", scan(distance))
