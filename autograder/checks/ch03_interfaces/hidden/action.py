@@ -154,9 +154,7 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     expect(
         abs(goal.result.driven - driven) <= 0.1, f"The result says {goal.result.driven:.2f} m, it was {driven:.2f} m."
     )
-    reported = [
-        received.message.driven for received in goal.feedback if push_time < received.seconds <= push_time + SOON
-    ]
+    reported = [item.message.driven for item in goal.feedback if push_time < item.seconds <= push_time + SOON]
     x, y = placed_driver.x, placed_driver.y
     goal = placed_driver.start(1.0, 0.5)
     placed_driver.roll(goal, LONG_SECONDS, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.5)
@@ -170,12 +168,8 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     expect(goal.result.reason == "", f"All went well, and yet the reason is {goal.result.reason!r}.", fraction=0.5)
     end_time = placed_driver.seconds
     placed_driver.run(0.5)
-    late_commands = placed_driver.messages(COMMANDS, since=end_time)
-    expect(
-        not late_commands,
-        f"Within 0.5 s after the goal, {len(late_commands)} more commands came on cmd_vel.",
-        fraction=0.5,
-    )
+    commands = placed_driver.messages(COMMANDS, since=end_time)
+    expect(not commands, f"Within 0.5 s after the goal, {len(commands)} more commands came on cmd_vel.", fraction=0.5)
     for peer in placed_driver.node.get_publishers_info_by_topic(COMMANDS):
         qos = peer.qos_profile
         is_default_qos = (qos.reliability, qos.durability) == (ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE)
@@ -213,12 +207,10 @@ def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
     goal = placed_driver.start(distance, 0.5)
     placed_driver.roll(goal, HOLD_SECONDS)
     placed_driver.abandon(goal)
-    held_feedback = [received for received in goal.feedback if received.message.driven < SLACK]
+    held = [received for received in goal.feedback if received.message.driven < SLACK]
     count = HOLD_SECONDS / contract.PERIOD
-    message = (
-        f"While the robot was held for {HOLD_SECONDS} s, {len(held_feedback)} feedbacks came, instead of {count:.0f}."
-    )
-    expect(len(held_feedback) >= count / 2, message, fraction=0.5)
+    message = f"While the robot was held for {HOLD_SECONDS} s, {len(held)} feedbacks came, instead of {count:.0f}."
+    expect(len(held) >= count / 2, message, fraction=0.5)
 
 
 @check(points=2, covers=("rejects", "busy"), needs=SERVER_CHECK, doc=contract.ACTION)
@@ -291,15 +283,13 @@ def _expect_exact_arrival(driver: Driver) -> None:
     driver.roll(goal, 0.3)
     driver.shift(SHORT_OF)
     driver.roll(goal, 0.3)
-    has_ended_early = goal.result is not None
+    is_early = goal.result is not None
     driver.shift(BEYOND - SHORT_OF)
     driver.roll(goal, LONG_SECONDS)
     outcome = STATUS_NAMES.get(goal.status, "not at all")
     driver.abandon(goal)
     prefix = f"With {GOAL} m to drive, the goal ended {outcome}"
-    expect(
-        not has_ended_early, f"{prefix} when the robot was only {SHORT_OF} m away from where it started.", fraction=0.75
-    )
+    expect(not is_early, f"{prefix} when the robot was only {SHORT_OF} m away from where it started.", fraction=0.75)
     message = f"{prefix}, instead of SUCCEEDED, when the robot was {BEYOND} m away from where it started."
     expect(goal.status == GoalStatus.STATUS_SUCCEEDED, message, fraction=0.75)
 
