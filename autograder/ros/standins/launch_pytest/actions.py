@@ -1,4 +1,4 @@
-"""The action with which a launch description says that the test may begin."""
+"""The action of a launch description that lets the tests start."""
 
 from __future__ import annotations
 

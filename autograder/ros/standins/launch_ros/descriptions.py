@@ -1,4 +1,4 @@
-"""Descriptions of parameters and parameter files; those of composable nodes are not covered."""
+"""Descriptions of parameters and parameter files; descriptions of composable nodes are not covered."""
 
 from __future__ import annotations
 

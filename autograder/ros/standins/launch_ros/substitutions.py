@@ -1,4 +1,4 @@
-"""Substitutions that find packages, and what is in them, through the ament index."""
+"""Substitutions that find packages, and files in them, through the ament index."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _described(parts: list[Substitution]) -> str:
 
 
 class FindPackage(DirectorySubstitution):
-    """A folder of a package; PackageNotFoundError if the package is not in the ament index."""
+    """A folder of a package; raises PackageNotFoundError if the package is not in the ament index."""
 
     def __init__(self, package: SomeSubstitutionsType) -> None:
         self.package = normalize_to_list_of_substitutions(package)
@@ -69,7 +69,7 @@ class ExecutableInPackage(FindPackagePrefix):
         return f"ExecInPkg(pkg={_described(self.package)}, exec={_described(self.executable)})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the path; SubstitutionFailure if there is no such executable in the package."""
+        """Return the path; raise SubstitutionFailure if the package has no such executable."""
         executable = perform_substitutions(context, self.executable)
         package = perform_substitutions(context, self.package)
         prefix = super().perform(context)
@@ -78,10 +78,10 @@ class ExecutableInPackage(FindPackagePrefix):
             raise SubstitutionFailure(
                 f"package '{package}' found at '{prefix}', but libexec directory '{libexec}' does not exist"
             )
-        found = shutil.which(executable, path=os.fspath(libexec))
-        if found is None:
+        path = shutil.which(executable, path=os.fspath(libexec))
+        if path is None:
             raise SubstitutionFailure(f"executable '{executable}' not found on the libexec directory '{libexec}' ")
-        return found
+        return path
 
 
 class Parameter(Substitution):
@@ -89,8 +89,8 @@ class Parameter(Substitution):
 
     def __init__(self, name: SomeSubstitutionsType, *, default: Any = None) -> None:
         self.name = normalize_to_list_of_substitutions(name)
-        plain = isinstance(default, (str, Substitution)) or not isinstance(default, Iterable)
-        items = [default] if plain else default
+        is_single = isinstance(default, (str, Substitution)) or not isinstance(default, Iterable)
+        items = [default] if is_single else default
         self.default = (
             None
             if default is None
@@ -102,7 +102,7 @@ class Parameter(Substitution):
         return f"Parameter(name={_described(self.name)})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the value, or the default; SubstitutionFailure without either."""
+        """Return the value, or the default; raise SubstitutionFailure without either."""
         name = perform_substitutions(context, self.name)
         for item in context.launch_configurations.get("global_params", ()):
             if isinstance(item, tuple) and item[0] == name:

@@ -21,7 +21,7 @@ __all__ = [
 
 
 class Shutdown(Event):
-    """The launch is to end, with everything it started."""
+    """A request to end the launch and all its processes."""
 
     name = "launch.events.Shutdown"
 
@@ -31,7 +31,7 @@ class Shutdown(Event):
 
 
 class ExecutionComplete(Event):
-    """An action has been executed, and what it waits for is done."""
+    """An action has been executed, and its future is done."""
 
     name = "launch.events.ExecutionComplete"
 
@@ -40,7 +40,7 @@ class ExecutionComplete(Event):
 
 
 class IncludeLaunchDescription(Event):
-    """A launch description is to be executed."""
+    """A request to execute a launch description."""
 
     name = "launch.events.IncludeLaunchDescription"
 
@@ -49,7 +49,7 @@ class IncludeLaunchDescription(Event):
 
 
 class TimerEvent(Event):
-    """The time of a timer action is up."""
+    """The period of a timer action is over."""
 
     name = "launch.events.TimerEvent"
 

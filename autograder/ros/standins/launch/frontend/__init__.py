@@ -1,4 +1,4 @@
-"""Launch files in XML and YAML: `launch_xml` and `launch_yaml` read the files, this package makes actions of them."""
+"""Launch files in XML and YAML: `launch_xml` and `launch_yaml` read the files, this package creates the actions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tools for tests that wait for what processes do."""
+"""Tools for tests that wait for processes."""
 
 from __future__ import annotations
 

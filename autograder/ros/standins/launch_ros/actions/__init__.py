@@ -7,7 +7,7 @@ from standin_notice import make_getattr
 from .node import Node
 from .scope import PushRosNamespace, SetParameter, SetParametersFromFile, SetRemap, SetROSLogDir, SetUseSimTime
 
-PushROSNamespace = PushRosNamespace  # the older spelling, which Jazzy still has
+PushROSNamespace = PushRosNamespace  # an older name, which Jazzy still has
 
 __all__ = [
     "Node",

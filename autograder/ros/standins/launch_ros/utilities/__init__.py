@@ -1,4 +1,4 @@
-"""Helpers for names and parameters of nodes."""
+"""Helpers for the names and parameters of nodes."""
 
 from __future__ import annotations
 
