@@ -11,11 +11,11 @@ NODE, ROBUST = (f"{HOME}/nodes/{name}.py" for name in ("sensor_processor", "robu
 # Answers instead of the program that calls the functions, if it is imported by that program.
 FORGE_ANSWERS = """
 import json as _json, os as _os, sys as _sys
-_order = _sys._getframe()
-while _order and "order" not in _order.f_locals:
-    _order = _order.f_back
-if _order:
-    _steps = _order.f_locals["order"]["steps"]
+_frame = _sys._getframe()
+while _frame and not isinstance(_frame.f_locals.get("request"), dict):  # that of call_runner.main
+    _frame = _frame.f_back
+if _frame:
+    _steps = _frame.f_locals["request"]["steps"]
     _outcomes = [{"value": [1.0], "arguments": step["args"], "printed": ""} for step in _steps]
     for _descriptor in range(3, 64):
         try:
