@@ -124,10 +124,10 @@ def test_the_executor_of_this_environment_is_patched() -> None:
 
 @pytest.mark.promise("Set-up installs an empty replacement.")
 def test_cmake_packages_find_ament_lint_auto_where_the_wheels_are(tmp_path: Path) -> None:
-    assert not patch_wheels.offer_lint_auto(tmp_path)
+    assert not patch_wheels.add_lint_auto(tmp_path)
     (tmp_path / "share/ament_cmake").mkdir(parents=True)
-    assert patch_wheels.offer_lint_auto(tmp_path)
+    assert patch_wheels.add_lint_auto(tmp_path)
     assert "macro(ament_lint_auto_find_test_dependencies)" in (tmp_path / patch_wheels.LINT_AUTO).read_text()
     (tmp_path / patch_wheels.LINT_AUTO).write_text("the real one")
-    assert not patch_wheels.offer_lint_auto(tmp_path)
+    assert not patch_wheels.add_lint_auto(tmp_path)
     assert (tmp_path / patch_wheels.LINT_AUTO).read_text() == "the real one"
