@@ -18,7 +18,7 @@ from autograder.run.sandbox import Isolation, best_isolation
 from autograder.run.sandbox.limits import NOTEBOOK_WORKER
 from autograder.run.sandbox.spec import View
 from autograder.run.sandbox.worker_sandbox import in_worker_sandbox, path_in_sandbox, wait_and_report
-from autograder.suite.fingerprint import places
+from autograder.suite.fingerprint import suite_paths
 
 REQUEST = "request.json"
 REPLY_FILE = "answer.json"
@@ -76,7 +76,9 @@ def run_on(
             file.write_text(json.dumps(request, default=str))
             return [sys.executable, "-m", "autograder.notebook.check_worker", str(file), str(worker_end.fileno())]
 
-        visible_paths = places(assignment, parts=("visible",)) if (assignment := arguments.get("assignment")) else []
+        visible_paths = (
+            suite_paths(assignment, parts=("visible",)) if (assignment := arguments.get("assignment")) else []
+        )
         if source.is_file():
             # The reader of a submission compares it with the released chapter.
             visible_paths.append(course_paths.chapter(arguments["assignment"]))
@@ -97,7 +99,9 @@ def run_on(
                     listeners.pop()(json.loads(first_part.read_text(encoding="utf-8")))
                 return process.exit_reason is not None
 
-            bundle_server.serve_worker(own_end, isolation, has_ended)  # answers the worker's requests for interface packages
+            bundle_server.serve_worker(
+                own_end, isolation, has_ended
+            )  # answers the worker's requests for interface packages
             has_ended()  # the worker may have written the first part just before it ended
             report = wait_and_report(process)
         reply = Path(folder) / REPLY_FILE
