@@ -25,7 +25,7 @@ LOG_LINES = 40
 
 
 class StoppedBuildError(StudentError):
-    """A limit ended the build. It is not repeated, because that would take as long, and a grading has no time for it."""
+    """A limit ended the build. It is not repeated, because a grading has no time for a second build of that length."""
 
 
 def colcon_command(workspace: Workspace, folders: Iterable[Path], verb: str, *options: str) -> list[str]:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from autograder import course_paths
-from autograder.building import keeper
+from autograder.building import bundle_server
 from autograder.exceptions import StudentError
 from autograder.grade import apart, grade_submission, own_sandbox
 from autograder.grade.job import Job
@@ -185,14 +185,14 @@ PACKAGE = """<package format="3"><name>forged_msgs</name><version>0.0.1</version
 </package>"""
 CMAKE = "cmake_minimum_required(VERSION 3.8)\nproject(forged_msgs NONE)\ninstall(FILES package.xml DESTINATION share)\n"
 REQUEST_BUILD = """
-from autograder.building import keeper
+from autograder.building import bundle_server
 from autograder.run.sandbox.limits import SOURCES
 from autograder.run.sandbox.trees import read_tree
 for name, text in FILES.items():
     path = job.scratch / "mine" / "forged_msgs" / name
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
-keeper.ask(line, read_tree(job.scratch / "mine", SOURCES), job.scratch / "built")
+bundle_server.request_build(line, read_tree(job.scratch / "mine", SOURCES), job.scratch / "built")
 print("BUILT", [str(path.relative_to(job.scratch)) for path in (job.scratch / "built").rglob("package.xml")])
 """
 
@@ -210,8 +210,9 @@ def test_shared_builds_come_from_an_untouched_worker_and_match_their_sources(
     package.mkdir(parents=True)
     for name, text in files.items():
         (package / name).write_text(text)
-    cached = {path.name for path in (classroom / "cache" / "autograder" / keeper.CACHE).iterdir() if path.is_dir()}
-    assert cached == {keeper.key(read_tree(package.parent, SOURCES))}
+    cache = classroom / "cache" / "autograder" / bundle_server.CACHE
+    cached = {path.name for path in cache.iterdir() if path.is_dir()}
+    assert cached == {bundle_server.key(read_tree(package.parent, SOURCES))}
 
 
 @pytest.mark.skipif(

@@ -15,7 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from autograder import course_paths
-from autograder.building.keeper import attend
+from autograder.building.bundle_server import serve_worker
 from autograder.grade.job import Job
 from autograder.grade.own_sandbox import GRACE
 from autograder.run.sandbox.bubblewrap import OUT
@@ -111,7 +111,7 @@ class _Worker:
             try:
                 self._server.send_bytes(remote_job.to_json().encode())
                 is_over = lambda: self._process.exit_reason is not None or time.monotonic() > deadline  # noqa: E731
-                files, reply = attend(self._server, self._isolation, is_over)
+                files, reply = serve_worker(self._server, self._isolation, is_over)
             except (MessageError, OSError):
                 files, reply = {}, {}
         return WorkerReport(ExitReason.EXITED, reply["status"], reply["output"], files) if reply else self._stop()
