@@ -1,7 +1,7 @@
-"""A stand-in for `ament_copyright`, which has no wheel: does each source file say whose it is, and its licence?
+"""A stand-in for `ament_copyright`, which has no wheel: it checks that each source file has a copyright and a licence.
 
-It is found only where the real package is not importable. Covered: `main(argv)` with paths, `--exclude`,
-`--verbose`, `--list-licenses` and `--xunit-file`. Get the real one by sourcing a ROS 2 Jazzy installation.
+It is imported only if the real package is not installed. It covers `main(argv)` with paths, `--exclude`,
+`--verbose`, `--list-licenses` and `--xunit-file`. For the real package, source an installation of ROS 2 Jazzy.
 """
 
 from standin_notice import make_getattr

@@ -18,7 +18,7 @@ from standin_notice import make_getattr
 __all__ = ["ExecutableInPackage", "FindPackage", "FindPackagePrefix", "FindPackageShare", "Parameter"]
 
 
-def _described(parts: list[Substitution]) -> str:
+def _describe(parts: list[Substitution]) -> str:
     return " + ".join(part.describe() for part in parts)
 
 
@@ -30,7 +30,7 @@ class FindPackage(DirectorySubstitution):
 
     def describe(self) -> str:
         """Return a description with the package."""
-        return f"{type(self).__name__}(pkg={_described(self.package)})"
+        return f"{type(self).__name__}(pkg={_describe(self.package)})"
 
     def find(self, package_name: str) -> str:
         """Return the folder."""
@@ -66,7 +66,7 @@ class ExecutableInPackage(FindPackagePrefix):
 
     def describe(self) -> str:
         """Return a description with package and executable."""
-        return f"ExecInPkg(pkg={_described(self.package)}, exec={_described(self.executable)})"
+        return f"ExecInPkg(pkg={_describe(self.package)}, exec={_describe(self.executable)})"
 
     def perform(self, context: LaunchContext) -> str:
         """Return the path; raise SubstitutionFailure if the package has no such executable."""
@@ -99,7 +99,7 @@ class Parameter(Substitution):
 
     def describe(self) -> str:
         """Return a description with the name."""
-        return f"Parameter(name={_described(self.name)})"
+        return f"Parameter(name={_describe(self.name)})"
 
     def perform(self, context: LaunchContext) -> str:
         """Return the value, or the default; raise SubstitutionFailure without either."""

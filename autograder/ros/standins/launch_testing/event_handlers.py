@@ -1,4 +1,4 @@
-"""Waiting in a launch description for a process that says on its standard output that it is ready."""
+"""An event handler that waits until a process prints that it is ready."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["StdoutReadyListener"]
 
 
 class StdoutReadyListener(OnProcessIO):
-    """Executes `actions` when a piece of a process's standard output holds `ready_txt`."""
+    """Executes `actions` when a piece of a process's standard output contains `ready_txt`."""
 
     def __init__(self, *, target_action: ExecuteLocal | None = None, ready_txt: str, actions: SomeEntitiesType) -> None:
         def on_stdout(event: ProcessIO) -> SomeEntitiesType | None:
@@ -24,7 +24,7 @@ class StdoutReadyListener(OnProcessIO):
         self._actions = list(actions) if isinstance(actions, Iterable) else [actions]
 
     def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
-        """Return a description, and the actions: a ReadyToTest is found among them."""
+        """Return a description and the actions, which may contain the ReadyToTest."""
         return super().describe()[0], self._actions
 
 

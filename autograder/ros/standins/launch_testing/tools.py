@@ -1,4 +1,4 @@
-"""Starting single processes in tests: not covered."""
+"""Tools that start single processes in tests, which are not covered."""
 
 from __future__ import annotations
 

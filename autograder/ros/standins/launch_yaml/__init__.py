@@ -1,4 +1,4 @@
-"""Stand-in for `launch_yaml`, which cannot be installed by pip: YAML launch files; see the stand-in for `launch`."""
+"""Stand-in for `launch_yaml`, which cannot be installed by pip: YAML launch files. See the stand-in for `launch`."""
 
 from __future__ import annotations
 

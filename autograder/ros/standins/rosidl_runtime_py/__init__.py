@@ -1,8 +1,8 @@
 """A stand-in for `rosidl_runtime_py`, which has no wheel: ROS messages to and from dictionaries, YAML and CSV.
 
-It is found only where the real package is not importable, has its import names, and covers `convert`,
-`set_message`, `import_message`, `get_interfaces` and `utilities`. Get the real one with `make real-launch`, or by
-sourcing a ROS 2 Jazzy installation.
+It is imported only if the real package is not installed, by the same names. It covers `convert`, `set_message`,
+`import_message`, `get_interfaces` and `utilities`. For the real package run `make real-launch`, or source an
+installation of ROS 2 Jazzy.
 """
 
 from standin_notice import make_getattr
