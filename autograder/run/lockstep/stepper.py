@@ -72,7 +72,7 @@ class Stepper:
     def __init__(
         self, spec: Sandbox, executable: Path, arguments: tuple[str, ...] = (), clock_rate: float = 1.0
     ) -> None:
-        self._at_start = starvation.look(())
+        self._at_start = starvation.measure_use(())
         their_read, our_write = os.pipe()
         our_read, their_write = os.pipe()
         words = (HOST, their_read, their_write, START_NS, clock_rate, executable)
@@ -190,7 +190,7 @@ class Stepper:
 
     def _excuse(self) -> None:
         """Take back the time for which the program was ready to answer, and others did not let it run."""
-        waited = starvation.starved(self._at_start, starvation.look((self.process.innermost(),)))
+        waited = starvation.starved_seconds(self._at_start, starvation.measure_use((self.process.innermost(),)))
         excused = min(max(0.0, waited), self._held)
         patience.add_answer_time(self._excused - excused)
         self._excused = excused
