@@ -1,4 +1,4 @@
-"""Finding ROS 2 and switching it on, for this process and for its children."""
+"""Finds ROS 2, and activates it for this process and its children."""
 
 from __future__ import annotations
 

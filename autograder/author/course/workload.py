@@ -1,6 +1,6 @@
 """Estimates how long a beginner takes for a chapter. The chapter's first cell states this time.
 
-Chapters 0 to 4, worked through as by a beginner, were estimated at 27, 90, 130, 230 and 100 minutes. Given
+A person who worked through chapters 0 to 4 estimated that a beginner needs 27, 90, 130, 230 and 100 minutes. Given
 WORDS_A_MINUTE and MINUTES_A_CELL, MINUTES_A_LINE is the least-squares fit to these five times. The largest error is
 half an hour.
 """

@@ -96,7 +96,7 @@ def multi_node_mutations(source: Source, context: NodeInContext) -> Iterator[Mut
 
 
 def wall_time(source: Source, nodes: list[ast.AST]) -> Iterator[Mutation]:
-    """Yield a mutation that replaces the ROS clock by the machine's clock in all of these nodes of a module."""
+    """Yield a mutation that replaces the ROS clock with the machine's clock in all of these nodes of a module."""
     clocks = [node for node in nodes if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "get_clock"]
     if clocks:
         yield "wall time", tuple((*source.span(node), SYSTEM_CLOCK) for node in clocks)

@@ -66,7 +66,7 @@ class WorkerPool:
         try:
             worker = worker or self._starter.submit(_Worker, self.isolation).result()
             report = worker.grade(job)
-            # A sandbox can also break from outside, for example when apt replaces a file that is mounted in it.
+            # External events can also break a sandbox, for example if apt replaces a file that is mounted in it.
             if report.exit_reason is not ExitReason.EXITED or report.returncode:
                 worker.close()
                 worker = None

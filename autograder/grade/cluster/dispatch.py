@@ -193,7 +193,7 @@ class _Dispatch:
         try:
             future = self._finished.get(timeout=TICK)
         except queue.Empty:
-            self._suitable_threads()  # notices if the scheduler or the last worker is gone
+            self._suitable_threads()  # raises an error if the scheduler or the last worker is lost
             return
         pending = self._in_progress.pop(future)
         if future.status == "cancelled":

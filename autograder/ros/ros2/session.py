@@ -71,7 +71,7 @@ class Session:
         return True
 
     def settle(self, *, max_quiet: float = math.inf) -> None:
-        """Spin until the graph has not changed for `--spin-time` (0.5) seconds, but at most for `max_quiet`."""
+        """Spin until the graph has not changed for `--spin-time` (0.5) seconds, or for `max_quiet` if that is less."""
         quiet = min(max_quiet, QUIET if self.spin_time is None else self.spin_time)
         previous_graph = self._graph()
         last_change = start = time.monotonic()
