@@ -22,7 +22,7 @@ from typing import NamedTuple
 from autograder.harness.base import Program
 from autograder.run.lockstep import Description, Stepper
 from autograder.run.lockstep.lockstep_host import channels
-from autograder.run.lockstep.protocol import answers
+from autograder.run.lockstep.protocol import response_channel
 
 _PARAMETER_EVENTS = "/parameter_events"  # every program publishes them, and no description names them
 
@@ -123,7 +123,7 @@ def _reaches(sender: Description, receiver: Description) -> bool:
     """Return whether a program may send messages to another one, or publishes on one of the other one's topics."""
     written = {channel for channel, _ in sender.writers}
     sent = {*written, *(channel for channel, _ in sender.clients)}
-    sent.update(answers(name, receiver.prefix) for name in sender.servers)
+    sent.update(response_channel(name, receiver.prefix) for name in sender.servers)
     shared = {*map(channels.topic_of, written)} & {channels.topic_of(channel) for channel, _ in receiver.writers}
     reads_parameter_events = any(channels.topic_of(channel) == _PARAMETER_EVENTS for channel in receiver.reads)
     return bool(sent & receiver.reads or shared or reads_parameter_events)

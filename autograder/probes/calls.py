@@ -24,7 +24,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.run.lockstep.failures import diagnose_crash, diagnose_exit
 from autograder.run.lockstep.protocol import Crash
-from autograder.run.lockstep.tracebacks import own_frames
+from autograder.run.lockstep.tracebacks import student_frames
 from autograder.run.sandbox import Mount, Process
 from autograder.run.sandbox.launcher import launch
 from autograder.run.sandbox.limits import CALLS
@@ -177,7 +177,7 @@ def _not_imported(module: str, failed: object) -> Diagnosis:
     kind, message, traceback_text = (str(data.get(name, "")) for name in ("raised", "message", "traceback"))
     if kind == "ModuleNotFoundError" and module in message:
         sentence = f"The package installs no module {module}: is its file written? Look at its place, at __init__.py "
-        frames = own_frames(traceback_text)  # all frames if none is the student's, and then all are the loader's
+        frames = student_frames(traceback_text)  # all frames if none is the student's, and then all are the loader's
         detail = frames if frames != traceback_text else ""
         return Diagnosis(Kind.CRASHED_AT_IMPORT, f"{sentence}and at packages in setup.py.", detail)
     return diagnose_crash(Crash("import", kind, message, traceback_text))

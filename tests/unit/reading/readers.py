@@ -253,7 +253,7 @@ READERS: dict[str, Reader] = {
     ),
     "traceback": Reader(_diagnose_crash, texts(TRACEBACK)),
     "traceback of a signal's race": Reader(lambda text, folder: rclpy_races.lost_a_race(text), texts(TRACEBACK)),
-    "frames of a traceback": Reader(lambda text, folder: tracebacks.own_frames(text), texts(TRACEBACK)),
+    "frames of a traceback": Reader(lambda text, folder: tracebacks.student_frames(text), texts(TRACEBACK)),
     "log of a build": Reader(
         lambda text, folder: (build_log.readable(text), build_log.first_error(text)), texts(TRACEBACK, LAUNCH_OUTPUT)
     ),
