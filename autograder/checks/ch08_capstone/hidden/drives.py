@@ -24,13 +24,13 @@ SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
 TURN = PARAMETERS[CONTROLLER]["turn_speed"].default
 STILL = 0.02  # m/s, rad/s: a slower robot stands still
 MIN_SPEED_SHARE = 0.1  # of the contract's speeds: a slower robot gets no additional time
-DARK = LidarFault("dead", 3.0, 7.0)
+DEAD = LidarFault("dead", 3.0, 7.0)
 BLOCKED = LidarFault("blocked", 9.5, 11.5)
 
 
 @dataclass(frozen=True)
-class Driven:
-    """A drive: its recording, its duration, its start in the harness's time, and the commands."""
+class DriveResult:
+    """A drive: its recording, its duration, its start in the harness's time, and its commands."""
 
     recording: Recording
     seconds: float
@@ -45,13 +45,13 @@ class Drives:
         self._system, self._seed = system, seed
 
     @cached_property
-    def room(self) -> Driven:
+    def room(self) -> DriveResult:
         """Twenty seconds in a furnished room; a slower robot gets more time, so that it also reaches a wall."""
         draw = random.Random(f"{self._seed}:room")
         return self._drive_at_own_pace(world_generation.furnished_room(draw), ROOM_SECONDS, draw)
 
     @cached_property
-    def corridor(self) -> Driven:
+    def corridor(self) -> DriveResult:
         """A short corridor with one bend to the left or to the right, until the robot has passed it."""
 
         def arrived(state: State) -> bool:
@@ -62,7 +62,7 @@ class Drives:
         return self._drive_at_own_pace(self._bend.world, CORRIDOR_SECONDS, draw, arrived)
 
     @cached_property
-    def faulty(self) -> Driven:
+    def faulty_lidar(self) -> DriveResult:
         """A large empty hall; the lidar dies and returns, then is blocked for a while."""
         draw = random.Random(f"{self._seed}:faulty")
         start = Pose(-5.0, draw.uniform(-0.5, 0.5), draw.uniform(-0.1, 0.1))
@@ -83,7 +83,7 @@ class Drives:
         seconds: float,
         draw: random.Random,
         arrived: Callable[[State], bool] = lambda state: False,
-    ) -> Driven:
+    ) -> DriveResult:
         """Drive until the robot has arrived, for `seconds` at most.
 
         A robot that is slower than the contract's maximum speeds gets proportionally more time.
@@ -96,12 +96,12 @@ class Drives:
 
         return self._drive(world, seconds / MIN_SPEED_SHARE, draw, until=is_over)
 
-    def _drive(self, world: World, seconds: float, draw: random.Random, **options: Any) -> Driven:
+    def _drive(self, world: World, seconds: float, draw: random.Random, **options: Any) -> DriveResult:
         simulation = Simulation(world, (RobotSpec(radius=RADIUS),), seed=draw.randrange(2**31))
         system = self._system()
         start = system.seconds
         result = drive(system.harness, simulation, seconds, **options)
-        return Driven(result.recording, system.seconds - start, start, tuple(system.messages(start).commands))
+        return DriveResult(result.recording, system.seconds - start, start, tuple(system.messages(start).commands))
 
 
 class Pace:
@@ -168,7 +168,7 @@ def draw_bend(draw: random.Random) -> Bend:
 
 
 def _inject_faults(scan: Scan, seconds: float) -> Scan | None:
-    if DARK.covers(seconds):
+    if DEAD.covers(seconds):
         return None
     if BLOCKED.covers(seconds):
         return blocked(scan)

@@ -57,7 +57,7 @@ def expect_endpoints(harness: Harness, name: str) -> None:
 
 
 def _describe_fault(node: Node, expected: Endpoint) -> str:
-    endpoints = dict(_query_of(node, expected.kind)(expected.node, "/"))
+    endpoints = dict(_graph_query(node, expected.kind)(expected.node, "/"))
     types = endpoints.get(expected.name)
     if types is None:
         similar = nearest(expected.name, endpoints, 0.5)
@@ -68,7 +68,7 @@ def _describe_fault(node: Node, expected: Endpoint) -> str:
     return ""
 
 
-def _query_of(node: Node, kind: str) -> Callable[[str, str], list[tuple[str, list[str]]]]:
+def _graph_query(node: Node, kind: str) -> Callable[[str, str], list[tuple[str, list[str]]]]:
     queries: dict[str, Callable[[str, str], list[tuple[str, list[str]]]]] = {
         "publisher": node.get_publisher_names_and_types_by_node,
         "subscription": node.get_subscriber_names_and_types_by_node,

@@ -63,7 +63,7 @@ def test_health_levels(system: System, lone_monitor: SharedSystem) -> None:
     _expect_reports(reports, OK, set(), "With scans for 3 s", fraction=0.25)
     rate = system.harness.rate("/health", start)
     expect(1.6 <= rate <= 2.4, f"It published {rate:.1f} reports a second, instead of 2.", fraction=0.5)
-    _expect_stamped(system, reports[-1])
+    _expect_report_stamp(system, reports[-1])
     blind_reports = system.publish_scans(scan(Part(-35.0, 35.0, math.nan)), 2.0).reports
     _expect_reports(blind_reports, DEGRADED, set(), "With nan from every beam ahead", fraction=0.5)
     dead_reports = system.wait(REPORT_DEADLINE).reports[-1:]
@@ -130,7 +130,7 @@ def _expect_ros_time(system: System) -> None:
     _expect_reports(
         reports[-1:], FAILED, LIDAR_TOPICS, f"{REPORT_DEADLINE:.0f} s of ROS time after the last scan", fraction=0.5
     )
-    _expect_stamped(system, reports[-1])
+    _expect_report_stamp(system, reports[-1])
 
 
 def _expect_silence_reported(system: System, topic: str) -> None:
@@ -161,7 +161,7 @@ def _send_all(system: System, topics: Sequence[str], seconds: float, **distances
     return system.messages(start + SETTLED).reports
 
 
-def _expect_stamped(system: System, report: ReceivedMessage) -> None:
+def _expect_report_stamp(system: System, report: ReceivedMessage) -> None:
     """Fail the check unless a report's stamp is the ROS time at which it was published."""
     stamp = report.message.header.stamp
     arrival = system.harness.now_ns / 1e9 - (system.seconds - report.seconds)

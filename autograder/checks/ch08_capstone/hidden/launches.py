@@ -25,13 +25,13 @@ from autograder.checks.ch08_capstone.support.contract import (
 )
 
 check = group("step_4", doc=contract.LAUNCH_DOC)
-INSTALLED_FILES = ("shares",)
-LAUNCH_NEEDS = ("executables", "shares", "interface_package")
+INSTALL_CHECKS = ("shares",)
+START_CHECKS = ("executables", "shares", "interface_package")
 OTHER_CONFIG = "config/of_another_robot.yaml"
 MAX_SCRIPT = 64 * 1024  # bytes; scripts that setuptools writes have about a thousand
 SHOWN_SECONDS = 5.0  # s of real time in which the line of a running program must appear on the screen
 # A launch file that includes the student's in a namespace, with programs that print their arguments.
-NAMESPACE, INCLUDING = "robot7", "of_one_robot.launch.py"
+NAMESPACE, INCLUDING_FILE = "robot7", "of_one_robot.launch.py"
 INCLUDING_TEXT = f"""from pathlib import Path
 
 from launch import LaunchDescription
@@ -45,7 +45,7 @@ def generate_launch_description():
     include = IncludeLaunchDescription(PythonLaunchDescriptionSource(str(file)))
     return LaunchDescription([GroupAction([PushRosNamespace('{NAMESPACE}'), include])])
 """
-PRINTS_ARGUMENTS = '#!/bin/sh\necho "${0##*/} got: $*" >&2\nexec sleep 600\n'  # launch always shows standard error
+ARGUMENTS_SCRIPT = '#!/bin/sh\necho "${0##*/} got: $*" >&2\nexec sleep 600\n'  # launch always shows standard error
 _ARGUMENTS = re.compile(r"\b(?P<program>\w+) got: (?P<words>.*)")
 _ABSOLUTE_REMAPPING = re.compile(r"(?:-r|--remap) (?P<name>\S+?):=(?P<to>/\S*)")
 HINTS = (
@@ -68,7 +68,7 @@ class Launched:
     values: Mapping[str, Mapping[str, float]]
     lines: Mapping[str, str]
 
-    def unseen(self) -> list[str]:
+    def silent_programs(self) -> list[str]:
         """Return the programs whose lines are not yet on the screen."""
         return [name for name, line in self.lines.items() if line not in self.harness.output]
 
@@ -95,7 +95,7 @@ def launched(workspace: Workspace, seed: int) -> Iterator[Launched]:
         yield Launched(harness, values, {name: lines[name] for name in scripts})
 
 
-@check(points=1, covers="launch-arguments", needs=("build",), after=INSTALLED_FILES)
+@check(points=1, covers="launch-arguments", needs=("build",), after=INSTALL_CHECKS)
 @hint("ros2 launch -s robot_navigation_tutorial navigation.launch.py shows what you have declared.")
 @hint("DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.")
 def test_launch_arguments(workspace: Workspace) -> None:
@@ -129,7 +129,7 @@ def _expect_starts_without(workspace: Workspace, name: str) -> None:
     )
 
 
-@check(points=2, covers="launches", needs=("build",), after=LAUNCH_NEEDS)
+@check(points=2, covers="launches", needs=("build",), after=START_CHECKS)
 @hint(*HINTS)
 def test_launch_starts(launched: Launched) -> None:
     """The launch file starts the three nodes under their names, and nothing else."""
@@ -155,9 +155,13 @@ def test_launch_configures(launched: Launched, workspace: Workspace) -> None:
         # Another check tests which parameters a node declares.
         expected = {name: value for name, value in values.items() if actual.get(name) is not None}
         launch_probe.expect_parameters(launched.harness, name_of(node), expected)
-    launched.harness.wait_for(lambda: not launched.unseen(), SHOWN_SECONDS)
-    unseen = ", ".join(launched.unseen())
-    expect(not unseen, f"What {unseen} prints is not on the screen: output='screen' is missing.", fraction=0.75)
+    launched.harness.wait_for(lambda: not launched.silent_programs(), SHOWN_SECONDS)
+    silent_programs = ", ".join(launched.silent_programs())
+    expect(
+        not silent_programs,
+        f"What {silent_programs} prints is not on the screen: output='screen' is missing.",
+        fraction=0.75,
+    )
     remapping = _absolute_remapping(workspace)
     message = (
         f"Included in the namespace /{NAMESPACE}, the launch file gives {remapping}: a relative name has no slash."
@@ -176,9 +180,11 @@ def test_launch_stops(launched: Launched) -> None:
 
 def _absolute_remapping(workspace: Workspace) -> str:
     """Describe the first remapping to a name outside of the namespace in which the launch file is included."""
-    scripts = dict.fromkeys(PROGRAMS, PRINTS_ARGUMENTS)
-    copy = launch_probe.with_files(workspace, "included", PACKAGE, {f"launch/{INCLUDING}": INCLUDING_TEXT}, scripts)
-    with LaunchHarness(copy, PACKAGE, INCLUDING) as harness:
+    scripts = dict.fromkeys(PROGRAMS, ARGUMENTS_SCRIPT)
+    copy = launch_probe.with_files(
+        workspace, "included", PACKAGE, {f"launch/{INCLUDING_FILE}": INCLUDING_TEXT}, scripts
+    )
+    with LaunchHarness(copy, PACKAGE, INCLUDING_FILE) as harness:
         harness.wait_for(lambda: len(_ARGUMENTS.findall(harness.output)) >= len(PROGRAMS), launch_probe.START_SECONDS)
         output = harness.output
     return next(

@@ -16,8 +16,8 @@ MIDDLES = {"front": 0.0, "left": 90.0, "right": -90.0}  # degrees
 # Beams are 10° apart, the outermost at 125°. Dividing the arc by their number, instead of one less, moves the beams at
 # 35° into the front sector.
 ARC, BEAMS = 125.0, 26
-INSIDE = 29.0  # degrees to each side of a middle; half_angle is 29.8°
-BETWEEN = 0.4  # m: things between the sectors are nearer than those in them
+HALF_WIDTH = 29.0  # degrees to each side of a middle; half_angle is 29.8°
+DISTANCE_BETWEEN = 0.4  # m: things between the sectors are nearer than those in them
 MAX_ERRORS = 5  # the most errors that `other_lidar_errors` returns
 
 
@@ -30,8 +30,10 @@ def other_lidar_errors(system: System, draw: random.Random) -> list[str]:
     errors = []
     for first_bearing in (-ARC, ARC):
         distances = {name: round(draw.uniform(0.7, 2.0), 2) for name in MIDDLES}
-        parts = [Part(middle - INSIDE, middle + INSIDE, distances[name]) for name, middle in MIDDLES.items()]
-        published = scan(*parts, fill=BETWEEN, beams=BEAMS, first_bearing=first_bearing, last_bearing=-first_bearing)
+        parts = [Part(middle - HALF_WIDTH, middle + HALF_WIDTH, distances[name]) for name, middle in MIDDLES.items()]
+        published = scan(
+            *parts, fill=DISTANCE_BETWEEN, beams=BEAMS, first_bearing=first_bearing, last_bearing=-first_bearing
+        )
         situation = f"a scan of {BEAMS} beams from {first_bearing:.0f}° to {-first_bearing:.0f}°"
         errors += _wrong_distances(newest_clearance(system, published), situation, distances)
     range_min, range_max = round(draw.uniform(0.4, 0.5), 2), round(draw.uniform(6.0, 9.0), 1)

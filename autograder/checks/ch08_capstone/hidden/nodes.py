@@ -12,28 +12,30 @@ from autograder.checks.ch08_capstone.support.contract import CONTROLLER, MONITOR
 from autograder.checks.ch08_capstone.support.system import SharedSystem
 
 check = group("step_2")
-MESSAGES = ("clearance_message", "interface_package")
+MESSAGE_CHECKS = ("clearance_message", "interface_package")
 ENDPOINT_HINTS = (
     "Start the node in a terminal and look: ros2 node info /navigation_controller.",
     "Relative names, without a slash: create_publisher(Twist, 'cmd_vel', 10).",
 )
 
 
-@check(points=1, covers="processor-name", needs=("build",), after=MESSAGES, doc=contract.NODES_DOC)
+@check(points=1, covers="processor-name", needs=("build",), after=MESSAGE_CHECKS, doc=contract.NODES_DOC)
 @hint(*ENDPOINT_HINTS)
 def test_processor(shared_system: SharedSystem) -> None:
     """The node sensor_processor has its name, and its topics with their types."""
     expect_endpoints(shared_system.get(PROCESSOR).harness, PROCESSOR)
 
 
-@check(points=1, covers="controller-name", needs=("build",), after=MESSAGES, doc=contract.NODES_DOC)
+@check(points=1, covers="controller-name", needs=("build",), after=MESSAGE_CHECKS, doc=contract.NODES_DOC)
 @hint(*ENDPOINT_HINTS)
 def test_controller(shared_system: SharedSystem) -> None:
     """The node navigation_controller has its name, and its topics and its service with their types."""
     expect_endpoints(shared_system.get(CONTROLLER).harness, CONTROLLER)
 
 
-@check(points=1, covers="monitor-name", needs=("build",), after=(*MESSAGES, "health_message"), doc=contract.NODES_DOC)
+@check(
+    points=1, covers="monitor-name", needs=("build",), after=(*MESSAGE_CHECKS, "health_message"), doc=contract.NODES_DOC
+)
 @hint(*ENDPOINT_HINTS)
 def test_monitor(shared_system: SharedSystem) -> None:
     """The node status_monitor has its name, and its topics with their types."""

@@ -36,7 +36,7 @@ def examined(workspace: Workspace, seed: int) -> SectorTestReports:
     versions = [correct_version(draw), *faulty_versions(FAULTS, draw)]
     order = draw.sample(range(len(versions)), len(versions))
     source = student_test_runs.read_source(workspace, PACKAGE)
-    test_runs = [student_test_reports.TestRun((FILE,), versions[i]) for i in order]  # no run differs in its arguments
+    test_runs = [student_test_reports.TestRun((FILE,), versions[i]) for i in order]  # each run has the same arguments
     reports = student_test_runs.run(workspace, source, test_runs)
     by_version = dict(zip(order, reports, strict=True))
     return SectorTestReports(by_version[0], tuple((fault, by_version[i]) for i, fault in enumerate(FAULTS, 1)))
@@ -52,10 +52,10 @@ def test_sector_tests_pass(examined: SectorTestReports) -> None:
         raise CheckFailed(
             f"On a right sectors.py, {student_test_reports.shown_name(report.failed[0])} in {FILE} fails."
         )
-    ended = "before it could say how they went" if report.status is None else f"with exit status {report.status}"
-    expect(report.passed, f"On a right sectors.py, pytest ran no test in {FILE}: it ended {ended}.")
-    few = f"Fewer than {MIN_TESTS} tests ran: that is too few to say that nearest is right."
-    expect(len(report.executed) >= MIN_TESTS, few, fraction=0.5)
+    ending = "before it could say how they went" if report.status is None else f"with exit status {report.status}"
+    expect(report.passed, f"On a right sectors.py, pytest ran no test in {FILE}: it ended {ending}.")
+    message = f"Fewer than {MIN_TESTS} tests ran: that is too few to say that nearest is right."
+    expect(len(report.executed) >= MIN_TESTS, message, fraction=0.5)
 
 
 @check(points=4, covers="sector-tests", after=("sector_tests_pass",), doc=contract.REP_117)

@@ -70,12 +70,12 @@ FAULTS = (  # the notebook names these faults
 
 def correct_version(draw: random.Random) -> versions.Version:
     """Return the correct version."""
-    return _version(CORRECT, draw)
+    return _obfuscated_version(CORRECT, draw)
 
 
 def faulty_versions(faults: Sequence[Fault], draw: random.Random) -> list[versions.Version]:
     """Return a version for each fault."""
-    return [_version(_apply(fault), draw) for fault in faults]
+    return [_obfuscated_version(_apply(fault), draw) for fault in faults]
 
 
 def _apply(fault: Fault) -> str:
@@ -84,6 +84,6 @@ def _apply(fault: Fault) -> str:
     return CORRECT.replace(fault.find, fault.replace)
 
 
-def _version(text: str, draw: random.Random) -> versions.Version:
+def _obfuscated_version(text: str, draw: random.Random) -> versions.Version:
     files = {f"{PACKAGE}/__init__.py": "", f"{PACKAGE}/{SECTORS}.py": text}
     return versions.obfuscate(versions.Version(files, {}), draw.randrange(2**31))

@@ -10,7 +10,7 @@ INTERFACES = "robot_navigation_interfaces"
 PROCESSOR, CONTROLLER, MONITOR = PROGRAMS = ("sensor_processor", "navigation_controller", "status_monitor")
 LAUNCH_FILE = "navigation.launch.py"
 CONFIG = "config/navigation.yaml"
-SECTORS = "sectors"  # the module that the student's tests test
+SECTORS = "sectors"  # the module under test in the student's tests
 
 VERSION = "0.1.0"
 LICENCE = "Apache-2.0"
@@ -20,7 +20,9 @@ OK, DEGRADED, FAILED = range(3)
 LEVELS = ("OK", "DEGRADED", "FAILED")
 REPORT_DEADLINE = 2.0  # s: a topic is silent after 1.0 s, and reports are 0.5 s apart
 
-TOLERANCE = 0.005  # m, m/s, rad/s: a tenth of the smallest forward_speed, and above the rounding of a 32-bit float
+TOLERANCE = (
+    0.005  # m, m/s, rad/s: a tenth of the smallest forward_speed, and above the rounding error of a 32-bit float
+)
 
 
 @dataclass(frozen=True)

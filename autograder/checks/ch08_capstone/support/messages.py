@@ -90,7 +90,7 @@ def differences(workspace: Workspace, expected: ExpectedMessage) -> list[str]:
 
 
 def _differences_in_text(workspace: Workspace, expected: ExpectedMessage) -> list[str]:
-    """Describe wrong constants, and fields with a default, which the loaded classes do not tell."""
+    """Describe wrong constants, and fields with a default, which the loaded classes do not contain."""
     path = f"msg/{expected.name}.msg"
     data = files.read_plain(source_of(workspace, INTERFACES) / path, interfaces.MAX_BYTES + 1) or b""
     try:

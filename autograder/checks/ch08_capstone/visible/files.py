@@ -1,4 +1,4 @@
-"""Steps 1 and 3: do the two packages build, and are the messages as the contract says?"""
+"""Steps 1 and 3: the build of the two packages, and the definitions of the messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Steps 4, 6 and 7: does one command start it all, and do the tests and the linters pass?"""
+"""Steps 4, 6 and 7: the launch file, the configuration, the tests and the linters."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ Reports = Mapping[tuple[str, ...], student_test_reports.Report]
 
 @pytest.fixture(scope="module", autouse=True)
 def reports(workspace: Workspace) -> Iterator[Future[Reports]]:
-    """The future reports of the tests and the linters, which run in parallel to the launch, as that mostly waits."""
+    """The future reports of the tests and the linters, which run while the check of the launch file waits."""
 
     def run_tests() -> Reports:
         test_runs = {

@@ -82,7 +82,7 @@ def attribute_pairs(
     return result
 
 
-def _mapping(entity: Entity, parser: Parser, child: str) -> dict[Any, Any] | None:
+def _read_mapping(entity: Entity, parser: Parser, child: str) -> dict[Any, Any] | None:
     items = attribute_pairs(entity, parser, child, "name", "value")
     return None if items is None else {tuple(name): value for name, value in items}
 
@@ -140,7 +140,7 @@ def _shutdown(entity: Entity, parser: Parser) -> Keywords:
 
 @reader_of(ResetLaunchConfigurations)
 def _reset(entity: Entity, parser: Parser) -> Keywords:
-    configurations = _mapping(entity, parser, "keep")
+    configurations = _read_mapping(entity, parser, "keep")
     return {} if configurations is None else {"launch_configurations": configurations}
 
 
@@ -192,7 +192,7 @@ def process_keywords(entity: Entity, parser: Parser) -> Keywords:
                 f"Attribute {name} of Entity {entity.type_name} expected to be a non-negative value but got `{seconds}`"
             )
         keywords[name] = seconds if name == "respawn_delay" else str(seconds)
-    variables = _mapping(entity, parser, "env")
+    variables = _read_mapping(entity, parser, "env")
     return keywords if variables is None else {**keywords, "additional_env": variables}
 
 

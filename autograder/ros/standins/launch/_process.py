@@ -22,7 +22,7 @@ _DRAIN_SECONDS = 1.0
 OutputCallback = Callable[[str, bytes], None]
 
 
-class _Reader(asyncio.Protocol):
+class _PipeReader(asyncio.Protocol):
     """Passes the data of one pipe to a callback; the future `ended` is done when the pipe is closed."""
 
     def __init__(self, source: str, on_output: OutputCallback) -> None:
@@ -38,7 +38,7 @@ class _Reader(asyncio.Protocol):
             self.ended.set_result(None)
 
 
-class _Exit(asyncio.SubprocessProtocol):
+class _ExitProtocol(asyncio.SubprocessProtocol):
     """The future `exited` is done when the process has exited."""
 
     def __init__(self) -> None:
@@ -56,7 +56,7 @@ class ChildProcess:
     ) -> None:
         self._transport = transport
         self._outputs = outputs
-        self._readers: list[tuple[asyncio.ReadTransport, _Reader]] = []
+        self._readers: list[tuple[asyncio.ReadTransport, _PipeReader]] = []
         self.exited = exited
         self.pid: int = transport.get_pid()
 
@@ -81,9 +81,9 @@ class ChildProcess:
         }
         try:
             if shell:
-                transport, protocol = await loop.subprocess_shell(_Exit, " ".join(cmd), **options)
+                transport, protocol = await loop.subprocess_shell(_ExitProtocol, " ".join(cmd), **options)
             else:
-                transport, protocol = await loop.subprocess_exec(_Exit, *cmd, **options)
+                transport, protocol = await loop.subprocess_exec(_ExitProtocol, *cmd, **options)
         except BaseException:
             for descriptor in read_ends.values():
                 os.close(descriptor)
@@ -98,7 +98,7 @@ class ChildProcess:
         loop = asyncio.get_running_loop()
         for source in tuple(self._outputs):
             pipe = os.fdopen(self._outputs.pop(source), "rb", 0)
-            protocol = partial(_Reader, source, on_output)
+            protocol = partial(_PipeReader, source, on_output)
             self._readers.append(await loop.connect_read_pipe(protocol, pipe))
 
     @property

@@ -60,14 +60,14 @@ class UnlessCondition(Condition):
         super().__init__(predicate=lambda context: not evaluate_condition_expression(context, self._expression))
 
 
-def _equals(context: LaunchContext, name: str, expected: list[Substitution] | None) -> bool:
+def _configuration_equals(context: LaunchContext, name: str, expected: list[Substitution] | None) -> bool:
     value = context.launch_configurations.get(name)
     if expected is None or value is None:
         return expected is None and value is None
     return bool(value == perform_substitutions(context, expected))
 
 
-def _warn(condition: Condition) -> None:
+def _warn_of_deprecation(condition: Condition) -> None:
     text = f"{type(condition).__name__} is deprecated: use IfCondition with EqualsSubstitution or NotEqualsSubstitution"
     warnings.warn(text, UserWarning, stacklevel=3)
 
@@ -76,18 +76,20 @@ class LaunchConfigurationEquals(Condition):
     """True if a launch configuration has the given text, or is not set and None is expected."""
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
-        _warn(self)
+        _warn_of_deprecation(self)
         expected = None if expected_value is None else normalize_to_list_of_substitutions(expected_value)
-        super().__init__(predicate=lambda context: _equals(context, launch_configuration_name, expected))
+        super().__init__(predicate=lambda context: _configuration_equals(context, launch_configuration_name, expected))
 
 
 class LaunchConfigurationNotEquals(Condition):
     """The opposite of LaunchConfigurationEquals."""
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
-        _warn(self)
+        _warn_of_deprecation(self)
         expected = None if expected_value is None else normalize_to_list_of_substitutions(expected_value)
-        super().__init__(predicate=lambda context: not _equals(context, launch_configuration_name, expected))
+        super().__init__(
+            predicate=lambda context: not _configuration_equals(context, launch_configuration_name, expected)
+        )
 
 
 __getattr__ = make_getattr(__name__)

@@ -55,7 +55,7 @@ class LaunchService:
     def emit_event(self, event: Event) -> None:
         """Emit `event`, from any thread; the queue keeps it until the service runs."""
         with self._lock:
-            if self._loop is None or self._in_own_thread():
+            if self._loop is None or self._is_in_own_thread():
                 self.context.emit_event_sync(event)
             else:
                 self._loop.call_soon_threadsafe(self.context.emit_event_sync, event)
@@ -73,7 +73,7 @@ class LaunchService:
             if self._loop is None:
                 return None
             reason = "LaunchService.shutdown() called"
-            if not self._in_own_thread():
+            if not self._is_in_own_thread():
                 self._loop.call_soon_threadsafe(self._begin_shutdown, reason)
                 return None
 
@@ -116,7 +116,7 @@ class LaunchService:
                         if next_event.done():
                             event = next_event.result()
                             next_event = asyncio.ensure_future(queue.get())
-                            self._process(event)
+                            self._handle_event(event)
                     except asyncio.CancelledError as error:
                         logger.error("run task was canceled")
                         if canceled is not None or next_event.cancelled():
@@ -164,7 +164,7 @@ class LaunchService:
                 if not future.cancelled():
                     future.result()
 
-    def _process(self, event: Event) -> None:
+    def _handle_event(self, event: Event) -> None:
         """Let each matching handler handle `event`, and visit the entities that it returns."""
         if isinstance(event, Shutdown):
             # Set before all handlers, as a process that they start now would not be shut down.
@@ -245,7 +245,7 @@ class LaunchService:
             logger.warning(message)
             self._begin_shutdown("ctrl-c (SIGINT)", due_to_sigint=True)
 
-    def _in_own_thread(self) -> bool:
+    def _is_in_own_thread(self) -> bool:
         # The service runs in the main thread only.
         return threading.current_thread() is threading.main_thread()
 

@@ -148,7 +148,7 @@ _NAMED_OUTPUTS: dict[str, dict[str, set[str]]] = {
 }
 
 
-def _normalized(output: str | OutputConfig) -> dict[str, set[str]]:
+def _normalize_output(output: str | OutputConfig) -> dict[str, set[str]]:
     """Return the set of destinations in `output` for stdout, stderr and both."""
     if isinstance(output, str):
         if output not in _NAMED_OUTPUTS:
@@ -172,7 +172,7 @@ def get_output_loggers(process_name: str, output: str | OutputConfig) -> tuple[l
     'full', or a mapping from 'stdout', 'stderr' or 'both' to 'screen', 'log', 'own_log' or several of them.
     Raises ValueError for any other value.
     """
-    destinations = _normalized(output)
+    destinations = _normalize_output(output)
     loggers = []
     for source in ("stdout", "stderr"):
         logger = logging.getLogger(f"{process_name}-{source}")

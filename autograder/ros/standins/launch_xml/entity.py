@@ -55,12 +55,12 @@ class Entity(frontend.Entity):
                 self._read_children.add(name)
                 return children
         elif name in self._element.attrib:
-            return self._typed(name, data_type, can_be_str)
+            return self._convert_attribute(name, data_type, can_be_str)
         if optional:
             return None
         raise AttributeError(f"Attribute '{name}' of type '{data_type}' not found in Entity '{self.type_name}'")
 
-    def _typed(self, name: str, data_type: Any, can_be_str: bool) -> Any:
+    def _convert_attribute(self, name: str, data_type: Any, can_be_str: bool) -> Any:
         value: Any = self._element.attrib[name]
         self._read_attributes.add(name)
         separator = f"{name}-sep"

@@ -51,7 +51,7 @@ def message_to_ordereddict(
         no_str: whether to replace each string by a summary.
     """
     return OrderedDict(
-        (name, _plain(getattr(msg, name), slot, truncate_length, no_arr, no_str))
+        (name, _to_plain(getattr(msg, name), slot, truncate_length, no_arr, no_str))
         for name, slot in get_message_slot_types(msg).items()
     )
 
@@ -86,12 +86,12 @@ def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool
     Values are not quoted, as in the real function: a string with a comma in it looks like two values.
     """
     return ",".join(
-        _csv(getattr(msg, name), slot, truncate_length, no_arr, no_str)
+        _to_csv(getattr(msg, name), slot, truncate_length, no_arr, no_str)
         for name, slot in get_message_slot_types(msg).items()
     )
 
 
-def _plain(value: Any, slot: Any, limit: int | None, no_arr: bool, no_str: bool) -> Any:
+def _to_plain(value: Any, slot: Any, limit: int | None, no_arr: bool, no_str: bool) -> Any:
     if isinstance(value, bytes):
         return _truncate(value.decode("latin-1"), limit)
     if isinstance(value, str):
@@ -99,7 +99,7 @@ def _plain(value: Any, slot: Any, limit: int | None, no_arr: bool, no_str: bool)
     if isinstance(value, _SEQUENCES):
         if no_arr and slot is not None:
             return _array_summary(value, slot)
-        items = [_plain(item, None, limit, no_arr, no_str) for item in value[:limit]]
+        items = [_to_plain(item, None, limit, no_arr, no_str) for item in value[:limit]]
         return [*items, _ELLIPSIS] if limit is not None and len(value) > limit else items
     if isinstance(value, np.number):
         return value.item()
@@ -108,11 +108,11 @@ def _plain(value: Any, slot: Any, limit: int | None, no_arr: bool, no_str: bool)
     return message_to_ordereddict(value, truncate_length=limit, no_arr=no_arr, no_str=no_str)
 
 
-def _csv(value: Any, slot: Any, limit: int | None, no_arr: bool, no_str: bool) -> str:
+def _to_csv(value: Any, slot: Any, limit: int | None, no_arr: bool, no_str: bool) -> str:
     if isinstance(value, _SEQUENCES):
         if no_arr and slot is not None:
             return _array_summary(value, slot)
-        items = [_csv(item, None, limit, no_arr, no_str) for item in value[:limit]]
+        items = [_to_csv(item, None, limit, no_arr, no_str) for item in value[:limit]]
         return ",".join([*items, _ELLIPSIS] if limit is not None and len(value) > limit else items)
     if isinstance(value, bytes):
         return str(value if limit is None or len(value) <= limit else value[:limit] + b"...")

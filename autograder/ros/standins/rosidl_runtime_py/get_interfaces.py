@@ -33,17 +33,17 @@ def get_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
 
 def get_message_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     """Return the messages of the given packages; arguments and errors are those of `get_interfaces`."""
-    return _of_kind("msg", package_names)
+    return _interfaces_of_kind("msg", package_names)
 
 
 def get_service_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     """Return the services of the given packages; arguments and errors are those of `get_interfaces`."""
-    return _of_kind("srv", package_names)
+    return _interfaces_of_kind("srv", package_names)
 
 
 def get_action_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     """Return the actions of the given packages; arguments and errors are those of `get_interfaces`."""
-    return _of_kind("action", package_names)
+    return _interfaces_of_kind("action", package_names)
 
 
 def get_interface_packages() -> dict[str, str]:
@@ -80,7 +80,7 @@ def get_interface_path(interface_name: str) -> str:
     raise LookupError(f"Could not find the interface '{share.joinpath(*folders[0]).with_suffix('.idl')}'")
 
 
-def _of_kind(kind: str, package_names: Iterable[str]) -> dict[str, list[str]]:
+def _interfaces_of_kind(kind: str, package_names: Iterable[str]) -> dict[str, list[str]]:
     interfaces = {
         package: [name for name in names if name.startswith(f"{kind}/")]
         for package, names in get_interfaces(package_names).items()

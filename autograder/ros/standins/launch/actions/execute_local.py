@@ -112,13 +112,13 @@ class ExecuteLocal(Action):
 
     def get_stdout(self) -> str:
         """Return all standard output so far; RuntimeError unless `cached_output` is set."""
-        return self._cached("stdout")
+        return self._cached_text("stdout")
 
     def get_stderr(self) -> str:
         """Return all standard error so far; RuntimeError unless `cached_output` is set."""
-        return self._cached("stderr")
+        return self._cached_text("stderr")
 
-    def _cached(self, source: str) -> str:
+    def _cached_text(self, source: str) -> str:
         if not self._cached_output:
             raise RuntimeError(
                 f"cached output must be true to be able to get {source}, proc '{self.process_description.final_name}'"

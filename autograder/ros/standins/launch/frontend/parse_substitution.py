@@ -69,7 +69,7 @@ class _Reader:
         """
         parts: list[Substitution] = []
         while self._at_substitution() or self._at_text(stops):
-            parts.append(self._substitution(quote) if self._at_substitution() else self._plain(stops))
+            parts.append(self._substitution(quote) if self._at_substitution() else self._plain_text(stops))
         return parts
 
     def _substitution(self, quote: str) -> Substitution:
@@ -98,7 +98,7 @@ class _Reader:
             raise self._error(start)
         return parts
 
-    def _plain(self, stops: str) -> Substitution:
+    def _plain_text(self, stops: str) -> Substitution:
         start = self.position
         while self._at_text(stops):
             self.position += 2 if self.text[self.position] == "\\" else 1

@@ -103,7 +103,7 @@ def _comparable(value: Any) -> list[Substitution]:
     return normalize_to_list_of_substitutions(str(value))
 
 
-def _equal(left: str, right: str) -> bool:
+def _are_equal(left: str, right: str) -> bool:
     """Return whether two texts are equal: as truth values, as numbers, or otherwise character by character."""
     truth_values = {"true": True, "1": True, "false": False, "0": False}
     if left.lower() in truth_values and right.lower() in truth_values:
@@ -126,7 +126,7 @@ class EqualsSubstitution(Substitution):
         return f"{type(self).__name__}({describe_substitutions(self.left)} {describe_substitutions(self.right)})"
 
     def _sides_are_equal(self, context: LaunchContext) -> bool:
-        return _equal(perform_substitutions(context, self.left), perform_substitutions(context, self.right))
+        return _are_equal(perform_substitutions(context, self.left), perform_substitutions(context, self.right))
 
     def perform(self, context: LaunchContext) -> str:
         """Return whether both sides are equal."""

@@ -21,7 +21,7 @@ from ..substitution import (
 from .paths import DirectorySubstitution
 
 
-def _default(value: Any) -> list[Substitution] | None:
+def _normalize_default(value: Any) -> list[Substitution] | None:
     """Return a default of any type as substitutions; numbers and truth values become text."""
     if value is None:
         return None
@@ -34,7 +34,7 @@ class LaunchConfiguration(Substitution):
 
     def __init__(self, variable_name: SomeSubstitutionsType, *, default: Any = None) -> None:
         self.variable_name = normalize_to_list_of_substitutions(variable_name)
-        self._default = _default(default)
+        self._default = _normalize_default(default)
 
     def describe(self) -> str:
         """Return a description with the name."""
@@ -55,7 +55,7 @@ class EnvironmentVariable(Substitution):
 
     def __init__(self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None) -> None:
         self.name = normalize_to_list_of_substitutions(name)
-        self.default_value = _default(default_value)
+        self.default_value = _normalize_default(default_value)
 
     def describe(self) -> str:
         """Return a description with the name."""
