@@ -111,12 +111,12 @@ def test_dead_sensor(system: System, slow_system: SharedSystem, lone_monitor: Sh
     later_reports = [r for r in reports if r.seconds - start > REPORT_DEADLINE]
     _expect_reports(later_reports, FAILED, LIDAR_TOPICS, "2 to 4 s after the last scan", fraction=0.5)
     system.publish_scans(OPEN, REPORT_DEADLINE)
-    newest = system.harness.messages("/health")[-1:]
-    _expect_reports(newest, OK, set(), f"{REPORT_DEADLINE:.0f} s after the lidar came back", fraction=0.75)
+    newest_reports = system.harness.messages("/health")[-1:]
+    _expect_reports(newest_reports, OK, set(), f"{REPORT_DEADLINE:.0f} s after the lidar came back", fraction=0.75)
     system.publish_scans(OPEN, 1.0, age=EARLY)
-    newest = system.wait(REPORT_DEADLINE).reports[-1:]
+    dead_reports = system.wait(REPORT_DEADLINE).reports[-1:]
     situation = f"{REPORT_DEADLINE:.0f} s after the last scan, whose stamp was {-EARLY:.0f} s ahead of the clock,"
-    _expect_reports(newest, FAILED, LIDAR_TOPICS, situation, fraction=0.75)
+    _expect_reports(dead_reports, FAILED, LIDAR_TOPICS, situation, fraction=0.75)
     if system.harness.time == LOCKSTEP:  # in real time, the clocks of the machine cannot be slowed
         _expect_ros_time(slow_system.get(*PROGRAMS))
     for topic in ("cmd_vel", "clearance"):

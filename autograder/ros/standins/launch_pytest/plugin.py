@@ -83,7 +83,7 @@ def pytest_pycollect_makeitem(collector: Any, name: str, obj: Any) -> list[pytes
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put tests that run after the end of a launch behind the other tests with the same fixture."""
+    """Move tests that run after the end of a launch after the other tests with the same fixture."""
     for item in [item for item in items if _is_after_end(item)]:
         users = [index for index, other in enumerate(items) if _share_launch(other, item)]
         last = max((index for index in users if not _is_after_end(items[index])), default=-1)
