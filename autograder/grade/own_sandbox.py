@@ -1,4 +1,4 @@
-"""Grades one submission in its own worker sandbox, and defines what its worker sees there."""
+"""Grades one submission in its own worker sandbox, and defines which files its worker can read there."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from autograder.suite import fingerprint
 GRACE = 30.0  # s for a worker to stop its programs and report, after its time is over
 
 
-def in_own_sandbox(job: Job) -> WorkerReport:
-    """Run a job with a worker in its own sandbox, and report the files that it left."""
+def run_in_own_sandbox(job: Job) -> WorkerReport:
+    """Run a job with a worker in its own sandbox; return a report with the files of its result."""
     ours, theirs = Pipe()
 
     def command(scratch: Path) -> list[str]:
         path = path_in_sandbox(job.path, job.isolation, scratch)
-        return _worker(replace(job, path=path, scratch=scratch, out=scratch / OUT), theirs.fileno())
+        return _worker_command(replace(job, path=path, scratch=scratch, out=scratch / OUT), theirs.fileno())
 
     limits = replace(GRADING_WORKER, wall_seconds=job.seconds + GRACE)
     with ours, ExitStack() as stack:
@@ -46,10 +46,10 @@ def in_own_sandbox(job: Job) -> WorkerReport:
 def view(job: Job) -> View:
     """Return the view of a job's worker: the submission, its chapter, and the files that its suite reads."""
     chapter = course_paths.chapter(job.assignment)
-    own = fingerprint.suite_paths(job.assignment, job.suite.reads)
-    built = (Path(job.options.built),) if job.options.built else ()
-    return View(shown=(chapter, *own, *built), submitted=(job.path,))
+    suite_paths = fingerprint.suite_paths(job.assignment, job.suite.reads)
+    prebuilt = (Path(job.options.prebuilt),) if job.options.prebuilt else ()
+    return View(shown=(chapter, *suite_paths, *prebuilt), submitted=(job.path,))
 
 
-def _worker(job: Job, line: int) -> list[str]:
+def _worker_command(job: Job, line: int) -> list[str]:
     return [sys.executable, "-m", "autograder.grade.worker", job.to_json(), str(line)]

@@ -13,7 +13,7 @@ import pytest
 from autograder import course_paths
 from autograder.building import bundle_server
 from autograder.exceptions import StudentError
-from autograder.grade import apart, grade_submission, own_sandbox
+from autograder.grade import grade_submission, isolated_reader, own_sandbox
 from autograder.grade.job import Job
 from autograder.result.model import Result, Status
 from autograder.run.sandbox import Isolation
@@ -240,11 +240,11 @@ def test_root_reads_no_submission_for_a_preview_or_a_comparison(
         pytest.fail("root reads a submission")
 
     monkeypatch.setattr(intake, "read_submission", read)
-    preview = apart.read_preview(classroom / "alice", ASSIGNMENT, Isolation.BUBBLEWRAP)
+    preview = isolated_reader.read_preview(classroom / "alice", ASSIGNMENT, Isolation.BUBBLEWRAP)
     assert (preview.files, preview.unused) == (2, ())
-    assert apart.read_code(classroom / "alice", ASSIGNMENT, Isolation.BUBBLEWRAP) == "# pkg/node.py\nx = '\n'"
+    assert isolated_reader.read_code(classroom / "alice", ASSIGNMENT, Isolation.BUBBLEWRAP) == "# pkg/node.py\nx = '\n'"
     with pytest.raises(StudentError, match=r"carol.zip is not a folder"):
-        apart.read_preview(classroom / "carol.zip", ASSIGNMENT, Isolation.BUBBLEWRAP)
+        isolated_reader.read_preview(classroom / "carol.zip", ASSIGNMENT, Isolation.BUBBLEWRAP)
 
 
 REPORT_RIGHTS = """

@@ -84,7 +84,7 @@ class MutationRun:
 
     def _passed(self, built: Path) -> frozenset[str]:
         """Return the checks that the reference passes with this workspace instead of a new build."""
-        result = self._grade({}, Options(pictures=False, built=str(built)))
+        result = self._grade({}, Options(pictures=False, prebuilt=str(built)))
         return frozenset(check.id for check in result.checks if check.outcome is Outcome.PASSED)
 
     def run_mutant(self, mutant: GeneratedMutant, version: str = "") -> MutantResult:
@@ -123,7 +123,7 @@ class MutationRun:
         return frozenset(name for name, _ in killers.most_common(MAX_LIKELY))
 
     def _killer(self, texts: dict[str, str], only: tuple[str, ...], built: str) -> str:
-        result = self._grade(texts, Options(only=only, first_loss=True, pictures=False, built=built))
+        result = self._grade(texts, Options(only=only, exit_first=True, pictures=False, prebuilt=built))
         if result.unjudged:
             raise GraderError(f"errors in the checks {', '.join(result.unjudged)}")
         failed = [check.id for check in result.checks if check.outcome is Outcome.FAILED]

@@ -32,8 +32,8 @@ _EXIT_TIMEOUT = 5.0  # s to wait for the exit of a server that no longer replies
 class WorkerPool:
     """Grades submissions with a fixed number of workers. Each worker grades many submissions in one sandbox.
 
-    A pool is a context manager and has the call signature of `own_sandbox.in_own_sandbox`. Use it only for submissions
-    that the course itself contains; see `fork_server`.
+    A pool is a context manager and has the call signature of `own_sandbox.run_in_own_sandbox`. Use it only for
+    submissions that the course itself contains; see `fork_server`.
 
     Args:
         isolation: the isolation level of each worker sandbox.
@@ -106,7 +106,8 @@ class _Worker:
             Path(folder).chmod(0o755)
             path = Path(folder, job.path.name)
             copy_submission(job.path, path)
-            options = replace(job.options, built=job.options.built and str(self._share(Path(job.options.built))))
+            prebuilt = job.options.prebuilt
+            options = replace(job.options, prebuilt=prebuilt and str(self._share(Path(prebuilt))))
             remote_job = replace(job, path=path, options=options, scratch=scratch, out=self._scratch / OUT)
             try:
                 self._server.send_bytes(remote_job.to_json().encode())

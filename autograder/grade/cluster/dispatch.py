@@ -25,7 +25,7 @@ from autograder.grade.cluster.exceptions import ClusterError
 from autograder.grade.cluster.machine import difference, resource
 from autograder.grade.cluster.task import Task
 from autograder.grade.job import Job
-from autograder.grade.pipeline import not_graded, refused
+from autograder.grade.pipeline import not_graded_result, unclear_result
 from autograder.grade.reply import ReplyError
 from autograder.grade.store import write_result
 from autograder.submission.intake import read_files
@@ -177,7 +177,7 @@ class _Dispatch:
             try:
                 files = read_files(job.path, job.assignment)
             except StudentError as error:
-                self._on_result(write_result(job, refused(job, error.diagnosis), {}))
+                self._on_result(write_result(job, unclear_result(job, error.diagnosis), {}))
                 continue
             yield _Pending(job, digest(files), Task(job, tuple(files)).pack())
 
@@ -212,4 +212,4 @@ class _Dispatch:
             self._give_up(pending.job, reason, f"{error}\n")
 
     def _give_up(self, job: Job, reason: str, log: str) -> None:
-        self._on_result(write_result(job, *not_graded(job, reason, log)))
+        self._on_result(write_result(job, *not_graded_result(job, reason, log)))

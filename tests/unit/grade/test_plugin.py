@@ -34,13 +34,15 @@ def grade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Grade:
     monkeypatch.setenv("PYTEST_ADDOPTS", "--collect-only")
     monkeypatch.setenv("PYTEST_PLUGINS", "no_such_plugin")
 
-    def grade_text(text: str, options: Options = WHOLE_SUITE, last: bool = False, seed: int = 7) -> GradingPlugin:
+    def grade_text(
+        text: str, options: Options = WHOLE_SUITE, is_last_try: bool = False, seed: int = 7
+    ) -> GradingPlugin:
         # A unique name: pytest keeps the modules that this process has imported.
         path = tmp_path / "chapter" / "hidden" / f"checks_{next(_NUMBERS)}.py"
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(HEAD + textwrap.dedent(text))
         workspace = Workspace(tmp_path / "ws", activate(), tmp_path)
-        plugin = GradingPlugin(workspace, seed, Artifacts(tmp_path / "out"), options=options, last=last)
+        plugin = GradingPlugin(workspace, seed, Artifacts(tmp_path / "out"), options=options, is_last_try=is_last_try)
         run((path,), plugin)
         return plugin
 
@@ -51,7 +53,7 @@ def _outcomes(plugin: GradingPlugin) -> dict[str, tuple[Outcome, float]]:
     return {name: (result.outcome, result.points) for name, result in plugin.results.items()}
 
 
-def test_with_first_loss_no_check_runs_after_a_failed_one(grade: Grade) -> None:
+def test_with_exit_first_no_check_runs_after_a_failed_one(grade: Grade) -> None:
     text = """
         @check(points=2, group="g")
         def test_right():
@@ -67,9 +69,9 @@ def test_with_first_loss_no_check_runs_after_a_failed_one(grade: Grade) -> None:
             '''It comes later.'''
     """
     assert list(grade(text).results) == ["right", "wrong", "later"]
-    plugin = grade(text, Options(first_loss=True))
+    plugin = grade(text, Options(exit_first=True))
     assert (list(plugin.results), plugin.is_finished, plugin.failures) == (["right", "wrong"], True, [])
-    plugin = grade(text, Options(only=("right", "later"), first_loss=True))
+    plugin = grade(text, Options(only=("right", "later"), exit_first=True))
     assert (list(plugin.results), plugin.is_finished) == (["right", "later"], False)
 
 
@@ -325,7 +327,7 @@ def test_an_error_of_a_program_or_the_machine_counts_as_the_program_s_in_the_las
     """
     plugin = grade(text)
     assert (len(plugin.failures), list(plugin.results)) == (1, ["matches"]), "it ends at once, and is made again"
-    plugin = grade(text, last=True)
+    plugin = grade(text, is_last_try=True)
     assert plugin.failures == []
     assert [result.outcome for result in plugin.results.values()] == [Outcome.FAILED, Outcome.FAILED, Outcome.PASSED]
     assert plugin.results["matches"].message == "They did not discover each other."
