@@ -28,7 +28,7 @@ def load(text: str | bytes) -> Any:
 
 
 def _size(node: yaml.Node, sizes: dict[int, int]) -> int:
-    """Return the number of values in a node. `sizes` has those of other nodes, 0 for a node that is being counted."""
+    """Return the number of values in a node. `sizes` has those of other nodes, 0 for one being counted."""
     size = sizes.get(id(node))
     if size == 0:
         raise yaml.YAMLError("an alias is inside the value that it repeats")

@@ -88,7 +88,7 @@ def encode(
             "moment": None if moment is None else _moment(moment),
             "world": _world(recording.simulation.world),
             "margins": [_margin(margin, most_rows) for margin in margins],
-            "said": _said(recording.said),
+            "said": _said(recording.log_lines),
             **_run(recording, most_rows, most_beams),
         }
         # "</" would end the script element; "\\u003c" is the same character to JSON.

@@ -100,4 +100,4 @@ def _expect_drive(recording: Recording, driven: blindness.Floats) -> None:
 
 
 def _nearest(recording: Recording, seconds: float) -> str:
-    return clearance(recording.simulation, state_at(recording, row_at(recording, seconds))).what
+    return clearance(recording.simulation, state_at(recording, row_at(recording, seconds))).name

@@ -51,7 +51,7 @@ def test_touches_nothing(drives: Drives, driving: System, artifacts: Artifacts) 
     rules = {"the gap to the nearest thing, in m, is above 0.01": verdict}
     if verdict.violated_at is not None:
         touch_time = verdict.violated_at
-        obstacle = clearance(recording.simulation, state_at(recording, row_at(recording, touch_time))).what
+        obstacle = clearance(recording.simulation, state_at(recording, row_at(recording, touch_time))).name
         sentence = f"It touched {obstacle} at t = {touch_time:.1f} s."
         share = touch_time / result.seconds if blindness.turns_at_obstacles(recording, AHEAD, until=touch_time) else 0.0
         _fail(artifacts, result, sentence, touch_time, "touches", share, rules)
