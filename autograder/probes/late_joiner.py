@@ -7,7 +7,7 @@ import time
 import rclpy
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.late_node import Node
+from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from autograder.ros.discovery import fast_discovery
