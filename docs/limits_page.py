@@ -8,7 +8,7 @@ from autograder.building.interfaces.cache import LIMIT
 from autograder.diagnosis import MAX_DETAIL, MAX_SENTENCE
 from autograder.grade.bounded_json import NOTEBOOK_VALUES, RESULT_VALUES, RUN_VALUES
 from autograder.grade.executed_notebook import MAX_BYTES
-from autograder.grade.reply import MAX_RESULT, MAX_SHOWN
+from autograder.grade.reply import MAX_PAGE, MAX_RESULT
 from autograder.harness.launch import MAX_STATUS
 from autograder.plain_text import MAX_NAME, MAX_NAMES
 from autograder.probes.imports import MAX_ALL_BYTES
@@ -150,7 +150,7 @@ def rows() -> list[tuple[str, str, str, str]]:
         ("Python that is parsed for its imports", f"{_mib(MAX_ALL_BYTES)} in a package", "the worker", "test_imports"),
         ("tests that are parsed for their names", _mib(MAX_SOURCES), "the worker", "test_student_test_reports"),
         ("an executed notebook", f"{_mib(MAX_BYTES)}, or it has no outputs", "the worker", ANSWER),
-        ("pictures and runs on a page", _mib(MAX_SHOWN), "the process that starts the worker", ANSWER),
+        ("pictures and runs on a page", _mib(MAX_PAGE), "the process that starts the worker", ANSWER),
     ]
 
 

@@ -121,7 +121,7 @@ def _advance(
     ]
     # The longest distances that robots and movers can cover in these ticks.
     strides = [
-        max(body.most_linear, abs(robot.velocity.linear)) * seconds
+        max(body.max_linear, abs(robot.velocity.linear)) * seconds
         for body, robot in zip(scene.bodies, robots, strict=True)
     ]
     others_stride = max(strides) if len(robots) > 1 else 0.0

@@ -113,7 +113,7 @@ def compromise_worker(monkeypatch: pytest.MonkeyPatch, code: str, **names: objec
     constants = "".join(f"{name} = {value!r}\n" for name, value in names.items())
     program = f"{BEGIN}{constants}{code}"
     monkeypatch.setattr(
-        own_sandbox, "_worker", lambda job, line: [sys.executable, "-c", program, job.to_json(), str(line)]
+        own_sandbox, "_worker_command", lambda job, line: [sys.executable, "-c", program, job.to_json(), str(line)]
     )
 
 

@@ -255,7 +255,8 @@ READERS: dict[str, Reader] = {
     "traceback of a signal's race": Reader(lambda text, folder: rclpy_races.lost_a_race(text), texts(TRACEBACK)),
     "frames of a traceback": Reader(lambda text, folder: tracebacks.student_frames(text), texts(TRACEBACK)),
     "log of a build": Reader(
-        lambda text, folder: (build_log.readable(text), build_log.first_error(text)), texts(TRACEBACK, LAUNCH_OUTPUT)
+        lambda text, folder: (build_log.readable_log(text), build_log.first_error(text)),
+        texts(TRACEBACK, LAUNCH_OUTPUT),
     ),
     "imports of a module": Reader(
         _written("wheels/wheels/limits.py", lambda folder: imports.imported(folder / "wheels")),
