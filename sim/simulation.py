@@ -195,8 +195,8 @@ def _advance_near(
     )
     if hit and not run.collided:
         number, x, y, _, _, speed = touch.tolist()
-        what = f"{run.name} met {obstacles.names[int(number)]} at {speed:.2f} m/s"
-        events.append(Event(time_ns + tick_ns, run.name, "collision", what, x, y, speed))
+        description = f"{run.name} met {obstacles.names[int(number)]} at {speed:.2f} m/s"
+        events.append(Event(time_ns + tick_ns, run.name, "collision", description, x, y, speed))
         run.collisions += 1
     run.collided = bool(hit)
 
@@ -207,8 +207,8 @@ def _add_watchdog_event(run: Run, time_ns: int, tick_ns: int, events: list[Event
     was_active = time_ns - tick_ns - command_ns < run.body.watchdog_ns
     if was_active and (command.linear != 0.0 or command.angular != 0.0):
         x, y, _, v = run.vector[:4].tolist()
-        what = f"{run.name} had no new command for {run.body.watchdog_ns / 1e9:g} s and stops"
-        events.append(Event(time_ns, run.name, "watchdog", what, x, y, abs(v)))
+        description = f"{run.name} had no new command for {run.body.watchdog_ns / 1e9:g} s and stops"
+        events.append(Event(time_ns, run.name, "watchdog", description, x, y, abs(v)))
 
 
 def _noise(body: Body, tick: int, ticks: int) -> Floats:

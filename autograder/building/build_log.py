@@ -78,15 +78,15 @@ def _bounded(log: str) -> str:
 
 def _read_traceback(lines: Iterator[str]) -> tuple[list[str], str]:
     """Read a traceback after its first line; return the lines to keep, and the line after the traceback."""
-    kept = [_BEGIN]
+    lines_to_keep = [_BEGIN]
     is_student_frame = has_student_frame = in_setup = False
     for line in lines:
         if not line.startswith("  "):
-            return ([*kept, line], next(lines, "")) if has_student_frame else ([], next(lines, ""))
+            return ([*lines_to_keep, line], next(lines, "")) if has_student_frame else ([], next(lines, ""))
         if match := _FRAME.match(line):
             is_student_frame = match["file"].startswith("ws/src/") or (in_setup and match["file"] == "<string>")
             has_student_frame |= is_student_frame
             in_setup |= _RUNS_SETUP in line
         if is_student_frame:
-            kept.append(line.replace('"<string>"', '"setup.py"'))
-    return kept if has_student_frame else [], ""
+            lines_to_keep.append(line.replace('"<string>"', '"setup.py"'))
+    return lines_to_keep if has_student_frame else [], ""

@@ -146,21 +146,23 @@ def _make_once(requested: float, sources: Mapping[Entry, bytes], isolation: Isol
 
 def _make(sources: Mapping[Entry, bytes], isolation: Isolation, entry: Path) -> None:
     """Fill a new entry with the packages that a worker builds from the sources in a separate sandbox."""
-    ours, theirs = Pipe()
+    own_end, worker_end = Pipe()
 
     def command(scratch: Path) -> list[str]:
-        return [sys.executable, "-m", "autograder.building.bundle_worker", str(scratch), str(theirs.fileno())]
+        return [sys.executable, "-m", "autograder.building.bundle_worker", str(scratch), str(worker_end.fileno())]
 
     limits = replace(GRADING_WORKER, wall_seconds=BUILD.wall_seconds + _MARGIN)
-    with ours, ExitStack() as stack:
-        with theirs:
-            process, _ = stack.enter_context(in_worker_sandbox(command, isolation, limits, pass_fds=(theirs.fileno(),)))
+    with own_end, ExitStack() as stack:
+        with worker_end:
+            process, _ = stack.enter_context(
+                in_worker_sandbox(command, isolation, limits, pass_fds=(worker_end.fileno(),))
+            )
         try:
-            send_tree(ours, sources)
-            reply = receive_message(ours)
+            send_tree(own_end, sources)
+            reply = receive_message(own_end)
             if "diagnosis" in reply:
                 raise _build_error(reply)
-            write_received(receive_tree(ours, CACHED), entry)
+            write_received(receive_tree(own_end, CACHED), entry)
         except (EOFError, OSError, MessageError, KeyError, ValueError, TypeError) as error:
             process.kill()
             raise GraderError(

@@ -85,9 +85,9 @@ def _below(folder: str, entry: Entry) -> Entry:
 
 
 def _make(tree: Mapping[Entry, bytes], workspace: Workspace, folder: Path, entry: Path) -> None:
-    alone = replace(workspace, root=folder / "alone")
-    write_received(tree, alone.root / "src")
-    write_received(build_alone(alone), entry)
+    bundle_workspace = replace(workspace, root=folder / "alone")
+    write_received(tree, bundle_workspace.root / "src")
+    write_received(build_alone(bundle_workspace), entry)
 
 
 def build_alone(workspace: Workspace) -> dict[Entry, bytes]:

@@ -23,19 +23,19 @@ GRACE = 30.0  # s for a worker to stop its programs and report, after its time i
 
 def run_in_own_sandbox(job: Job) -> WorkerReport:
     """Run a job with a worker in its own sandbox; return a report with the files of its result."""
-    ours, theirs = Pipe()
+    own_end, worker_end = Pipe()
 
     def command(scratch: Path) -> list[str]:
         path = path_in_sandbox(job.path, job.isolation, scratch)
-        return _worker_command(replace(job, path=path, scratch=scratch, out=scratch / OUT), theirs.fileno())
+        return _worker_command(replace(job, path=path, scratch=scratch, out=scratch / OUT), worker_end.fileno())
 
     limits = replace(GRADING_WORKER, wall_seconds=job.seconds + GRACE)
-    with ours, ExitStack() as stack:
-        with theirs:
-            sandbox = in_worker_sandbox(command, job.isolation, limits, view=view(job), pass_fds=(theirs.fileno(),))
+    with own_end, ExitStack() as stack:
+        with worker_end:
+            sandbox = in_worker_sandbox(command, job.isolation, limits, view=view(job), pass_fds=(worker_end.fileno(),))
             process, _ = stack.enter_context(sandbox)
         try:
-            files, _ = serve_worker(ours, job.isolation, lambda: process.exit_reason is not None)
+            files, _ = serve_worker(own_end, job.isolation, lambda: process.exit_reason is not None)
             return replace(wait_and_report(process), files=files)
         except MessageError as error:
             process.kill()

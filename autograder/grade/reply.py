@@ -33,10 +33,10 @@ def check_reply(files: Mapping[str, bytes], job: Job, sha256: str = "") -> Resul
 
     `sha256` is the digest of the submission, if it is known. Raises a ReplyError if the files do not match the job.
     """
-    others = {name: data for name, data in files.items() if name not in (RESULT, NOTEBOOK, LOG)}
+    other_files = {name: data for name, data in files.items() if name not in (RESULT, NOTEBOOK, LOG)}
     try:
         result = _result(files.get(RESULT, b""), job, sha256)
-        _require_artifacts(others, result)
+        _require_artifacts(other_files, result)
         if NOTEBOOK in files:
             _require_notebook(files[NOTEBOOK])
     except ReplyError:

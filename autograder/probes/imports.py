@@ -69,7 +69,7 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
     Raises:
         CheckFailed: these files are larger than `MAX_ALL_BYTES` together.
     """
-    own = {path.parent.name for path in package.glob("*/__init__.py")} | {package.name}
+    first_party = {path.parent.name for path in package.glob("*/__init__.py")} | {package.name}
     by_module: dict[str, list[str]] = {}
     remaining = MAX_ALL_BYTES
     for file in plain_files(package, MAX_FILES, skip=SKIPPED_FOLDERS, suffix=".py"):
@@ -86,7 +86,7 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
                 f"{package.name} holds more than {MAX_ALL_BYTES // 2**20} MiB of Python, too much to look for its "
                 "imports: keep generated files out of the package."
             )
-        for module in modules(text) - own - siblings - sys.stdlib_module_names:
+        for module in modules(text) - first_party - siblings - sys.stdlib_module_names:
             by_module.setdefault(module, []).append(str(file))
     return tuple(Import(module, tuple(files)) for module, files in sorted(by_module.items()))
 

@@ -57,7 +57,7 @@ def _inspect_package(install: Path, package: str) -> Installed:
     sites = [path for path in sorted(prefix.glob("lib/python3*/site-packages")) if not path.is_symlink()]
     modules = frozenset(name for site in sites for file in _files(site) if (name := _module(file)))
     eggs = [egg for site in sites for egg in sorted(site.glob("*-info")) if egg.is_dir() and not egg.is_symlink()]
-    own = [egg for egg in eggs if egg.name.lower().replace("-", "_").startswith(package.lower())]
+    own_metadata = [egg for egg in eggs if egg.name.lower().replace("-", "_").startswith(package.lower())]
     share = prefix / "share" / package
     return Installed(
         package=package,
@@ -68,8 +68,8 @@ def _inspect_package(install: Path, package: str) -> Installed:
         marker=read_plain(prefix / INDEX / package, MAX_BYTES) is not None,
         shared=tuple(name for name in _files(share) if not _is_added_by_colcon(name)),
         recorded=_recorded(install, package),
-        extras=_extras(_joined(own, "requires.txt")),
-        metadata=dict(HeaderParser().parsestr(_joined(own, "PKG-INFO")).items()),
+        extras=_extras(_joined(own_metadata, "requires.txt")),
+        metadata=dict(HeaderParser().parsestr(_joined(own_metadata, "PKG-INFO")).items()),
         programs=_programs(_joined(eggs, "entry_points.txt")),
         classifiers=tuple(HeaderParser().parsestr(_joined(eggs, "PKG-INFO")).get_all("Classifier", [])),
     )

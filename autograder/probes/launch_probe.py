@@ -83,11 +83,11 @@ def settle(harness: LaunchHarness, expected: Collection[str]) -> list[str]:
 
     def done() -> bool:
         nonlocal state, since
-        nodes, running = harness.nodes(), len(harness.programs())
-        if nodes == sorted(expected) and running == len(expected):
+        nodes, program_count = harness.nodes(), len(harness.programs())
+        if nodes == sorted(expected) and program_count == len(expected):
             return True
-        if (nodes, running) != state or len(nodes) < running or not running:
-            state, since = (nodes, running), time.monotonic()
+        if (nodes, program_count) != state or len(nodes) < program_count or not program_count:
+            state, since = (nodes, program_count), time.monotonic()
         return time.monotonic() - since > QUIET_SECONDS
 
     harness.wait_for(done, START_SECONDS)

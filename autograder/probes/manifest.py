@@ -43,7 +43,7 @@ class Manifest:
 
 def read(package: Path) -> Manifest:
     """Read the manifest of the package in a folder. A CheckFailed says why ROS would reject it."""
-    return parse(_text(package), _where(package))
+    return parse(_text(package), _file_name(package))
 
 
 def read_leniently(package: Path) -> Manifest:
@@ -51,19 +51,19 @@ def read_leniently(package: Path) -> Manifest:
 
     A manifest that ROS accepts is read as by `read`. In any other, conditions are ignored.
     """
-    text, where = _text(package), _where(package)
+    text, file_name = _text(package), _file_name(package)
     try:
-        return parse(text, where)
+        return parse(text, file_name)
     except CheckFailed:
-        _refuse_unsafe(text, where)
+        _refuse_unsafe(text, file_name)
         try:
             root = ElementTree.fromstring(text)
         except ElementTree.ParseError as error:
-            raise CheckFailed(f"{where} is not well-formed XML: {error}") from None
+            raise CheckFailed(f"{file_name} is not well-formed XML: {error}") from None
         return _parse_tags(root)
 
 
-def _where(package: Path) -> str:
+def _file_name(package: Path) -> str:
     return f"{package.name}/{MANIFEST}"
 
 
@@ -80,21 +80,21 @@ def _text(package: Path) -> str:
         raise CheckFailed(f"{package.name}/{MANIFEST} is not UTF-8 text.") from None
 
 
-def parse(text: str, where: str = MANIFEST) -> Manifest:
-    """Read a manifest's text; `where` names it in a CheckFailed, which says why ROS would reject it."""
-    _refuse_unsafe(text, where)
+def parse(text: str, file_name: str = MANIFEST) -> Manifest:
+    """Read a manifest's text; `file_name` names it in a CheckFailed, which says why ROS would reject it."""
+    _refuse_unsafe(text, file_name)
     try:
-        package = parse_package_string(text, where)
+        package = parse_package_string(text, file_name)
     except InvalidPackage as error:
-        raise CheckFailed(f"ROS refuses {where}: {_reason(error)}") from None
+        raise CheckFailed(f"ROS refuses {file_name}: {_reason(error)}") from None
     except Exception as error:  # of expat and catkin_pkg, such as TypeError for a file of bytes
-        raise CheckFailed(f"{where} is not well-formed XML: {error}") from None
+        raise CheckFailed(f"{file_name} is not well-formed XML: {error}") from None
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DeprecationWarning)  # of pyparsing, in catkin_pkg
             package.evaluate_conditions(DISTRIBUTION.variables)
     except (ValueError, RecursionError) as error:
-        raise CheckFailed(f"A condition in {where} cannot be read: {error}") from None
+        raise CheckFailed(f"A condition in {file_name} cannot be read: {error}") from None
     exports = [export for export in package.exports if export.evaluated_condition]
     return Manifest(
         name=package.name,
@@ -112,12 +112,12 @@ def parse(text: str, where: str = MANIFEST) -> Manifest:
     )
 
 
-def _refuse_unsafe(text: str, where: str) -> None:
+def _refuse_unsafe(text: str, file_name: str) -> None:
     if STILL_TO_BE_WRITTEN in text:
-        raise CheckFailed(f"{where} is still to be written.")
+        raise CheckFailed(f"{file_name} is still to be written.")
     # No manifest needs a document type, and one can make a small file huge.
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise CheckFailed(f"{where} has a <!DOCTYPE> or <!ENTITY>, which no manifest needs.")
+        raise CheckFailed(f"{file_name} has a <!DOCTYPE> or <!ENTITY>, which no manifest needs.")
 
 
 def _parse_tags(root: ElementTree.Element) -> Manifest:

@@ -75,10 +75,10 @@ def _walls_into(
     ends = walls[:4] - np.array((ox, ox, oy, oy)).reshape(4, 1)  # from the sensor
     cross = ends[::2] * edge
     h = cross[0] - cross[1]
-    apart = np.abs(ends)
-    apart = apart[:2] + apart[2:]
-    near = apart[0]
-    far = np.minimum(np.maximum(near, apart[1]), reach)
+    extents = np.abs(ends)
+    extents = extents[:2] + extents[2:]
+    near = extents[0]
+    far = np.minimum(np.maximum(near, extents[1]), reach)
     far += SMALL
     near += far
     near *= far
@@ -117,8 +117,8 @@ def _walls_into(
     if len(suspects):
         for k in {place % size for place in suspects.tolist()}:
             # A hard wall that no beam meets is skipped, unless the sensor may be on it.
-            met = lengths[0, k] or lengths[1, k] or abs(swing[k]) > 0.4 or h[k] == 0.0
-            if met or unsure[:, :, k].any():
+            is_met = lengths[0, k] or lengths[1, k] or abs(swing[k]) > 0.4 or h[k] == 0.0
+            if is_met or unsure[:, :, k].any():
                 lengths[:, k] = 0
                 px, qx, py, qy, ey, ex, _ = walls[:, k].tolist()
                 wall_into(best, directions, ox, oy, (px, py, qx, qy, ex, ey), zero, per_radian)

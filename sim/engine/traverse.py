@@ -82,10 +82,10 @@ def follow_beam(
     column = min(max(int((x + enter * dx) * per_cell), 0), columns - 1)
     row = min(max(int((y + enter * dy) * per_cell), 0), rows - 1)
     doubt = 4.0 * ERROR_BOUND * (abs(x) + abs(y) + width + height)
-    right = 1 if dx > 0.0 else -1
-    ahead = 1 if dy > 0.0 else -1
-    across = (cell * (column + (right + 1) // 2) - x) * per_x if per_x != 0.0 else NEVER
-    up = (cell * (row + (ahead + 1) // 2) - y) * per_y if per_y != 0.0 else NEVER
+    column_step = 1 if dx > 0.0 else -1
+    row_step = 1 if dy > 0.0 else -1
+    across = (cell * (column + (column_step + 1) // 2) - x) * per_x if per_x != 0.0 else NEVER
+    up = (cell * (row + (row_step + 1) // 2) - y) * per_y if per_y != 0.0 else NEVER
     per_x = cell * abs(per_x)
     per_y = cell * abs(per_y)
     while True:
@@ -110,10 +110,10 @@ def follow_beam(
         if next_cell > reach or next_cell * best > 1.0 + MARGIN * best:
             return best
         if across < up:
-            column += right
+            column += column_step
             across += per_x
         else:
-            row += ahead
+            row += row_step
             up += per_y
         if column < 0 or column >= columns or row < 0 or row >= rows:
             return best

@@ -133,8 +133,8 @@ def draw_places(ax: Axes, world: World, theme: Theme, *, radius: float = 0.105, 
             artists.append(ax.add_patch(Circle((goal.x, goal.y), share * goal.radius, **area(name, theme))))
     for start in world.starts if starts else ():
         artists.append(ax.add_patch(Circle((start.x, start.y), radius, **area("start", theme))))
-        ahead = radius * np.array([math.cos(start.theta), math.sin(start.theta)])
-        ends = np.array([start.x, start.y]) + np.array([ahead, POINTER * ahead])
+        direction = radius * np.array([math.cos(start.theta), math.sin(start.theta)])
+        ends = np.array([start.x, start.y]) + np.array([direction, POINTER * direction])
         artists += ax.plot(*ends.T, **line("start nose", theme))
     for mover in world.movers:
         path = np.array([*mover.path, *(mover.path[:1] if mover.loop else ())])

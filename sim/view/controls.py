@@ -93,7 +93,7 @@ class Controls:
         """Show a frame and move the slider, without a reaction to the slider's change."""
         self._is_updating = True
         self._image.value = jpeg
-        # Nobody can grab a slider that moves forty times a second. So it moves only four times a second, and can be
+        # A slider that moves forty times a second cannot be grabbed. So it moves only four times a second, and can be
         # dragged only while time is stopped.
         if not self._view.playing or abs(now - self._slider.value) >= 0.25 * self._speed.value:
             if end > self._slider.max:

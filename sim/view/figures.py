@@ -126,7 +126,7 @@ def _draw_world(ax: Axes, simulation: Simulation, time_ns: int, theme: Theme, na
 def _draw_robot_run(
     ax: Axes, recording: Recording, index: int, colour: str, theme: Theme, now: int, *, scan: bool
 ) -> None:
-    points, own = recording.poses[:, index, :2], theme.robot_colour(index)
+    points, robot_colour = recording.poses[:, index, :2], theme.robot_colour(index)
     if colour == "time":
         artists.draw_track(ax, points, recording.times, theme.time_colours(index), _time_limits(recording))
     else:
@@ -138,7 +138,7 @@ def _draw_robot_run(
         _draw_last_scan(ax, recording, index, now, theme)
     artists.draw_crosses(ax, [(event.x, event.y) for event in events], theme)
     pose = Pose(*recording.poses[now, index].tolist())
-    artists.draw_robot(ax, spec, pose, theme, own)
+    artists.draw_robot(ax, spec, pose, theme, robot_colour)
     _name_robot(ax, recording.simulation, index, pose, theme)
 
 

@@ -207,9 +207,9 @@ def _pieces(track: Floats) -> list[Floats]:
     return [track[start : end + 1] for start, end in pairwise(cuts)]
 
 
-def _set_scan(scan: Scan, lidar: LidarSpec, pose: Pose, seen: Polygon, rays: Any, hits: Any) -> None:
+def _set_scan(scan: Scan, lidar: LidarSpec, pose: Pose, free_area: Polygon, rays: Any, hits: Any) -> None:
     mount, ends, hit = beam_ends(scan.ranges, lidar, pose)
-    seen.set_xy(ends if is_full_turn(lidar) else np.vstack([mount, ends]))
+    free_area.set_xy(ends if is_full_turn(lidar) else np.vstack([mount, ends]))
     chosen = artists.chosen_beams(hit)
     lines = np.full((3 * len(chosen), 2), np.nan)
     lines[0::3], lines[1::3] = mount, ends[chosen]

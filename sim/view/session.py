@@ -110,7 +110,7 @@ class Session:
 
     @property
     def growing(self) -> bool:
-        """Whether the run can continue. It is limited, so that a view that nobody stops does not fill the memory."""
+        """Whether the run can continue. It is limited, so that a forgotten view does not fill the memory."""
         return self.end_ns < MAX_NS
 
     @property
