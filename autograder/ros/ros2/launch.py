@@ -50,14 +50,14 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         help="Show all launched subprocesses' output by overriding their output configuration using the "
         f"{OVERRIDE_VARIABLE} envvar",
     )
-    parser.add_argument("--launch-prefix", help="Prefix command, modes should go before all executables")
+    parser.add_argument("--launch-prefix", help="Prefix command, which should go before all executables")
     parser.add_argument(
         "--launch-prefix-filter",
-        help="Regex pattern for filtering modes executables the --launch-prefix is applied to by matching the "
+        help="Regex pattern for filtering which executables the --launch-prefix is applied to by matching the "
         "executable name",
     )
     parser.add_argument(
-        "package_name", help="Name of the ROS package modes contains the launch file, or path of a launch file"
+        "package_name", help="Name of the ROS package which contains the launch file, or path of a launch file"
     )
     parser.add_argument("launch_file_name", nargs="?", help="Name of the launch file")
     parser.add_argument(
@@ -120,7 +120,7 @@ def find_launch_file(package: str, name: str | None, words: list[str]) -> tuple[
     paths = sorted(path for path in share.rglob(Path(name).name) if path.is_file() and str(path).endswith(f"/{name}"))
     if not paths:
         raise Ros2Error(
-            f"file '{name}' was not found in the share directory of package '{package}' modes is at '{share}'"
+            f"file '{name}' was not found in the share directory of package '{package}' which is at '{share}'"
         )
     if len(paths) > 1:
         raise Ros2Error(f"file '{name}' was found more than once in package '{package}': {', '.join(map(str, paths))}")
