@@ -117,7 +117,7 @@ def test_a_filter_is_a_python_expression_over_m() -> None:
 
 def test_a_goal_refuses_automatic_stamps() -> None:
     with pytest.raises(Ros2Error, match="Failed to populate request: Value 'now'"):
-        make_message(Twist, "{linear: now}", "request", stamps=False)
+        make_message(Twist, "{linear: now}", "request", allow_stamps=False)
 
 
 PARAMETERS = """
