@@ -58,7 +58,9 @@ COMPARISONS = {
     "01 speed": Comparison(lambda x, w: robots._matches(_command(x), w, 0.0), lambda _: robots.TOLERANCE, -1.0, 1.0),
     "02 forward": Comparison(lambda x, w: controller._matches((x, 0.0), (w, 0.0)), lambda _: nodes.TOLERANCE, 0.0, 1.0),
     "02 turn": Comparison(lambda x, w: controller._matches((0.0, x), (0.0, w)), lambda _: nodes.TOLERANCE, 0.0, 1.0),
-    "03 speed": Comparison(lambda x, w: action.drives_straight(_command(x).message, w), lambda _: action.SLACK, 0.0, 0.5),
+    "03 speed": Comparison(
+        lambda x, w: action.drives_straight(_command(x).message, w), lambda _: action.SLACK, 0.0, 0.5
+    ),
     "05 speed": Comparison(
         lambda x, w: _passes(configured.expect_speed, x, w, ""), lambda _: configured.TOLERANCE, 0.0, 1.0
     ),
