@@ -30,8 +30,9 @@ def _forge():
         try:
             if _os.readlink(f"/proc/self/fd/{descriptor}").startswith("pipe:"):
                 for _ in range(200):
-                    _os.write(descriptor, b'{"event": "done", "sent": {"/cmd_vel": 100000}, "lost": [], '
-                              b'"changed": false, "wake": null, "notes": []}\\n')
+                    _os.write(descriptor, b'{"event": "done", "sent": [{"/cmd_vel geometry_msgs/msg/Twist '
+                              b'reliable volatile": 100000}], "lost": [], "changed": false, "wake": null, '
+                              b'"due": null, "notes": []}\\n')
         except OSError:
             pass
 threading.Timer(0.5, _forge).start()
@@ -43,11 +44,11 @@ import gc as _gc
 for _pipes in [item for item in _gc.get_objects() if type(item).__name__ == "Pipes"]:
     def _receive(kind=type(_pipes), receive=type(_pipes).receive, pipes=_pipes):
         command = receive(pipes)
-        kind.pending = list(command.get("pending", ()))
+        kind.announced = [channel for _, counts in command.get("events", ()) for channel in counts]
         return command
     def _send(kind=type(_pipes), send=type(_pipes).send, pipes=_pipes, **event):
         if event.get("event") == "done":
-            event["lost"] = kind.pending
+            event["lost"] = kind.announced
         send(pipes, **event)
     _pipes.receive, _pipes.send = _receive, _send
 """
