@@ -51,9 +51,8 @@ class SteppedProgram:
     program: Program
     stepper: Stepper
     description: Description = field(default_factory=Description)  # the last description of its nodes
-    inbox: list[tuple[Place, Counter[str]]] = field(
-        default_factory=list
-    )  # messages for it, with the turns in which they were sent
+    # Messages for it, with the turns in which they were sent.
+    inbox: list[tuple[Place, Counter[str]]] = field(default_factory=list)
     wake: int | None = None  # as in `Reply`
     due: int | None = 0  # as in `Reply`
 

@@ -99,9 +99,8 @@ def run_on(
                     listeners.pop()(json.loads(first_part.read_text(encoding="utf-8")))
                 return process.exit_reason is not None
 
-            bundle_server.serve_worker(
-                own_end, isolation, has_ended
-            )  # answers the worker's requests for interface packages
+            # Answers the worker's requests for interface packages.
+            bundle_server.serve_worker(own_end, isolation, has_ended)
             has_ended()  # the worker may have written the first part just before it ended
             report = wait_and_report(process)
         reply = Path(folder) / REPLY_FILE

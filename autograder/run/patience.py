@@ -18,9 +18,7 @@ from autograder.exceptions import StudentError
 # For the answers to all steps, without the time for which a busy machine kept the programs from running. The answers of
 # a reference take less than 40 s, on a machine with eight times the load that it can handle.
 MAX_ANSWER_SECONDS = 180.0
-RESERVE = (
-    1 / 15
-)  # share of the lifetime of a worker sandbox that is left for the grader after the programs' time is over
+RESERVE = 1 / 15  # share of a worker sandbox's lifetime that is left for the grader after the programs' time is over
 
 
 class _Budget:

@@ -112,8 +112,7 @@ def beyond_bounds(value: object) -> str:
 
 def reason(error: BaseException) -> str:
     """Return the message of an exception as one short line, or the name of its class if it has no message."""
-    text = (
-        error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-    )  # strerror does not contain the path
+    # Unlike the text of an OSError, strerror does not contain the path.
+    text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     words = " ".join(clean(text).split())
     return words[:MAX_REASON].rstrip(".") if words else type(error).__name__

@@ -97,9 +97,8 @@ def _walls_into(
     low += bearings[0]
     low -= zero / TAU - doubt
     low -= np.floor(low)
-    runs = np.empty(
-        (2, 2, size)
-    )  # the start, and the distance from the end to the last beam, on each lap, with a margin
+    # The start, and the distance from the end to the last beam, on each lap, with a margin.
+    runs = np.empty((2, 2, size))
     begins, rests = runs
     np.subtract(low, LAPS, out=begins)
     np.add(begins, np.abs(swing), out=rests)

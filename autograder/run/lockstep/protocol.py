@@ -55,14 +55,10 @@ class Description:
     writers: tuple[tuple[str, int], ...] = ()  # each publisher's channel and number of matched subscriptions
     # The channels of each subscription, and its number of matched publishers, None if unknown.
     readers: tuple[tuple[tuple[str, ...], int | None], ...] = ()
-    clients: tuple[
-        tuple[str, bool], ...
-    ] = ()  # the channel of each client's requests, and whether it has found a server
+    clients: tuple[tuple[str, bool], ...] = ()  # each client's channel of requests, and whether it has found a server
     servers: tuple[str, ...] = ()  # the channel of each service's requests
     early: dict[str, int] = field(default_factory=dict)  # number of messages sent before the first step, by channel
-    kept: dict[str, int] = field(
-        default_factory=dict
-    )  # number of messages that transient-local publishers keep, by channel
+    kept: dict[str, int] = field(default_factory=dict)  # messages that transient-local publishers keep, by channel
     prefix: str = ""  # prefix of the process's GUIDs
 
     @cached_property

@@ -52,7 +52,5 @@ class Sandbox:
     mounts: tuple[Mount, ...] = ()
     # All environment variables of the code, which inherits none.
     environment: Mapping[str, str] = field(default_factory=dict)
-    network: bool = (
-        False  # whether it can use the loopback interface of the worker sandbox, to reach the grader over DDS
-    )
+    network: bool = False  # whether it can use the worker sandbox's loopback interface, to reach the grader over DDS
     limits: Limits = NODE  # the resource limits of the tree

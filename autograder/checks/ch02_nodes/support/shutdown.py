@@ -19,9 +19,8 @@ ANSWER_SECONDS = 10.0  # s of real time
 MAX_CPU_SECONDS = 10.0  # s of processor time until the first command; a node that works needs about 1 s
 QUIET = 0.05  # s after a command, half a period of a node at 10 Hz, which then waits for work
 TRIALS = 3
-LOG_LINE = re.compile(
-    rf"^\[[A-Z]+\] \[(?P<seconds>\d+\.\d+)\] \[{NODE[1:]}\]: .*", re.MULTILINE
-)  # a line that the node logs
+# A line that the node logs.
+LOG_LINE = re.compile(rf"^\[[A-Z]+\] \[(?P<seconds>\d+\.\d+)\] \[{NODE[1:]}\]: .*", re.MULTILINE)
 STOP_SECONDS = 15.0  # s of real time; a node that ends cleanly needs 0.2
 HINTS = (
     "except (KeyboardInterrupt, ExternalShutdownException): pass, around rclpy.spin(node).",

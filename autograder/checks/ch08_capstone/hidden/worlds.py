@@ -25,9 +25,7 @@ check = group("step_2")
 SAFE = "gap > 0.01"  # m between the footprint and the nearest thing
 STEADY = "changes < 3.5"  # turns that followed one to the other side, in the last WINDOW seconds
 WINDOW = 6.0  # s
-STOPPING_DISTANCE = (
-    0.3  # m at 0.3 m/s: 0.5 s until the data are stale, and the delays of the nodes at 10 Hz and of the motor
-)
+STOPPING_DISTANCE = 0.3  # m at 0.3 m/s: 0.5 s until data are stale, and delays of the nodes at 10 Hz and of the motor
 BLOCKED_STOPPING_DISTANCE = 0.15  # m: the scans of a blocked lidar are invalid immediately
 SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
 STILL = 0.01  # m/s

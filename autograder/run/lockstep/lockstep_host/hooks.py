@@ -49,12 +49,10 @@ class Hooks:
         self._note = note
         self.changed = True
         self.unpredictable = False
-        self._publisher_channels: dict[
-            tuple[int, str], tuple[str, int]
-        ] = {}  # the channel of a C object, and the number of messages that it keeps
-        self._services: dict[
-            tuple[int, str], tuple[str, Any]
-        ] = {}  # the name and the type of the service that a C object serves or calls
+        # The channel of a C object, and the number of messages that it keeps.
+        self._publisher_channels: dict[tuple[int, str], tuple[str, int]] = {}
+        # The name and the type of the service that a C object serves or calls.
+        self._services: dict[tuple[int, str], tuple[str, Any]] = {}
 
     def install(self) -> None:
         """Install the hooks in rclpy."""

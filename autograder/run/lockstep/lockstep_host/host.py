@@ -248,9 +248,8 @@ class Host:
             elif command["op"] == "match":
                 self.counts.match(self._prefix(), command["kept"], command["early"])
                 self.counts.flush()
-                self.counts.is_complete = (
-                    False  # let rclpy check all entities once, because it may have to report discovered endpoints
-                )
+                # Let rclpy check all entities once, because it may have to report discovered endpoints.
+                self.counts.is_complete = False
                 self.pipes.send(event="matched")
             else:
                 break

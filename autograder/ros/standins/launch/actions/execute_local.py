@@ -268,9 +268,7 @@ class ExecuteLocal(Action):
         sigterm_seconds = float(perform_substitutions(context, self.sigterm_timeout))
         sigkill_seconds = float(perform_substitutions(context, self.sigkill_timeout))
         if self._shutdown_requested.result():
-            child.send_signal(
-                signal.SIGINT
-            )  # without a log message, because with the real launch the terminal sends it
+            child.send_signal(signal.SIGINT)  # not logged, because with the real launch the terminal sends it
         else:
             self._emit_signal(context, signal.SIGINT)
         for seconds, total_seconds, previous_signal, next_signal in (
