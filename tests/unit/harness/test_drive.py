@@ -19,7 +19,7 @@ class Program:
     def __init__(self, written: bytes) -> None:
         self.text = written
 
-    def written(self, start: int) -> bytes:
+    def output_from(self, start: int) -> bytes:
         return self.text[start:]
 
 
