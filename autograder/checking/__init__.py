@@ -33,6 +33,7 @@ from autograder.submission.exercise_stubs import STILL_TO_BE_WRITTEN, explain
 from autograder.submission.packages import find_packages
 from autograder.submission.reading import reading
 from autograder.suite import CheckFailed, CheckRow, check, check_each_row, check_of, expect, group, hint
+from autograder.suite.drawn_cases import expect_each
 
 __all__ = [
     "COMMAND_TOPICS",
@@ -66,6 +67,7 @@ __all__ = [
     "check_of",
     "drive",
     "expect",
+    "expect_each",
     "explain",
     "find_packages",
     "group",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -12,11 +12,13 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
 
-from autograder.checking import SCAN_SECONDS, AutoHarness, ReceivedMessage, Workspace, expect
+from autograder.checking import LOCKSTEP, SCAN_SECONDS, AutoHarness, ReceivedMessage, Workspace, expect
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, FORWARD, PACKAGE, TOLERANCE, TURN
+from autograder.checks.ch02_nodes.support.drawn_scans import DrawnScan, is_near, nearest_ahead
 
 PUBLISHES = {"/scan": LaserScan, "/status": String}
 SUBSCRIBES = {"/cmd_vel": Twist}
+REPEAT_SECONDS = 0.5  # s for which each of many scans is repeated
 SETTLED = 0.25  # s after which a controller at 10 Hz has reacted to a scan
 WRITTEN_SECONDS = 5.0  # s of real time to wait for a log line; only a node that logs nothing takes so long
 
@@ -47,6 +49,11 @@ class Robot(AutoHarness):
         start = self.seconds
         self.run(seconds)
         return self.messages("/cmd_vel", since=start)
+
+
+def cases(robot: Robot) -> int:
+    """Return how many drawn cases a check can afford: fewer in real time."""
+    return 100 if robot.time == LOCKSTEP else 6
 
 
 def qos_mismatch(robot: Robot) -> str:
@@ -98,6 +105,26 @@ class Reactions:
     def expect_turn(self, commands: Sequence[ReceivedMessage], situation: str, *, fraction: float = 0.0) -> None:
         """Fail the check unless every command turns."""
         _expect(commands, self.turn, situation, "turn left on the spot at 0.5 rad/s", fraction)
+
+    def expect_for(self, robot: Robot, scan: DrawnScan, *, fraction: float = 0.0) -> None:
+        """Fail the check unless the robot reacts to a drawn scan as the contract says."""
+        message = scan.message()
+        commands = robot.see(message, REPEAT_SECONDS)
+        distances = nearest_ahead(message)
+        if len(distances) > 1 and any(all(map(self._is_reaction_to(each), commands)) for each in distances):
+            return
+        distance = min(distances, key=lambda each: math.inf if each is None else each)
+        situation = f"With {scan!r}"
+        if distance is None:
+            expect_stop(commands, f"{situation}, none of which counts ahead", fraction=fraction)
+        elif is_near(distance):
+            self.expect_turn(commands, situation, fraction=fraction)
+        else:
+            self.expect_forward(commands, situation, fraction=fraction)
+
+    def _is_reaction_to(self, distance: float | None) -> Callable[[ReceivedMessage], bool]:
+        velocity = STOP if distance is None else self.turn if is_near(distance) else self.forward
+        return lambda received: _matches(_velocity(received), velocity)
 
 
 CONTRACT = Reactions()

@@ -1,0 +1,111 @@
+"""Tests a rule with drawn cases, and reports the simplest case for which it is violated.
+
+    @st.composite
+    def walls(draw: st.DrawFn) -> Wall: ...
+
+    def test_turns(robot: Robot, draw: random.Random) -> None:
+        expect_each(walls(), partial(expect_turn, robot), draw)
+
+Hypothesis draws the cases from a strategy, which covers everything that the contract allows, and shrinks a case that
+fails. The same random generator draws the same cases.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from typing import TypeVar
+
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis.strategies import SearchStrategy
+
+from autograder.suite.declaration import CheckFailed
+
+Case = TypeVar("Case")
+SHRINKS = 80  # tries to find a simpler case
+
+
+def expect_each(
+    cases: SearchStrategy[Case], judge: Callable[[Case], None], draw: random.Random, *, count: int = 60
+) -> None:
+    """Fail the check with the simplest case found for which `judge` raises CheckFailed.
+
+    A program with memory can violate the rule because of the case before. So the case that fails first is judged a
+    second time. If it passes then, it is reported as it is, together with the case before.
+
+    Args:
+        cases: draws cases, which have a `repr` of their own.
+        judge: runs the student's program with a case, and raises CheckFailed if its behaviour is wrong. Any other
+            exception ends the check.
+        draw: the check's random generator.
+        count: how many cases are judged if none fails.
+
+    Raises:
+        CheckFailed: a case failed.
+    """
+    run = _Run(judge)
+    decorate = settings(
+        max_examples=count,
+        database=None,  # a grading leaves nothing for the next one
+        deadline=None,
+        derandomize=False,
+        phases=(Phase.generate, Phase.shrink),
+        report_multiple_bugs=False,
+        suppress_health_check=list(HealthCheck),
+        print_blob=False,
+    )
+    try:
+        seed(draw.getrandbits(64))(decorate(given(cases)(run.judge)))()
+    except CheckFailed:
+        assert run.simplest is not None
+        raise run.simplest from None
+    if run.error is not None:
+        raise run.error
+
+
+class _Run:
+    """Judges cases until the budget for shrinking is spent, and remembers the failures.
+
+    Attributes:
+        simplest: the failure of the case that failed last. Hypothesis ends with the simplest case.
+        error: an exception that ended the run.
+    """
+
+    def __init__(self, judge: Callable[[Case], None]) -> None:
+        self._judge: Callable[..., None] = judge
+        self._failures: dict[str, CheckFailed] = {}
+        self._before = ""
+        self._budget = SHRINKS
+        self.simplest: CheckFailed | None = None
+        self.error: BaseException | None = None
+
+    def judge(self, case: object) -> None:
+        """Judge a case, as a test of Hypothesis."""
+        text = repr(case)
+        if text not in self._failures:
+            if self.error is not None or self._budget == 0:
+                return
+            self._budget -= bool(self._failures)
+            try:
+                self._judge(case)
+            except CheckFailed as failure:
+                self._failures[text] = self._confirmed(case, failure)
+            except BaseException as error:
+                self.error = error
+                return
+            finally:
+                self._before = text
+        if text in self._failures:
+            self.simplest = self._failures[text]
+            raise self.simplest
+
+    def _confirmed(self, case: object, failure: CheckFailed) -> CheckFailed:
+        if self._failures:
+            return failure
+        try:
+            self._judge(case)
+        except CheckFailed as second:
+            return second
+        self._budget = 0
+        before = f" It did so right after another case, {self._before}." if self._before else ""
+        return CheckFailed(failure.message + before, fraction=failure.fraction, hints=failure.hints)
