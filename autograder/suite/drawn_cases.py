@@ -14,15 +14,16 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from hypothesis import HealthCheck, Phase, given, seed, settings
-from hypothesis.strategies import SearchStrategy
+from hypothesis.errors import Flaky
+from hypothesis.strategies import DrawFn, SearchStrategy, composite
 
 from autograder.suite.declaration import CheckFailed
 
 Case = TypeVar("Case")
-SHRINKS = 80  # tries to find a simpler case
+SHRINKS = 200  # attempts to draw a simpler case
 
 
 def expect_each(
@@ -55,53 +56,62 @@ def expect_each(
         print_blob=False,
     )
     try:
-        seed(draw.getrandbits(64))(decorate(given(cases)(run.judge)))()
-    except CheckFailed:
-        assert run.simplest is not None
-        raise run.simplest from None
-    if run.error is not None:
-        raise run.error
+        seed(draw.getrandbits(64))(decorate(given(_counted(cases, run))(run.judge)))()
+    except (CheckFailed, _Finished, Flaky):  # Hypothesis may call it flaky that the last attempt draws nothing
+        assert run.result is not None
+        raise run.result from None
+
+
+@composite
+def _counted(draw: DrawFn, cases: SearchStrategy[Case], run: _Run) -> Case:
+    run.begin()
+    return draw(cases)
+
+
+class _Finished(BaseException):
+    """Ends Hypothesis, which takes a subclass of Exception for the failure of a case."""
 
 
 class _Run:
-    """Judges cases until the budget for shrinking is spent, and remembers the failures.
+    """Judges cases until the budget for shrinking is spent.
 
     Attributes:
-        simplest: the failure of the case that failed last. Hypothesis ends with the simplest case.
-        error: an exception that ended the run.
+        result: the failure of the simplest case so far, or the exception that ended the run.
     """
 
-    def __init__(self, judge: Callable[[Case], None]) -> None:
-        self._judge: Callable[..., None] = judge
+    def __init__(self, judge: Callable[[Any], None]) -> None:
+        self._judge = judge
         self._failures: dict[str, CheckFailed] = {}
         self._before = ""
         self._budget = SHRINKS
-        self.simplest: CheckFailed | None = None
-        self.error: BaseException | None = None
+        self.result: BaseException | None = None
+
+    def begin(self) -> None:
+        """Count an attempt to draw a case, most of which do not result in a simpler one; end after the last attempt."""
+        if self._failures:
+            self._budget -= 1
+        if self._budget < 0:
+            raise _Finished
 
     def judge(self, case: object) -> None:
         """Judge a case, as a test of Hypothesis."""
         text = repr(case)
         if text not in self._failures:
-            if self.error is not None or self._budget == 0:
-                return
-            self._budget -= bool(self._failures)
             try:
                 self._judge(case)
             except CheckFailed as failure:
-                self._failures[text] = self._confirmed(case, failure)
+                self._failures[text] = failure if self._failures else self._confirmed(case, failure)
             except BaseException as error:
-                self.error = error
-                return
+                self.result = error
+                raise _Finished from None
             finally:
                 self._before = text
         if text in self._failures:
-            self.simplest = self._failures[text]
-            raise self.simplest
+            # Hypothesis tries only simpler cases than the simplest that has failed.
+            self.result = self._failures[text]
+            raise self.result
 
     def _confirmed(self, case: object, failure: CheckFailed) -> CheckFailed:
-        if self._failures:
-            return failure
         try:
             self._judge(case)
         except CheckFailed as second:

@@ -50,7 +50,7 @@ def test_shrinking_judges_a_bounded_number_of_cases() -> None:
             raise CheckFailed(f"wrong for {case}")
 
     with pytest.raises(CheckFailed):
-        expect_each(st.lists(NUMBERS, min_size=50).map(sum), judge, random.Random(5))
+        expect_each(st.lists(NUMBERS, min_size=8).map(sum), judge, random.Random(5))
     first = next(place for place, case in enumerate(judged) if case % 2)
     assert len(judged) <= first + 2 + SHRINKS
 
