@@ -3,8 +3,9 @@
     from autograder.checking import AutoHarness, Workspace, expect, group, hint
     from autograder.checking.probes import parameters
 
-`probes` has modules that inspect a package or a running program, `temporal` evaluates temporal rules, and `attacks`
-has the classes and payloads for a chapter's `attacks.py`. The other parts of the autograder may change without notice.
+`probes` has modules that inspect a package or a running program, `drawn_cases` tests a rule with drawn cases,
+`temporal` evaluates temporal rules, and `attacks` has the classes and payloads for a chapter's `attacks.py`. The other
+parts of the autograder may change without notice.
 """
 
 from autograder.building.interfaces import load_interfaces
@@ -33,7 +34,6 @@ from autograder.submission.exercise_stubs import STILL_TO_BE_WRITTEN, explain
 from autograder.submission.packages import find_packages
 from autograder.submission.reading import reading
 from autograder.suite import CheckFailed, CheckRow, check, check_each_row, check_of, expect, group, hint
-from autograder.suite.drawn_cases import expect_each
 
 __all__ = [
     "COMMAND_TOPICS",
@@ -67,7 +67,6 @@ __all__ = [
     "check_of",
     "drive",
     "expect",
-    "expect_each",
     "explain",
     "find_packages",
     "group",

@@ -7,7 +7,8 @@ import random
 
 from hypothesis import strategies as st
 
-from autograder.checking import LOCKSTEP, expect_each, group, hint
+from autograder.checking import LOCKSTEP, group, hint
+from autograder.checking.drawn_cases import expect_each
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.drawn_scans import drawn_scans
 from autograder.checks.ch02_nodes.support.robot import SETTLED, Reactions, Robot, cases, expect_forward, expect_turn

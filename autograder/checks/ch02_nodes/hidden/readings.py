@@ -7,7 +7,8 @@ import random
 
 from hypothesis import strategies as st
 
-from autograder.checking import expect_each, group, hint
+from autograder.checking import group, hint
+from autograder.checking.drawn_cases import expect_each
 from autograder.checks.ch02_nodes.hidden.reaction import NEAR, REACTION_CHECKS, TOPIC_CHECKS
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.drawn_scans import drawn_scans
