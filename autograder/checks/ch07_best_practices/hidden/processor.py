@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import random
 import re
+from collections.abc import Sequence
+from dataclasses import replace
 from math import inf, isclose, isnan, nan
-from statistics import fmean
 
+from hypothesis import strategies as st
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import LaserScan
 
@@ -15,19 +18,30 @@ from autograder.checking.probes import calls, namespaces, node_callbacks, qos
 from autograder.checks.ch07_best_practices.support.contract import (
     HISTORY,
     LOGGING,
-    MAX_SILENCE,
     PACKAGE,
     PROCESSOR,
     QOS,
-    TOLERANCE,
     UTILS,
 )
-from autograder.checks.ch07_best_practices.support.robot import Processor, logged, scan
+from autograder.checks.ch07_best_practices.support.drawn_readings import (
+    BLIND_SCANS,
+    GOOD_SCANS,
+    PHANTOMS,
+    Readings,
+    Series,
+    averages,
+    drawn,
+    expect_all,
+    mean_of,
+    other_lidars,
+    scans_of,
+)
+from autograder.checks.ch07_best_practices.support.robot import Processor, messages, scan, scan_of
+from autograder.checks.ch07_best_practices.support.warning_record import WarningRecord
 
 check = group("processor")
-SECONDS = 20.0
-ALTERNATIONS = 15  # pairs of a blind and a good scan
-SLOW_SCANS, SLOW_SECONDS = 9, 0.5  # scans of a slow lidar, and the time in s between them
+GAPS = (0.05, 0.1, 0.2, 0.35, 0.5)  # s between two scans: of fast lidars and of slow ones
+STRETCH_SECONDS = 3.0  # s with scans that have no distance for the same reason
 
 
 @check(points=1, covers=("scan", "scan-filtered", "mean-topic", "processor-name"))
@@ -79,118 +93,90 @@ def test_relative(workspace: Workspace) -> None:
 def test_filtered(workspace: Workspace, processor: Processor, draw: random.Random) -> None:
     """A scan comes out with its phantoms masked, by the lidar's own limits."""
     far = round(draw.uniform(11.0, 15.0), 1)
-    sent, low, high = [1.0, 0.0, inf, nan, far, -inf, far + 5.0], 0.05, far + 1.0
-    (filtered, _) = processor.send_scans(scan(sent, range_min=low, range_max=high))
-    expect(len(filtered) == 1, f"One scan went in, {len(filtered)} came out.")
-    actual, expected = list(filtered[0].ranges), [1.0, nan, inf, nan, far, -inf, nan]
-    is_right = _all_close(actual, expected) or _all_close(actual, _student_masked(workspace, sent, low, high))
-    expect(is_right, f"{sent} ({low} to {high} m) came out as {[round(r, 3) for r in actual]}.")
+    plain = Readings((1.0, 0.0, inf, nan, far, -inf, far + 5.0), 0.05, far + 1.0)
+    others = drawn((other_lidars(at_limits=False) | other_lidars(at_limits=True)).map(_with_infinities), draw, 20)
+    _expect_masked(workspace, processor, [plain], fraction=0.0)
+    _expect_masked(workspace, processor, others, fraction=0.5)
 
 
 @check(points=1, covers=("all-else", "other-fields"), after=("filtered",))
 @hint("Publish the message that came, with other ranges.", "A new LaserScan() has no header and no angles.")
-def test_rest_untouched(workspace: Workspace, processor: Processor, draw: random.Random) -> None:
+def test_rest_untouched(processor: Processor, draw: random.Random) -> None:
     """Header, angles, times, limits and intensities come out as they went in."""
-    sent = scan([1.0, 0.06, 9.0])  # all within the limits of the scan in test_filtered
-    sent.header.frame_id = f"/Laser_{draw.randint(1, 9)} "  # unusual, so that any change of it is detected
-    sent.header.stamp.sec = draw.randint(1, 1000)
-    sent.angle_min, sent.intensities = -1.5, [5.0, 6.0, 7.0]
-    sent.time_increment = draw.uniform(0.01, 0.03)
-    filtered, _ = processor.send_scans(sent)
-    expect(len(filtered) == 1, f"One scan went in, {len(filtered)} came out.")
-    for field in (name for name in sent.get_fields_and_field_types() if name != "ranges"):
-        actual, expected = getattr(filtered[0], field), getattr(sent, field)
-        is_equal = _close(actual, expected) if isinstance(expected, float) else actual == expected
-        fraction = 0.5 if field == "intensities" else 0.0
-        expect(is_equal, f"{field} went in as {expected} and came out as {actual}.", fraction=fraction)
-    actual = list(filtered[0].ranges)
-    message = (
-        f"After a scan with other limits, [1.0, 0.06, 9.0] (0.12 to 3.5 m) came out as {[round(r, 3) for r in actual]}."
-    )
-    is_right = _all_close(actual, [1.0, nan, nan]) or _all_close(
-        actual, _student_masked(workspace, [1.0, 0.06, 9.0], 0.12, 3.5)
-    )
-    expect(is_right, message, fraction=0.5)
+    sent = drawn(messages(), draw, 25)
+    filtered, _ = processor.send_scans(*sent)
+    expect(len(filtered) == len(sent), f"{len(sent)} scans went in, {len(filtered)} came out.")
+
+    def judge(pair: tuple[LaserScan, LaserScan]) -> None:
+        before, after = pair
+        for field in (name for name in before.get_fields_and_field_types() if name != "ranges"):
+            actual, expected = getattr(after, field), getattr(before, field)
+            is_equal = _close(actual, expected) if isinstance(expected, float) else actual == expected
+            fraction = 0.5 if field == "intensities" else 0.0
+            expect(is_equal, f"{field} went in as {expected} and came out as {actual}.", fraction=fraction)
+
+    expect_all(zip(sent, filtered, strict=True), judge)
 
 
 @check(points=2, covers=("mean-of-ten", "mean-topic"), after=("filtered",))
 @hint("DataProcessor(10), made once in __init__; publish average() after each scan.", "Float32(data=...)")
 def test_mean_of_ten(workspace: Workspace, fresh_processor: Processor, draw: random.Random) -> None:
     """mean_distance is the average of the newest ten scans' means."""
-    means = [round(draw.uniform(0.5, 3.0), 2) for _ in range(14)]
-    blind = set(draw.sample(range(1, len(means)), 4))  # these have no mean, and do not count among the ten
-    scans = [ranges for i, mean in enumerate(means) for ranges in ([nan], [mean, nan, mean])[i not in blind :]]
-    _, averages = fresh_processor.send_scans(*map(scan, scans))
-    if not _all_close(averages, _student_averages(workspace, scans)):
-        expect(
-            len(averages) == len(means), f"{len(means)} scans with a distance went in, {len(averages)} means came out."
-        )
-        expected = [fmean(means[max(0, i + 1 - HISTORY) : i + 1]) for i in range(len(means))]
-        wrong = next((i for i in range(len(means)) if abs(averages[i] - expected[i]) > TOLERANCE), None)
-        i = wrong or 0
-        message = f"After {i + 1} scans with a distance it said {averages[i]:.3f} m instead of {expected[i]:.3f} m."
-        expect(wrong is None, message)
+    good = drawn(GOOD_SCANS, draw, 14)
+    # Blind scans have no mean, and do not count among the ten. Another check tests scans without beams.
+    mixed = drawn(GOOD_SCANS | BLIND_SCANS.filter(lambda case: bool(case.readings)), draw, 20)
+    scans = [*good[:1], *mixed, *good[1:], Readings((0.0,), low=0.0)]
+    _, actual = fresh_processor.send_scans(*map(scan_of, scans))
+    if not _all_close(actual, _student_averages(workspace, scans)):
+        pairs = zip(scans, averages(Series(tuple(scans), HISTORY)), strict=True)
+        expected = [average for case, average in pairs if average is not None and mean_of(case.masked) is not None]
+        message = "A scan of a lidar that measures from 0 m, with a reading of 0 m, brought no mean: 0 m is a distance."
+        expect(not _all_close(actual, expected[:-1]), message, fraction=0.5)
+        lengths = f"{len(expected)} scans with a distance went in, {len(actual)} means came out."
+        expect(len(actual) == len(expected), lengths)
+        wrong = next((i for i in range(len(actual)) if not _close(actual[i], expected[i])), 0)
+        message = f"After {wrong + 1} scans with a distance it said {actual[wrong]:.3f} m, not {expected[wrong]:.3f} m."
+        expect(_close(actual[wrong], expected[wrong]), message)
     _expect_separate_histories(workspace)
 
 
 @check(points=1, covers="blind", after=("filtered",))
 @hint("mean_distance(msg.ranges) is None: warn instead of publishing.", "Float32 cannot hold None.")
-def test_blind_scan(processor: Processor) -> None:
+def test_blind_scan(workspace: Workspace, processor: Processor, draw: random.Random) -> None:
     """A scan without a distance comes out masked, and no mean with it."""
-    filtered, means = processor.send_scans(scan([nan, 0.0, inf]))
-    expect(len(filtered) == 1, f"One blind scan went in, {len(filtered)} came out.")
-    expect(not means, f"A scan without any distance made it say {means} m.")
+    processor.send_scans(scan([1.0]))  # the mean of this scan is known
+    plain = Readings((nan, 0.0, inf))
+    cases = [plain, *drawn(scans_of(PHANTOMS | st.sampled_from((inf, -inf)), min_size=1), draw, 10)]
+    for case in cases:
+        _, means = processor.send_scans(scan_of(case))
+        expect(not means, f"A scan of {list(case.readings)}, without any distance, made it say {means} m.")
+    _expect_masked(workspace, processor, cases, fraction=0.75)
 
 
 @check(points=2, covers=("warns", "other-fields"), after=("blind_scan",), doc=LOGGING)
 @hint("self.get_logger().warning(..., throttle_duration_sec=1.0)", "Nobody reads ten lines a second.")
-def test_warns_now_and_then(workspace: Workspace, fresh_processor: Processor) -> None:
+def test_warns_now_and_then(fresh_processor: Processor, draw: random.Random) -> None:
     """While the lidar sees nothing, it warns once a second; while it sees something, it does not."""
-    good, blind = scan([0.05, 1.0, nan, inf, -inf, 9.0]), scan([inf, nan, -inf, 0.05])
-    scan_count = round(SECONDS * 10) // 2
-    needless_count = _count_warnings(fresh_processor, [good] * 5)
-    blind_count = _count_warnings(fresh_processor, [blind] * scan_count)
-    empty_count = _count_warnings(fresh_processor, [scan([])] * scan_count)
-    expect(blind_count + empty_count > 0, f"Blind for {SECONDS:.0f} s, it said nothing at level WARN.")
-    too_many = f"Blind for {SECONDS:.0f} s, it warned {blind_count + empty_count} times."
-    expect(blind_count + empty_count <= SECONDS + 2, too_many, fraction=0.5)
-    expect(not needless_count, "It warned of a scan that keeps a finite distance.", fraction=0.5)
-    expect(blind_count > 0, "Infinities are no finite distance, and it did not warn of a scan of them.", fraction=0.5)
-    expect(empty_count > 0, "It did not warn of scans without any beam.", fraction=0.5)
-    too_few = f"Blind for {SECONDS:.0f} s, it warned only {blind_count + empty_count} times."
-    expect(min(blind_count, empty_count) >= int(SECONDS / 2 / MAX_SILENCE), too_few, fraction=0.5)
-    seconds = 2 * ALTERNATIONS * SCAN_SECONDS
-    alternating_count = _count_warnings(fresh_processor, [blind, good] * ALTERNATIONS)
-    too_often = f"With blind and good scans by turns for {seconds:.0f} s, it warned {alternating_count} times."
-    expect(alternating_count <= seconds + 2, too_often, fraction=0.5)
-    causes = [scan([]), scan([inf, -inf]), scan([nan]), scan([0.05])]
-    seconds, mixed_count = (
-        len(causes) * ALTERNATIONS * SCAN_SECONDS,
-        _count_warnings(fresh_processor, causes * ALTERNATIONS),
-    )
-    too_often = (
-        "Scans without beams, of infinities, of nan and of phantoms by turns "
-        f"for {seconds:.0f} s: {mixed_count} warnings."
-    )
-    expect(mixed_count <= seconds + 2, too_often, fraction=0.5)
-    slow_count = _count_warnings(fresh_processor, [blind] * SLOW_SCANS, apart=SLOW_SECONDS)
-    too_seldom = f"Blind for {SLOW_SCANS * SLOW_SECONDS} s, with two scans a second, it warned {slow_count} times."
-    expect(slow_count >= 2, too_seldom, fraction=0.75)  # three are due, but real time needs tolerance
-    filtered, _ = fresh_processor.send_scans(blind)
-    actual = [list(message.ranges) for message in filtered]
-    masked_ranges = [inf, nan, -inf, nan]
-    is_masked = len(actual) == 1 and (
-        _all_close(actual[0], masked_ranges)
-        or _all_close(actual[0], _student_masked(workspace, [inf, nan, -inf, 0.05], 0.12, 3.5))
-    )
-    expect(is_masked, f"A blind scan of [inf, nan, -inf, 0.05] (0.12 to 3.5 m) came out as {actual}.", fraction=0.75)
+    record = WarningRecord(fresh_processor)
+    record.send([Readings((0.05, 1.0, nan, inf, -inf, 9.0))], gap=SCAN_SECONDS, seconds=0.5)
+    is_needless = bool(record.warnings)
+    causes = [Readings(readings) for readings in ((nan, inf, -inf, 0.05), (), (inf, -inf), (nan, nan), (0.05,))]
+    stretches = [*([cause] for cause in causes), causes, [Readings((1.0,)), *causes[:1]]]
+    gaps = draw.sample(GAPS, len(GAPS))
+    for cases, gap in zip(stretches, itertools.cycle(gaps)):
+        record.send(cases, gap=gap, seconds=STRETCH_SECONDS)
+    message = f"Blind for {len(causes) * STRETCH_SECONDS:.0f} s and more, it said nothing at level WARN."
+    expect(bool(record.warnings), message)
+    expect(not is_needless, "It warned of a scan that keeps a finite distance.", fraction=0.5)
+    record.expect_throttled()
+    record.expect_prompt()
 
 
 @check(points=1, covers="any-length", after=("filtered",))
 @hint("Loop over what is there.", "Other lidars have other numbers of beams.")
-def test_any_lidar(processor: Processor) -> None:
+def test_any_lidar(processor: Processor, draw: random.Random) -> None:
     """It takes scans of any length, an empty one too."""
-    for beams in (0, 1, 7, 1080):
+    for beams in (0, 1, 7, 1080, *draw.sample(range(2, 4000), 6), 0):
         filtered, _ = processor.send_scans(scan([1.0] * beams))
         lengths = [len(message.ranges) for message in filtered]
         expect(lengths == [beams], f"A scan of {beams} beams came out as {lengths or 'nothing'}.")
@@ -234,37 +220,47 @@ def _averages_of_two(workspace: Workspace) -> list[float]:
     return [average for step in average_steps if isinstance(average := outcomes[step].value, float)]
 
 
-def _count_warnings(processor: Processor, scans: list[LaserScan], apart: float = SCAN_SECONDS) -> int:
-    """Return the number of warnings while it receives these scans, which are `apart` seconds apart."""
-    before = logged(processor.output, "WARN")
-    processor.send_scans(*scans, apart=apart)
-    return logged(processor.output, "WARN") - before
+def _expect_masked(workspace: Workspace, processor: Processor, cases: Sequence[Readings], *, fraction: float) -> None:
+    """Fail the check unless all scans come out masked: rightly, or as the student's mask_invalid does.
+
+    Other checks test whether mask_invalid is right.
+    """
+    filtered, _ = processor.send_scans(*map(scan_of, cases))
+    scans = "One scan" if len(cases) == 1 else f"{len(cases)} scans"
+    expect(len(filtered) == len(cases), f"{scans} went in, {len(filtered)} came out.")
+    steps = [calls.call("mask_invalid", list(case.readings), case.low, case.high) for case in cases]
+    outcomes = calls.calls(workspace, UTILS, *steps)
+
+    def judge(row: tuple[Readings, LaserScan, calls.StepResult]) -> None:
+        case, message, outcome = row
+        actual = list(message.ranges)
+        is_right = _all_close(actual, case.masked) or _all_close(actual, _floats(outcome.value))
+        sentence = f"{list(case.readings)} ({case.low} to {case.high} m) came out as {[round(r, 4) for r in actual]}"
+        expect(is_right, f"{sentence} instead of {case.masked}.", fraction=fraction)
+
+    expect_all(zip(cases, filtered, outcomes, strict=True), judge)
 
 
-def _student_masked(workspace: Workspace, readings: list[float], low: float, high: float) -> list[float]:
-    """Return the result of the student's mask_invalid. Other checks test whether it is right."""
-    (outcome,) = calls.calls(workspace, UTILS, calls.call("mask_invalid", readings, low, high))
-    return (
-        [reading for reading in outcome.value if isinstance(reading, float)] if isinstance(outcome.value, list) else []
-    )
+def _with_infinities(case: Readings) -> Readings:
+    """Return the same readings, others that are no numbers, and a distance."""
+    return replace(case, readings=(*case.readings, inf, nan, -inf, round((case.low + case.high) / 2, 3)))
 
 
-def _student_averages(workspace: Workspace, scans: list[list[float]]) -> list[float]:
+def _student_averages(workspace: Workspace, cases: Sequence[Readings]) -> list[float]:
     """Return the averages of the student's DataProcessor, for scans for which their mean_distance returns a mean."""
     plan = calls.Plan()
     processor = plan.add(calls.call("DataProcessor", HISTORY))
     steps = []
-    for readings in scans:
-        masked = plan.add(calls.call("process", readings, 0.12, 3.5, on=processor))
-        steps.append(
-            (
-                plan.add(calls.call("mean_distance", calls.result_of(masked))),
-                plan.add(calls.call("average", on=processor)),
-            )
-        )
+    for case in cases:
+        masked = plan.add(calls.call("process", list(case.readings), case.low, case.high, on=processor))
+        mean = plan.add(calls.call("mean_distance", calls.result_of(masked)))
+        steps.append((mean, plan.add(calls.call("average", on=processor))))
     outcomes = calls.calls(workspace, UTILS, *plan.steps)
-    averages = [outcomes[average].value for mean, average in steps if outcomes[mean].value is not None]
-    return [average for average in averages if isinstance(average, float)]
+    return _floats([outcomes[average].value for mean, average in steps if outcomes[mean].value is not None])
+
+
+def _floats(values: object) -> list[float]:
+    return [each for each in values if isinstance(each, float)] if isinstance(values, list) else []
 
 
 def _all_close(actual: list[float], expected: list[float]) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import random
 import re
 from typing import Any
@@ -22,12 +23,15 @@ from autograder.checks.ch07_best_practices.support.contract import (
     ROBUST,
     RULE_STATUS,
 )
-from autograder.checks.ch07_best_practices.support.robot import STATUS, Robust, expected_statuses, logged
+from autograder.checks.ch07_best_practices.support.drawn_readings import drawn
+from autograder.checks.ch07_best_practices.support.robot import STATUS, Robust, logged
+from autograder.checks.ch07_best_practices.support.sensor_run import SensorRun, numbers_and_probabilities
 
 check = group("robust")
 DEFAULTS: dict[str, parameters.Value] = {"failure_probability": 0.1, "seed": 0, "max_errors": 10}
-READINGS = 20
-ALTERNATING = 10  # readings, every second of which fails
+ERROR_SECONDS = 5.0  # s: the shortest time between two errors in the log
+SLACK = 0.6  # s by which a time may differ in real time; a reading takes 1 s
+LOG = "rclpy.impl.rcutils_logger._rclpy.rclpy_logging_rcutils_log"
 LIMITS = {"failure_probability": (0.0, 1.0), "seed": (0, 2**31 - 1), "max_errors": (1, 1000)}
 
 
@@ -62,39 +66,38 @@ def test_late_joiners(workspace: Workspace) -> None:
 
 @check(points=3, covers=("failed", "ok", "generator", "read-sensor"), after=("once_a_second",))
 @hint(RULE_STATUS, "A success sets the count back to 0.")
-def test_counts(workspace: Workspace, draw: random.Random) -> None:
+def test_counts(workspace: Workspace, flaky: SensorRun, draw: random.Random) -> None:
     """It counts failures in a row, and starts again after a success."""
-    # Tenths, so that this check does not depend on the step of the range, which `declared` tests.
-    seed, probability = draw.randint(1, 2**31 - 1), draw.choice((0.4, 0.6, 0.7))
-    with Robust(workspace, seed=seed, failure_probability=probability) as harness:
-        statuses = harness.receive(40)
-    correct = expected_statuses(seed, probability, 40)
-    wrong = next((i for i, (a, b) in enumerate(zip(statuses, correct, strict=False)) if a != b), min(len(statuses), 40))
-    actual = statuses[wrong] if wrong < len(statuses) else "nothing"
-    sentence = f"With seed {seed} and failure_probability {probability}, reading {wrong + 1} made it say {actual!r}"
-    expect(statuses == correct, f"{sentence} instead of {correct[min(wrong, 39)]!r}.", fraction=0.0)
-    never, always = 0.0, 1.0
-    steps = (
-        calls.call("read_sensor", calls.result_of(0), never),
-        calls.call("read_sensor", calls.result_of(0), always),
-        calls.call("random", on=0),
+    # Another check tests from which failure on it is unstable.
+    said, correct = (
+        [each.replace("unstable", "failed") for each in texts] for texts in (flaky.statuses, flaky.expected)
     )
-    succeeded, failed, third = calls.calls(workspace, ROBUST, calls.call("Random", seed, module="random"), *steps)[1:]
-    is_right = succeeded.value == "Success" and "SensorError" in failed.kinds
-    results = f"returned {succeeded.value!r} and raised {failed.raised or 'nothing'}"
-    message = f"With the probabilities 0 and 1, read_sensor {results}"
-    expect(is_right, f"{message}, instead of 'Success' and SensorError.", fraction=0.5)
-    returns: dict[str, Any] = {"random.return_value": probability}
-    generator = calls.call("Mock", module="unittest.mock", **returns)
-    _, equal = calls.calls(workspace, ROBUST, generator, calls.call("read_sensor", calls.result_of(0), probability))
-    message = f"When the generator says {probability}, and the probability is that, read_sensor raised {equal.raised}"
-    expect(equal.value == "Success", f"{message}: only a number below it is a failure.", fraction=0.5)
-    generator_copy = random.Random(seed)
-    expected_third = [generator_copy.random() for _ in range(3)][2]
-    asked_twice = third.value == expected_third
-    message = "In two readings with the probabilities 0 and 1, it did not ask the generator twice."
-    expect(asked_twice, message, fraction=0.5)
+    wrong = flaky.first_wrong(lambda number: said[number] == correct[number])
+    message = f"{flaky.situation}, reading {(wrong or 0) + 1} made it say {said[wrong or 0]!r}"
+    expect(wrong is None, f"{message} instead of {correct[wrong or 0]!r}.")
+    _expect_one_question(workspace, draw)
     _expect_separate_counts(workspace)
+
+
+def _expect_one_question(workspace: Workspace, draw: random.Random) -> None:
+    """Fail the check unless read_sensor asks its generator once, and fails if the number is below the probability."""
+    cases = [(0.5, 0.0), (0.0, 0.0), (0.5, 1.0), *drawn(numbers_and_probabilities(), draw, 15)]
+    plan, numbers = calls.Plan(), []
+    for number, probability in cases:
+        returns: dict[str, Any] = {"random.return_value": number}
+        generator = plan.add(calls.call("Mock", module="unittest.mock", **returns))
+        numbers.append(plan.add(calls.call("read_sensor", calls.result_of(generator), probability)))
+        plan.add(calls.attribute("call_count", on=plan.add(calls.attribute("random", on=generator))))
+    outcomes = calls.calls(workspace, ROBUST, *plan.steps)
+    for (number, probability), step in zip(cases, numbers, strict=True):
+        result, _, count = outcomes[step : step + 3]
+        is_right = "SensorError" in result.kinds if number < probability else result.value == "Success"
+        sentence = f"When the generator says {number}, and failure_probability is {probability}, read_sensor"
+        returned = f"raised {result.raised}" if result.raised else f"returned {result.value!r}"
+        message = f"{sentence} {returned}: only a number below it is a failure."
+        expect(is_right, message, fraction=0.5)
+        message = f"{sentence} asked the generator {count.value} times instead of once."
+        expect(count.value == 1, message, fraction=0.5)
 
 
 def _expect_separate_counts(workspace: Workspace) -> None:
@@ -141,86 +144,87 @@ def test_no_seed(workspace: Workspace, draw: random.Random) -> None:
 
 @check(points=2, covers=("unstable", "max-errors"), after=("once_a_second",))
 @hint(RULE_STATUS, "More than max_errors, not as many as.")
-def test_unstable(workspace: Workspace, draw: random.Random) -> None:
+def test_unstable(dead: SensorRun, flaky: SensorRun) -> None:
     """More than max_errors failures in a row are called unstable, and one fewer is not."""
-    max_errors = draw.randint(2, 5)
-    with Robust(workspace, failure_probability=1.0, max_errors=max_errors) as harness:
-        statuses = harness.receive(max_errors + 3)
-    correct = expected_statuses(1, 1.1, max_errors + 3, max_errors)
-    message = f"With max_errors {max_errors} and a dead sensor it said {statuses}, instead of {correct}."
-    expect(statuses == correct, message)
-    seed = _draw_unstable_seed(draw)
-    with Robust(workspace, seed=seed, failure_probability=0.5, max_errors=1) as harness:
-        statuses = harness.receive(READINGS)
-    correct = expected_statuses(seed, 0.5, READINGS, 1)
-    wrong = next((i for i, (a, b) in enumerate(zip(statuses, correct, strict=False)) if a != b), None)
-    message = f"reading {(wrong or 0) + 1} made it say {statuses[wrong or 0] if statuses else 'nothing'!r}"
-    expect(statuses == correct, f"With max_errors 1, {message} instead of {correct[wrong or 0]!r}.", fraction=0.5)
+    shown = dead.max_errors + 3
+    message = f"With max_errors {dead.max_errors} and a dead sensor it said {dead.statuses[:shown]}"
+    expect(dead.statuses == dead.expected, f"{message}, instead of {dead.expected[:shown]}.")
+    wrong = flaky.first_wrong(lambda number: flaky.statuses[number] == flaky.expected[number])
+    message = f"{flaky.situation}, reading {(wrong or 0) + 1} made it say {flaky.statuses[wrong or 0]!r}"
+    expect(wrong is None, f"{message} instead of {flaky.expected[wrong or 0]!r}.", fraction=0.5)
 
 
 @check(points=1, covers="error-log", after=("once_a_second",), doc=LOGGING)
 @hint("error(..., throttle_duration_sec=5.0).", "A dead sensor fails every second; one line in five is enough.")
-def test_errors_throttled(workspace: Workspace, draw: random.Random) -> None:
+def test_errors_throttled(workspace: Workspace, dead: SensorRun, flaky: SensorRun) -> None:
     """It logs failures as errors, at most one line in 5 s."""
-    with Robust(workspace, failure_probability=1.0, max_errors=2) as harness:
-        harness.receive(4)
-        early, early_seconds = logged(harness.output, "ERROR"), harness.seconds
-        harness.receive(26)
-        errors, seconds = logged(harness.output, "ERROR"), harness.seconds
-    situation = f"Its sensor failed for {seconds:.0f} s, unstable from the third failure on"
-    expect(errors > 0, f"{situation}, and it said nothing at level ERROR.")
-    expect(errors > 1, f"{situation}, and it logged only one error.", fraction=0.5)
-    expect(errors <= seconds / 5 + 1, f"{situation}, and it logged {errors} errors.", fraction=0.5)
-    situation = f"Its sensor failed four times in {early_seconds:.0f} s, the third time too often"
-    expect(1 <= early <= early_seconds / 5 + 1, f"{situation}, and it logged {early} errors.", fraction=0.5)
-    failures = ALTERNATING // 2
-    seeds = itertools.count(draw.randint(1, 2**30))
-    seed = next(
-        seed for seed in seeds if expected_statuses(seed, 0.5, ALTERNATING).count("failed: 1 in a row") == failures
-    )
-    with Robust(workspace, seed=seed, failure_probability=0.5) as harness:
-        harness.receive(ALTERNATING)
-        errors, seconds = logged(harness.output, "ERROR"), harness.seconds
-    message = f"Its sensor failed and recovered by turns for {seconds:.0f} s, and it logged {errors} errors."
-    expect(errors <= seconds / 5 + 1, message, fraction=0.5)
+    count = sum(reading.count("ERROR") for reading in dead.readings)
+    expect(count > 0, f"Its sensor failed for {len(dead.readings)} s, and it said nothing at level ERROR.")
+    for run in (dead, flaky):
+        last = -math.inf
+        for reading, failures in zip(run.readings, run.failures, strict=True):
+            count = reading.count("ERROR")
+            errors = ("no error", "an error")[count] if count < 2 else f"{count} errors"
+            sentence = f"{run.situation}, it logged {errors} {reading.second:.0f} s after its start"
+            expect(count == 0 or failures > 0, f"{sentence}, when no reading had failed.", fraction=0.5)
+            is_soon = count > 1 or (count == 1 and reading.second - last < ERROR_SECONDS - SLACK)
+            message = f"{sentence}, and the one before {reading.second - last:.0f} s earlier."
+            expect(not is_soon, message if count == 1 else f"{sentence}.", fraction=0.5)
+            is_late = count == 0 and failures > 0 and reading.second - last > 2 * ERROR_SECONDS
+            message = f"{sentence}, when a reading had failed, and none in the {2 * ERROR_SECONDS:.0f} s before."
+            expect(not is_late, message, fraction=0.5)
+            last = reading.second if count else last
+    _expect_unstable_error(workspace)
+
+
+def _expect_unstable_error(workspace: Workspace) -> None:
+    """Fail the check if the failure that makes a node unstable is not logged as an error when that is due."""
+    plan = calls.Plan()
+    plan.add(calls.call("init", module="rclpy"))
+    log = plan.add(calls.call("start", on=plan.add(calls.call("patch", LOG, module="unittest.mock"))))
+    returns: dict[str, Any] = {"random.return_value": 0.0}
+    generator = plan.add(calls.call("Mock", module="unittest.mock", **returns))
+    values = ["--ros-args", *parameters.override_arguments({"max_errors": 1})]
+    node = plan.add(calls.call("RobustNode", generator=calls.result_of(generator), cli_args=values))
+    texts = []
+    for seconds in (0.0, ERROR_SECONDS + 1.5):
+        plan.add(calls.call("sleep", seconds, module="time"))
+        plan.add(calls.callback("timer_callback", on=node))
+        records = plan.add(calls.attribute("call_args_list", on=log))
+        texts.append(plan.add(calls.call("repr", calls.result_of(records), module="builtins")))
+    outcomes = calls.calls(workspace, ROBUST, *plan.steps, network=True)
+    first, both = (str(outcomes[text].value).count("LoggingSeverity.ERROR") for text in texts)
+    sentence = "The failure that made it unstable came more than 5 s after the last error"
+    expect(first != 1 or both == 2, f"{sentence}, and was not logged as an error.", fraction=0.5)
 
 
 @check(points=1, covers="fatal-log", after=("once_a_second", "counts"), doc=LOGGING)
 @hint("fatal only where the count is exactly max_errors + 1.", "It became unstable once.")
-def test_fatal_once(workspace: Workspace, draw: random.Random) -> None:
+def test_fatal_once(dead: SensorRun, flaky: SensorRun) -> None:
     """That it became unstable is logged as fatal, once in each series of failures."""
-    with Robust(workspace, failure_probability=1.0, max_errors=3) as harness:
-        harness.receive(3)
-        early = logged(harness.output, "FATAL")
-        harness.receive(10)
-        fatal = logged(harness.output, "FATAL")
-    expect(early == 0, "It logged as fatal what max_errors still allows.")
-    expect(fatal == 1, f"It became unstable once, and logged {fatal} fatal messages.")
-    seed = _draw_unstable_seed(draw)
-    count = _count_unstable(seed)
-    with Robust(workspace, seed=seed, failure_probability=0.5, max_errors=1) as harness:
-        harness.receive(READINGS)
-        fatal = logged(harness.output, "FATAL")
-    expect(fatal == count, f"It became unstable {count} times, and logged {fatal} fatal messages.", fraction=0.5)
+    for run, fraction in ((dead, 0.0), (flaky, 0.5)):
+        expected = [int(failures == run.max_errors + 1) for failures in run.failures]
+        actual = [reading.count("FATAL") for reading in run.readings]
+        wrong = next((number for number in range(len(actual)) if actual[number] != expected[number]), 0)
+        sentence = f"{run.situation}, after {run.failures[wrong]} failures in a row"
+        message = f"{sentence} it logged {actual[wrong]} fatal messages instead of {expected[wrong]}."
+        expect(actual == expected, message, fraction=fraction)
 
 
 @check(points=1, covers="recovery-log", after=("counts",))
 @hint("Log before the count is set back to 0.", "Only if there were errors: if self.error_count:")
-def test_recovery_logged(workspace: Workspace, draw: random.Random) -> None:
+def test_recovery_logged(flaky: SensorRun) -> None:
     """Each recovery is logged with the number of errors before it."""
-    seed = _draw_unstable_seed(draw)
-    with Robust(workspace, seed=seed, failure_probability=0.5, max_errors=1) as harness:
-        harness.receive(30)
-        output = harness.output
-    statuses = ["ok", *expected_statuses(seed, 0.5, 30, 1)]
-    counts = [int(a.split()[1]) for a, b in itertools.pairwise(statuses) if b == "ok" and a != "ok"]
-    lines = [line for line in output.splitlines() if "Recovered after " in line]
-    logged_counts = [line.split("Recovered after ")[1] for line in lines]
-    expected_counts = [f"{count} errors" for count in counts]
-    # Half of the points if it logs only recoveries from a single failure.
-    fraction = 0.5 if logged_counts == ["1 errors"] * counts.count(1) else 0.0
-    sentence = f"With max_errors 1, it recovered after {counts} errors, and logged {logged_counts or 'nothing of it'}."
-    expect(logged_counts == expected_counts, sentence, fraction=fraction)
+    counts = [before if now == 0 else 0 for before, now in itertools.pairwise([0, *flaky.failures])]
+    expected = [[f"{count} errors"] if count else [] for count in counts]
+    actual = [reading.recoveries for reading in flaky.readings]
+    pairs = zip(counts, expected, strict=True)
+    without_unstable = [[] if count > flaky.max_errors else texts for count, texts in pairs]
+    wrong = flaky.first_wrong(lambda number: actual[number] == expected[number]) or 0
+    logs = f"{' and '.join(actual[wrong]) or 'none'} instead of {' and '.join(expected[wrong]) or 'none'}"
+    message = f"{flaky.situation}, at reading {wrong + 1}, it logged a recovery after: {logs}."
+    expect(actual == expected, message, fraction=0.5 if actual == without_unstable else 0.0)
+    lines = [line for reading in flaky.readings for line in reading.log.splitlines() if "Recovered after " in line]
     infos = logged("\n".join(lines), "INFO")
     expect(infos == len(lines), f"It logged {infos} of {len(lines)} recoveries at level INFO.", fraction=0.5)
 
@@ -279,20 +283,3 @@ def test_ranges(workspace: Workspace) -> None:
                 raise
             has_started = False
         expect(not has_started, f"It started with {name} {impossible}.")
-
-
-def _draw_unstable_seed(draw: random.Random) -> int:
-    """Return a seed with which a node becomes unstable at least twice, and then has a single failure."""
-    seeds = itertools.count(draw.randint(1, 2**30))
-    return next(seed for seed in seeds if _count_unstable(seed) >= 2 and _has_single_failure(seed))
-
-
-def _has_single_failure(seed: int) -> bool:
-    statuses = expected_statuses(seed, 0.5, READINGS, 1)
-    later = statuses[statuses.index("unstable: 2 in a row") :]
-    return ("failed: 1 in a row", "ok") in itertools.pairwise(later)
-
-
-def _count_unstable(seed: int) -> int:
-    """Return how often a node with this seed becomes unstable, with max_errors 1."""
-    return expected_statuses(seed, 0.5, READINGS, 1).count("unstable: 2 in a row")

@@ -8,6 +8,7 @@ PROCESSOR = "my_robot_package.nodes.sensor_processor"
 ROBUST = "my_robot_package.nodes.robust_node"
 
 HISTORY = 10  # scans over which mean_distance averages
+WARN_PERIOD = 1.0  # s: the shortest time between two warnings
 MAX_SILENCE = 1.5  # s: the longest time between two warnings while no scan has a distance
 PERIOD = 1.0  # s between two readings of RobustNode
 MAX_ERRORS = 10

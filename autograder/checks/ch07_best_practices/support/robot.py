@@ -7,12 +7,14 @@ import re
 from collections.abc import Iterator
 from itertools import islice
 
+from hypothesis import strategies as st
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float32, String
 
 from autograder.checking import LOCKSTEP, SCAN_SECONDS, AutoHarness, Workspace
 from autograder.checking.probes import parameters
 from autograder.checks.ch07_best_practices.support.contract import MAX_ERRORS, PACKAGE
+from autograder.checks.ch07_best_practices.support.drawn_readings import Readings
 
 FILTERED, MEAN, STATUS = "/scan_filtered", "/mean_distance", "/status"
 READING_TIMEOUT = 3.0  # s of ROS time for a reading, which should take 1 s
@@ -91,6 +93,11 @@ def logged(output: str, level: str) -> int:
     return len(re.findall(rf"\[{level}\] \[\d+\.\d+\] \[[^\]]+\]: ", output))
 
 
+def scan_of(case: Readings) -> LaserScan:
+    """Return the scan with these readings and limits."""
+    return scan(list(case.readings), range_min=case.low, range_max=case.high)
+
+
 def scan(ranges: list[float], *, range_min: float = 0.12, range_max: float = 3.5) -> LaserScan:
     """Return a scan with these ranges, spread over a full turn."""
     message = LaserScan(range_min=range_min, range_max=range_max, ranges=ranges)
@@ -98,4 +105,23 @@ def scan(ranges: list[float], *, range_min: float = 0.12, range_max: float = 3.5
     message.angle_increment = 6.283185 / max(1, len(ranges))
     message.angle_max = message.angle_increment * max(0, len(ranges) - 1)
     message.scan_time = SCAN_SECONDS
+    return message
+
+
+@st.composite
+def messages(draw: st.DrawFn) -> LaserScan:
+    """Draw scans with any fields. All of their readings are distances."""
+    numbers = st.integers(-6000, 6000).map(lambda number: number / 1000)
+    distances = draw(st.lists(st.sampled_from((1.0, 2.5)), min_size=1, max_size=5))
+    message = scan(
+        distances, range_min=draw(st.sampled_from((0.0, 0.12))), range_max=draw(st.sampled_from((3.5, 50.0)))
+    )
+    # A name with a slash or a space is unusual, so that any change of it is detected.
+    message.header.frame_id = draw(st.sampled_from(("laser", "/Laser_1 ", "")) | st.text("ab/_ ", max_size=5))
+    message.header.stamp.sec = draw(st.integers(0, 2**31 - 1))
+    message.header.stamp.nanosec = draw(st.integers(0, 10**9 - 1))
+    message.angle_min, message.angle_max, message.angle_increment = draw(st.tuples(numbers, numbers, numbers))
+    message.time_increment, message.scan_time = abs(draw(numbers)) / 100, abs(draw(numbers))
+    has_intensities = draw(st.booleans())
+    message.intensities = [float(draw(st.integers(0, 255))) for _ in distances if has_intensities]
     return message
