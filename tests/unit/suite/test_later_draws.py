@@ -10,7 +10,7 @@ import pytest
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN
 from autograder.checks.ch05_parameters.hidden import changes, declaration, start_values
 from autograder.checks.ch05_parameters.support import contract as parameters
-from autograder.checks.ch07_best_practices.hidden import robust
+from autograder.checks.ch07_best_practices.support import sensor_run
 from autograder.checks.ch07_best_practices.support.robot import expected_statuses
 from autograder.checks.ch08_capstone.hidden import commands, drives
 from autograder.checks.ch08_capstone.hidden import launches as navigation
@@ -69,9 +69,10 @@ def test_05_asks_for_values_outside_of_each_range() -> None:
 
 def test_07_finds_seeds_that_a_parameter_may_have() -> None:
     for seed in SOME:
-        unstable_seed = robust._draw_unstable_seed(random.Random(seed))
-        assert 1 <= unstable_seed <= 2**31 - 1
-        assert expected_statuses(unstable_seed, 0.5, robust.READINGS, 1).count("unstable: 2 in a row") >= 2
+        flaky_seed, probability, max_errors = sensor_run.draw_flaky(random.Random(seed))
+        assert 1 <= flaky_seed <= 2**31 - 1
+        statuses = expected_statuses(flaky_seed, probability, sensor_run.REAL_FLAKY_READINGS, max_errors)
+        assert statuses.count(f"unstable: {max_errors + 1} in a row") >= 2
 
 
 def test_08_launches_with_values_within_the_ranges() -> None:

@@ -15,6 +15,12 @@ from autograder.checking.probes import versions
 from autograder.checks.ch06_testing.support.contract import PACKAGE, SCRIPTS
 
 STYLES = ("first", "second")
+# A relative error of 4e-15. At both ends of the line, the speed stays exact.
+ROUNDED = {
+    "file": "speed_guard/limits.py",
+    "find": "    share = (distance - stop_distance) / (slow_distance - stop_distance)\n",
+    "replace": "    share = (distance - stop_distance) / (slow_distance - stop_distance) * (1.0 + 2.0**-48)\n",
+}
 FOLDER = Path(__file__).parent / "versions"
 
 
@@ -57,9 +63,16 @@ def right(name: str, draw: random.Random) -> versions.Version:
     return versions.obfuscate(style(name), draw.getrandbits(32))
 
 
-def reworded(draw: random.Random) -> versions.Version:
-    """Return a right version of the first style with one expression of each file reworded, obfuscated."""
+def reworded(draw: random.Random, *, rounded: bool = False) -> versions.Version:
+    """Return a right version of the first style with one expression of each file reworded, obfuscated.
+
+    Args:
+        draw: chooses the expressions.
+        rounded: whether each computed speed also has a rounding error, which other orders of the operations can have.
+    """
     files = dict(style(STYLES[0]).files)
+    if rounded:
+        files[ROUNDED["file"]] = _edit(files[ROUNDED["file"]], ROUNDED, "safe_speed with a rounding error")
     for name, edits in yaml.safe_load((FOLDER / "reworded.yaml").read_text()).items():
         files[name] = _edit(files[name], draw.choice(edits), f"{name} in other words")
     return versions.obfuscate(versions.Version(files, SCRIPTS), draw.getrandbits(32))

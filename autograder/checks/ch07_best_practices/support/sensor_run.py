@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import random
 import re
@@ -78,9 +79,18 @@ def dead_sensor(workspace: Workspace, draw: random.Random) -> SensorRun:
 
 def flaky_sensor(workspace: Workspace, draw: random.Random) -> SensorRun:
     """Run a node whose readings fail in many series, some of them long enough to make it unstable."""
+    seed, probability, max_errors = draw_flaky(draw)
+    return _run(workspace, seed, probability, max_errors, FLAKY_READINGS, REAL_FLAKY_READINGS)
+
+
+def draw_flaky(draw: random.Random) -> tuple[int, float, int]:
+    """Draw seed, failure probability and max_errors of a node that soon becomes unstable twice."""
     # Tenths, so that the run does not depend on the step of the parameter's range.
-    seed, probability = draw.randint(1, 2**31 - 1), draw.choice((0.5, 0.6))
-    return _run(workspace, seed, probability, draw.randint(1, 3), FLAKY_READINGS, REAL_FLAKY_READINGS)
+    max_errors, probability = draw.randint(1, 3), draw.choice((0.5, 0.6))
+    seeds = itertools.count(draw.randint(1, 2**30))
+    unstable = f"unstable: {max_errors + 1} in a row"
+    statuses = ((seed, expected_statuses(seed, probability, REAL_FLAKY_READINGS, max_errors)) for seed in seeds)
+    return next(seed for seed, texts in statuses if texts.count(unstable) >= 2), probability, max_errors
 
 
 @st.composite
