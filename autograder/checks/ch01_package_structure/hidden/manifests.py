@@ -9,6 +9,7 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     expect_declared,
     expect_licence,
     expect_manifest,
+    expect_rosdep_key,
     read_manifest,
     source_of,
 )
@@ -69,4 +70,6 @@ def test_test_dependencies(workspace: Workspace) -> None:
     source = source_of(workspace, contract.SQUARE_DANCE)
     runtime_modules = {item.module for item in imports.imported(source, without=("test",))}
     needed = [item for item in imports.imported(source, within=("test",)) if item.module not in runtime_modules]
-    expect_declared(needed, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec", "test"))
+    declared = read_manifest(workspace, contract.SQUARE_DANCE)
+    expect_declared(needed, declared.needs("exec", "test"))
+    expect_rosdep_key(declared.needs(), "pytest")

@@ -64,6 +64,13 @@ def expect_declared(needed: Collection[imports.Import], declared: Collection[str
     expect(not missing, f"package.xml does not declare everything: {imports.describe(missing)}.", fraction=fraction)
 
 
+def expect_rosdep_key(declared: Collection[str], module: str) -> None:
+    """Fail the check if package.xml names a module as pip does, even beside its rosdep key."""
+    key = imports.KEYS[module]
+    message = f"package.xml declares {module}, a key that rosdep does not know: the key is {key} alone."
+    expect(module not in declared, message, fraction=0.75)
+
+
 def expect_executable(installation: installed.Installed, name: str) -> None:
     """Fail the check unless a program is installed where `ros2 run` looks."""
     if name in installation.executables:
