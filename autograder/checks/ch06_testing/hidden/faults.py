@@ -15,12 +15,6 @@ from autograder.checking.probes import versions
 from autograder.checks.ch06_testing.support.contract import PACKAGE, SCRIPTS
 
 STYLES = ("first", "second")
-# A relative error of 4e-15. At both ends of the line, the speed stays exact.
-ROUNDED = {
-    "file": "speed_guard/limits.py",
-    "find": "    share = (distance - stop_distance) / (slow_distance - stop_distance)\n",
-    "replace": "    share = (distance - stop_distance) / (slow_distance - stop_distance) * (1.0 + 2.0**-48)\n",
-}
 FOLDER = Path(__file__).parent / "versions"
 
 
@@ -63,17 +57,20 @@ def right(name: str, draw: random.Random) -> versions.Version:
     return versions.obfuscate(style(name), draw.getrandbits(32))
 
 
-def reworded(draw: random.Random, *, rounded: bool = False) -> versions.Version:
+def reworded(draw: random.Random, *, bare: bool = False) -> versions.Version:
     """Return a right version of the first style with one expression of each file reworded, obfuscated.
 
     Args:
         draw: chooses the expressions.
-        rounded: whether each computed speed also has a rounding error, which other orders of the operations can have.
+        bare: whether safe_speed also does no more than its contract says. Its computed speeds have a rounding error,
+            and its error has no text.
     """
     files = dict(style(STYLES[0]).files)
-    if rounded:
-        files[ROUNDED["file"]] = _edit(files[ROUNDED["file"]], ROUNDED, "safe_speed with a rounding error")
-    for name, edits in yaml.safe_load((FOLDER / "reworded.yaml").read_text()).items():
+    texts = yaml.safe_load((FOLDER / "reworded.yaml").read_text())
+    for name, edits in texts["bare"].items() if bare else ():
+        for edit in edits:
+            files[name] = _edit(files[name], edit, f"{name} without more than its contract")
+    for name, edits in texts["drawn"].items():
         files[name] = _edit(files[name], draw.choice(edits), f"{name} in other words")
     return versions.obfuscate(versions.Version(files, SCRIPTS), draw.getrandbits(32))
 
