@@ -42,7 +42,7 @@ from autograder.checks.ch07_best_practices.support.warning_record import Warning
 
 check = group("processor")
 FAST_SECONDS = 0.04  # s between two scans of a fast lidar
-GAPS = (0.05, 0.1, 0.2, 0.35, 0.5)  # s between two scans: of fast lidars and of slow ones
+GAPS = (0.05, 0.1, 0.2, 0.3, 0.5)  # s between two scans: of fast lidars and of slow ones
 STRETCH_SECONDS = 3.0  # s with scans that have no distance for the same reason
 
 
