@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import random
 import re
 from collections.abc import Sequence
@@ -167,8 +166,8 @@ def test_warns_now_and_then(fresh_processor: Processor, draw: random.Random) -> 
     is_needless = bool(record.warnings)
     causes = [Readings(readings) for readings in ((nan, inf, -inf, 0.05), (), (inf, -inf), (nan, nan), (0.05,))]
     stretches = [*([cause] for cause in causes), causes, [Readings((1.0,)), *causes[:1]]]
-    gaps = draw.sample(GAPS, len(GAPS))
-    for cases, gap in zip(stretches, itertools.cycle(gaps)):
+    gaps = *draw.sample(GAPS, len(causes)), SCAN_SECONDS, SCAN_SECONDS
+    for cases, gap in zip(stretches, gaps, strict=True):
         record.send(cases, gap=gap, seconds=STRETCH_SECONDS)
     message = f"Blind for {len(causes) * STRETCH_SECONDS:.0f} s and more, it said nothing at level WARN."
     expect(bool(record.warnings), message)
