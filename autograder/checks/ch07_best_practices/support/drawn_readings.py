@@ -18,7 +18,7 @@ BEYOND_LIMIT = 1e-4  # m beyond a limit, more than a rounding error
 DEFAULT_HISTORY = 100
 MAX_SCANS = 12  # scans in a row
 SHOWN = 7  # scans that a message names
-BLIND = ([nan], [], [inf], [-inf, nan], [inf, 0.0])  # scans without a distance; the simplest first
+BLIND: tuple[list[float], ...] = ([nan], [], [inf], [-inf, nan], [inf, 0.0])  # scans without a distance
 
 Case = TypeVar("Case")
 
