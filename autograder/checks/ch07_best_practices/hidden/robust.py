@@ -30,7 +30,7 @@ from autograder.checks.ch07_best_practices.support.sensor_run import SensorRun, 
 check = group("robust")
 DEFAULTS: dict[str, parameters.Value] = {"failure_probability": 0.1, "seed": 0, "max_errors": 10}
 ERROR_SECONDS = 5.0  # s: the shortest time between two errors in the log
-SLACK = 0.6  # s by which a time may differ in real time; a reading takes 1 s
+SLACK = 0.6  # s by which a time may differ in real time, where a reading takes 1 s
 LOG = "rclpy.impl.rcutils_logger._rclpy.rclpy_logging_rcutils_log"
 LIMITS = {"failure_probability": (0.0, 1.0), "seed": (0, 2**31 - 1), "max_errors": (1, 1000)}
 
