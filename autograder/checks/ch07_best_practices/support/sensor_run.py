@@ -17,7 +17,7 @@ from autograder.checks.ch07_best_practices.support.robot import Robust, expected
 
 DEAD_READINGS = 30
 ALMOST_ONE = math.nextafter(1.0, 0.0)  # the largest number of a generator
-FLAKY_READINGS, REAL_FLAKY_READINGS = 100, 30  # in lockstep, and in real time
+FLAKY_READINGS, REAL_FLAKY_READINGS = 60, 30  # in lockstep, and in real time
 
 
 @dataclass(frozen=True)
