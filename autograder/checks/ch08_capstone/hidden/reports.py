@@ -1,23 +1,14 @@
-"""Reports of the monitor: their description, and the time of the newest one."""
+"""Steps a system until the newest report of the monitor has a certain age."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
-from autograder.checks.ch08_capstone.support.contract import LEVELS
 from autograder.checks.ch08_capstone.support.system import System
 
 # s from the newest report to the last message on a topic. At two reports a second, another report then comes 1.15 to
 # 1.25 s after that message.
 MIN_PHASE, MAX_PHASE = 0.25, 0.35
-
-
-def describe_report(report: Any) -> str:
-    """Describe a report of the monitor."""
-    level = LEVELS[report.level] if 0 <= report.level < len(LEVELS) else str(report.level)
-    silent = ", ".join(str(topic)[:40] for topic in list(report.silent)[:5]) or "none"
-    return f"level {level}, silent: {silent}"
 
 
 def repeat_until_phase(system: System, step: Callable[[], object]) -> None:
