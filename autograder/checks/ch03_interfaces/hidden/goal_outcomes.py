@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Twist
+from hypothesis import strategies as st
 
-from autograder.checking import LOCKSTEP, REAL, Goal, ReceivedMessage, expect, group, hint
+from autograder.checking import LOCKSTEP, REAL, Goal, ReceivedMessage, expect, expect_each, group, hint
 from autograder.checks.ch03_interfaces.hidden.action import (
     LONG_SECONDS,
     MOTION_CHECK,
@@ -30,6 +31,9 @@ HEIGHT = 1.0  # m, which must not count as distance
 TOO_LITTLE, ENOUGH = 0.0095, 0.0105  # m: just below and just above a centimetre
 SLOW = 0.007  # m/s, less than a centimetre in 1 s
 ROLL_BACK = 0.015  # m in each step, far more than a centimetre in 1 s
+REACHED, CANCELLED, CANCELLED_AT_ONCE, STUCK = "reached", "cancelled", "cancelled before it moved", "given up"
+CANCELS = st.tuples(st.integers(0, 5), st.booleans())  # tenths of a second, and whether the wheels are held
+ENDINGS = (REACHED, CANCELLED, CANCELLED_AT_ONCE, STUCK, REACHED)
 SHORT_DISTANCE, LOW_SPEED = 0.04, 0.015  # m, m/s: a little more than a centimetre in 1 s
 
 
@@ -40,7 +44,7 @@ def test_drive_cancels(placed_driver: Driver, draw: random.Random) -> None:
     """A cancel stops the robot immediately: the goal ends CANCELED, and the result says how far it came and why."""
     x, y = placed_driver.x, placed_driver.y
     goal = placed_driver.start(4.5, 0.5)
-    placed_driver.roll(goal, LONG_SECONDS, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.9)
+    placed_driver.roll(goal, LONG_SECONDS, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.5)
     cancel_position = placed_driver.x, placed_driver.y
     goal.cancel()
     commands = placed_driver.roll(goal, 3.0)
@@ -58,12 +62,43 @@ def test_drive_cancels(placed_driver: Driver, draw: random.Random) -> None:
         fraction=0.7,
     )
     expect(goal.result.reason.strip() != "", "The result gives no reason.", fraction=0.8)
+    expect_each(
+        CANCELS,
+        lambda drawn: _expect_cancelled(placed_driver, *drawn),
+        draw,
+        count=5 if placed_driver.time == LOCKSTEP else 1,
+    )
+
+
+def _expect_cancelled(driver: Driver, tenths: int, held: bool) -> None:
+    """Fail the check unless a cancel, after some tenths of a second of a goal, ends it with a stop and a reason."""
+    x, y = driver.x, driver.y
+    goal = driver.start(4.5, 0.5)
+    driver.stuck = held
+    if tenths:
+        driver.roll(goal, tenths / 10.0)
+    goal.cancel()
+    driver.roll(goal, 1.0)
+    driver.stuck = False
+    situation = f"Cancelled {tenths / 10.0:.1f} s after the start{', with wheels that do not turn' * held}"
+    outcome = STATUS_NAMES.get(goal.status, "not at all")
+    is_cancelled = goal.result is not None and goal.status == GoalStatus.STATUS_CANCELED
+    expect(is_cancelled, f"{situation}, the goal ended {outcome}.", fraction=0.5)
+    commands = [received.message for received in driver.commands()]
+    expect(has_stopped(commands), f"{situation}, the last command was no stop.", fraction=0.7)
+    driven, reported = math.dist((x, y), (driver.x, driver.y)), goal.result.driven
+    expect(
+        abs(reported - driven) <= 0.15,
+        f"{situation}, the result says {reported:.2f} m of {driven:.2f} m.",
+        fraction=0.7,
+    )
+    expect(goal.result.reason.strip() != "", f"{situation}, the result gives no reason.", fraction=0.8)
 
 
 @check(points=2, covers=("busy", "next-goal", "drive-cmd-vel"), needs=SERVER_CHECK, after=("drive_cancels",))
 @hint("Remember that a goal is being driven when you accept it, and forget it when it has ended.")
 @hint("self.busy.acquire(blocking=False) in accept, self.busy.release() at the end of execute.")
-def test_drive_one_at_a_time(placed_driver: Driver) -> None:
+def test_drive_one_at_a_time(placed_driver: Driver, draw: random.Random) -> None:
     """While a goal is driven another one is rejected; the first goes on, and after it there is room for the next."""
     overlap = _send_others(placed_driver)
     expect(not overlap.accepted[0], "While a goal was driven, another one was accepted.")
@@ -78,9 +113,13 @@ def test_drive_one_at_a_time(placed_driver: Driver) -> None:
         drives_straight(command, overlap.speed) for command in overlap.between
     )
     expect(is_undisturbed, "The first goal was not driven on when another one came.", fraction=0.3)
-    following = placed_driver.send(0.1, 0.5)
-    expect(following.accepted is True, "After a goal had ended, the next one was rejected.", fraction=0.5)
-    placed_driver.finish(following, LONG_SECONDS, "With 0.10 m to drive")
+    ending = "in another way"
+    for following in draw.sample(ENDINGS, len(ENDINGS)):
+        goal = placed_driver.send(0.1 if following == REACHED else 3.0, 0.5)
+        expect(goal.accepted is True, f"After a goal had been {ending}, the next one was rejected.", fraction=0.5)
+        ending = following
+        if not _has_ended(placed_driver, goal, following):
+            break  # other checks test whether a goal ends
     is_first_goal = all(drives_straight(command, overlap.speed) for command in overlap.commands)
     expect(is_first_goal, "With a goal that was rejected came a command that was not the first goal's.", fraction=0.75)
 
@@ -179,6 +218,20 @@ def _send_others(driver: Driver) -> _OverlappingGoals:
     return _OverlappingGoals(
         first_commands[-1].linear.x, [bool(goal.accepted) for goal in others], is_running, between, commands
     )
+
+
+def _has_ended(driver: Driver, goal: Goal, ending: str) -> bool:
+    """Let a goal end in this way, or in another way if it does not; return whether it has ended."""
+    driver.stuck = ending == STUCK
+    if ending == CANCELLED:
+        driver.roll(goal, 0.2)
+    if ending in (CANCELLED, CANCELLED_AT_ONCE):
+        goal.cancel()
+    driver.roll(goal, 3.0)
+    driver.stuck = False
+    if goal.result is None:
+        driver.abandon(goal)
+    return goal.result is not None
 
 
 def _push(driver: Driver, distance: float) -> tuple[Goal, list[ReceivedMessage]]:
