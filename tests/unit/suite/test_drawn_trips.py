@@ -1,4 +1,4 @@
-"""The trips and batteries that 03 draws are legal, and correct programs of any style give an answer that is accepted."""
+"""The trips and batteries that 03 draws are legal, and the answers of correct programs of any style are accepted."""
 
 from __future__ import annotations
 
