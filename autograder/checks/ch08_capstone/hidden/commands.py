@@ -93,7 +93,7 @@ def _expect_turns(driving: System, draw: random.Random) -> None:
         turns(),
         lambda drive: expect_drive(driving, drive, DRIVE, LEFT, RIGHT, fraction=0.5),
         draw,
-        count=_cases(driving, 24),
+        count=_cases(driving, 18),
     )
     expect_exact_limits(driving)
 
@@ -178,5 +178,5 @@ def _expect_enable_service(system: System, draw: random.Random) -> None:
         calls(),
         lambda drive: expect_drive(system, drive, STILL, DRIVE, LEFT, RIGHT, fraction=0.5),
         draw,
-        count=_cases(system, 16),
+        count=_cases(system, 12),
     )

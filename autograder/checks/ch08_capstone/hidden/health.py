@@ -111,7 +111,7 @@ def test_dead_sensor(
         _expect_ros_time(slow_system.get(*PROGRAMS))
     monitor = lone_monitor.get(MONITOR)
     expect_each(
-        silences(), lambda history: expect_reports(monitor, history, fraction=0.75), draw, count=_cases(monitor, 10)
+        silences(), lambda history: expect_reports(monitor, history, fraction=0.75), draw, count=_cases(monitor, 8)
     )
 
 

@@ -2,27 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+import random
 
-from autograder.checking import CheckFailed, ReceivedMessage, Workspace, expect, group, hint
+from autograder.checking import SCAN_SECONDS, CheckFailed, Workspace, expect, group, hint
 from autograder.checking.probes import parameters
 from autograder.checks.ch02_nodes.support.scans import Part, scan
+from autograder.checks.ch08_capstone.hidden.drawn_drives import (
+    CLEAR,
+    DEFAULTS,
+    DRIVE,
+    LEFT,
+    STILL,
+    Drive,
+    Moment,
+    View,
+    expect_drive,
+)
+from autograder.checks.ch08_capstone.hidden.drawn_reports import ALL, Span, expect_reports
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN, newest_clearance
-from autograder.checks.ch08_capstone.hidden.reports import repeat_until_phase
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
     CONFIG,
     CONTROLLER,
-    FAILED,
     MONITOR,
     PACKAGE,
     PARAMETERS,
     PROCESSOR,
+    TOLERANCE,
 )
-from autograder.checks.ch08_capstone.support.expectations import expect_driving, expect_turning
-from autograder.checks.ch08_capstone.support.system import System
+from autograder.checks.ch08_capstone.support.expectations import expect_driving
+from autograder.checks.ch08_capstone.support.system import SharedSystem, System
 
 check = group("step_5", doc=contract.PARAMETERS_DOC)
+# Ranges from which other values are drawn: a speed is a maximum, so a lower one shows, and the others show either way.
+VALUES: dict[str, dict[str, tuple[tuple[float, float], ...]]] = {
+    CONTROLLER: {
+        "safety_distance": ((0.32, 0.45), (0.8, 2.0)),
+        "forward_speed": ((0.05, 0.2),),
+        "turn_speed": ((0.1, 0.6),),
+        "data_timeout": ((0.2, 0.3), (0.8, 1.9)),
+    },
+    PROCESSOR: {"half_angle": ((0.15, 0.4), (0.62, 0.78))},
+    MONITOR: {"silence_timeout": ((0.2, 0.4), (1.3, 1.4))},
+}
 
 
 @check(
@@ -90,12 +113,18 @@ def test_ranges(system: System) -> None:
 @check(points=3, covers="declares", needs=("build",), after=("declared", "drives", "turns", "sectors", "dead_sensor"))
 @hint("A value that is read once in __init__ never changes: self.get_parameter(name).value where it is needed.")
 @hint("Every parameter of the table is used: a number in the code that stands for one makes it a decoration.")
-def test_used(system: System) -> None:
+def test_used(system: System, lone_monitor: SharedSystem, draw: random.Random) -> None:
     """A parameter that is changed while the system runs has an effect immediately."""
-    errors = [error for error in (_effect_error(system, *case) for case in _CASES) if error]
+    monitor, errors = lone_monitor.get(MONITOR), list[str]()
+    for node, values in VALUES.items():
+        changed = monitor if node == MONITOR else system
+        for name, ranges in values.items():
+            value = round(draw.uniform(*draw.choice(ranges)), 2)
+            errors += _effect_errors(changed, node, name, value)
     errors += _errors_after_change_in_turn(system)
     if errors:
-        raise CheckFailed(" ".join(errors[:2]), fraction=round(1.0 - len(errors) / (len(_CASES) + 1), 2))
+        total = sum(map(len, VALUES.values())) + 1
+        raise CheckFailed(" ".join(errors[:2]), fraction=round(1.0 - len(errors) / total, 2))
 
 
 @check(points=2, covers="config", needs=("build",), after=("shares",))
@@ -113,68 +142,41 @@ def test_config(workspace: Workspace) -> None:
         expect(not extra, f"{CONFIG}, {node}: {', '.join(extra)} is not declared by any node.", fraction=0.5)
 
 
-def _expect_safety_distance(system: System) -> None:
-    expect_turning(_commands_after(system, Part(-10.0, 10.0, 1.2)), "with something 1.2 m ahead", "left", 0.8)
-
-
-def _expect_forward_speed(system: System) -> None:
-    expect_driving(_commands_after(system), "with nothing around", 0.12)
-
-
-def _expect_turn_speed(system: System) -> None:
-    expect_turning(_commands_after(system, Part(-10.0, 10.0, 0.4)), "with something 0.4 m ahead", "left", 0.25)
-
-
-def _expect_data_timeout(system: System) -> None:
-    _commands_after(system)
-    start = system.seconds
-    system.wait(1.2)
-    expect_driving(system.messages(start + 0.7).commands, "with data 1.2 s old at most", 0.3)
-
-
-def _expect_half_angle(system: System) -> None:
-    system.publish_scans(OPEN)
-    front = newest_clearance(system, scan(Part(22.0, 26.0, 1.0))).front
-    expect(front > 2.0, "something at 24° was still ahead.")
-
-
-def _expect_silence_timeout(system: System) -> None:
-    system.publish_scans(OPEN, 1.0)
-    repeat_until_phase(system, lambda: system.publish_scan(OPEN))
-    start = system.seconds
-    system.wait(0.9)
-    reports = system.messages(start + 0.4).reports
-    expect(bool(reports) and reports[-1].message.level == FAILED, "0.9 s after the last scan, health was not FAILED.")
-
-
-_CASES: tuple[tuple[str, str, float, Callable[[System], None]], ...] = (
-    (CONTROLLER, "safety_distance", 1.5, _expect_safety_distance),
-    (CONTROLLER, "forward_speed", 0.12, _expect_forward_speed),
-    (CONTROLLER, "turn_speed", 0.25, _expect_turn_speed),
-    (CONTROLLER, "data_timeout", 2.0, _expect_data_timeout),
-    (PROCESSOR, "half_angle", 0.35, _expect_half_angle),
-    (MONITOR, "silence_timeout", 0.3, _expect_silence_timeout),
-)
-
-
-def _effect_error(system: System, node: str, name: str, value: float, expect_effect: Callable[[System], None]) -> str:
+def _effect_errors(system: System, node: str, name: str, value: float) -> list[str]:
     """Change a parameter, test the effect, and change it back; describe the error, if there is one."""
-    try:
-        with system.changed_parameter(node, name, value) as reply:
-            if not reply.accepted:
-                return f"{node} refuses {name} = {value:g}: {reply.reason}"
-            expect_effect(system)
-    except CheckFailed as error:
-        return f"With {name} = {value:g}: {error.message}"
-    finally:
-        system.publish_scans(OPEN)
-    return ""
+    with system.changed_parameter(node, name, value) as reply:
+        if not reply.accepted:
+            return [f"{node} refuses {name} = {value:g}: {reply.reason}"]
+        try:
+            _expect_effect(system, name, value)
+        except CheckFailed as error:
+            return [f"With {name} = {value:g}: {error.message}"]
+    return []
+
+
+def _expect_effect(system: System, name: str, value: float) -> None:
+    if name == "half_angle":
+        inside, outside = math.degrees(value) - 3.0, math.degrees(value) + 2.0
+        for bearing, expected in ((inside, 1.0), (-inside - 1.0, 1.0), (outside, 3.0), (-outside - 1.0, 3.0)):
+            front = newest_clearance(system, scan(Part(bearing, bearing + 1.0, 1.0))).front
+            sentence = f"something 1.00 m away at {bearing:.0f}° to {bearing + 1.0:.0f}° made front {front:.2f} m."
+            expect(abs(front - expected) <= TOLERANCE, sentence)
+    elif name == "silence_timeout":
+        # Reports are 0.5 s apart, so they come at all times after the last messages.
+        expect_reports(system, (Span(frozenset(), 13), Span(ALL, 4)) * 3, silence_timeout=value)
+    else:
+        limit = value if name == "safety_distance" else 0.6
+        drives: dict[str, Drive] = {"data_timeout": (Moment(CLEAR), Moment(None, round(value / SCAN_SECONDS) + 3))}
+        around = Moment(View(limit + 0.05, 2.0, 1.0)), Moment(View(limit - 0.05, 2.0, 1.0))
+        kinds = (DRIVE, STILL) if name in drives else (DRIVE, LEFT)
+        expect_drive(system, drives.get(name, around), *kinds, parameters={**DEFAULTS, name: value})
 
 
 def _errors_after_change_in_turn(system: System) -> list[str]:
     """Describe the error if a turn does not end after safety_distance was set to a value that ends it."""
     obstacle = Part(-40.0, 40.0, 0.5)
-    _commands_after(system, obstacle)
+    system.publish_scans(OPEN)
+    system.publish_scans(scan(obstacle, fill=3.0))
     with system.changed_parameter(CONTROLLER, "safety_distance", 0.3):
         commands = system.publish_scans(scan(obstacle, fill=3.0)).commands
     try:
@@ -182,9 +184,3 @@ def _errors_after_change_in_turn(system: System) -> list[str]:
     except CheckFailed as error:
         return [error.message]
     return []
-
-
-def _commands_after(system: System, *parts: Part) -> Sequence[ReceivedMessage]:
-    """Publish an open space, then these things in it; return the commands that follow."""
-    system.publish_scans(OPEN)
-    return system.publish_scans(scan(*parts, fill=3.0)).commands
