@@ -234,7 +234,7 @@ def test_drive_rejects(free_driver: Driver, draw: random.Random) -> None:
         expect(not goal.accepted, message, fraction=0.25 if distance == PLAIN_DISTANCE else 0.4)
 
     judge((PLAIN_DISTANCE, 0.2))
-    expect_each(INVALID_GOALS, judge, draw, count=24 if free_driver.time == LOCKSTEP else 8)
+    expect_each(INVALID_GOALS, judge, draw, count=16 if free_driver.time == LOCKSTEP else 8)
     valid_goal = free_driver.send(1.0, 0.2)
     if valid_goal.accepted:
         free_driver.abandon(valid_goal)
@@ -262,7 +262,7 @@ def test_drive_limits(placed_driver: Driver, draw: random.Random) -> None:
 
     for plain in ((MAX_DISTANCE, None), (0.5, MAX_SPEED)):
         judge(plain)
-    expect_each(VALID_GOALS, judge, draw, count=4)
+    expect_each(VALID_GOALS, judge, draw, count=2)
     placed_driver.restart()  # so that no earlier goal affects the next
     placed_driver.run(SILENCE)
     goal = placed_driver.send(MAX_DISTANCE)

@@ -66,7 +66,7 @@ def test_drive_cancels(placed_driver: Driver, draw: random.Random) -> None:
         CANCELS,
         lambda drawn: _expect_cancelled(placed_driver, *drawn),
         draw,
-        count=5 if placed_driver.time == LOCKSTEP else 1,
+        count=4 if placed_driver.time == LOCKSTEP else 1,
     )
 
 

@@ -104,9 +104,6 @@ def test_dead_sensor(
     )
     later_reports = [r for r in reports if r.seconds - start > REPORT_DEADLINE]
     _expect_reports(later_reports, FAILED, LIDAR_TOPICS, "2 to 4 s after the last scan", fraction=0.5)
-    system.publish_scans(OPEN, REPORT_DEADLINE)
-    newest_reports = system.harness.messages("/health")[-1:]
-    _expect_reports(newest_reports, OK, set(), f"{REPORT_DEADLINE:.0f} s after the lidar came back", fraction=0.75)
     if system.harness.time == LOCKSTEP:  # in real time, the clocks of the machine cannot be slowed
         _expect_ros_time(slow_system.get(*PROGRAMS))
     monitor = lone_monitor.get(MONITOR)
