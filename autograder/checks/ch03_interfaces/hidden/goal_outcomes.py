@@ -78,7 +78,7 @@ def _expect_cancelled(driver: Driver, tenths: int, held: bool) -> None:
     if tenths:
         driver.roll(goal, tenths / 10.0)
     goal.cancel()
-    driver.roll(goal, 1.0)
+    driver.roll(goal, 3.0)
     driver.stuck = False
     situation = f"Cancelled {tenths / 10.0:.1f} s after the start{', with wheels that do not turn' * held}"
     outcome = STATUS_NAMES.get(goal.status, "not at all")

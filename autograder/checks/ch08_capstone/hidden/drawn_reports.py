@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from collections.abc import Collection
 from dataclasses import dataclass
 from itertools import combinations
@@ -69,7 +70,7 @@ class Heard:
         """Remember a message, and for a clearance whether it is valid."""
         self._arrivals[topic] = now
         if topic == "clearance":
-            self._validity = [*self._validity[-1:], (now, valid)]
+            self._validity.append((now, valid))
 
     def is_right(self, report: ReceivedMessage) -> bool:
         """Return whether a report says which topics are silent, and has the level that follows from this."""
@@ -82,9 +83,10 @@ class Heard:
         if silent:
             return bool(report.message.level == FAILED and silent <= ALL)
         # A clearance that comes together with the report may count already, or not yet.
-        arrival, newest = self._validity[-1]
-        valid = {newest, self._validity[0][1]} if report.seconds - arrival <= self._margin else {newest}
-        return report.message.level in {OK if each else DEGRADED for each in valid}
+        arrivals = [arrival for arrival, _ in self._validity]
+        first = bisect_left(arrivals, report.seconds - self._margin)
+        possible = {OK if valid else DEGRADED for _, valid in self._validity[max(0, first - 1) :]}
+        return report.message.level in possible
 
     def expected(self, now: float) -> str:
         """Return in words what a report of this time should say."""
