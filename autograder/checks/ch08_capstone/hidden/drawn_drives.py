@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from hypothesis import strategies as st
@@ -163,17 +163,17 @@ SIDES = [pair for near, far in NEAR_AND_FAR for pair in ((near, far), (far, near
 SIDES += [(side, side) for side in (1.0, math.inf, -math.inf)]
 
 
-def views(*fronts: float) -> st.SearchStrategy[View]:
-    """Draw what the robot sees, with one of these distances ahead."""
+def views(*fronts: float, sides: Sequence[tuple[float, float]]) -> st.SearchStrategy[View]:
+    """Draw what the robot sees, with one of these distances ahead, and one of these pairs on the left and right."""
     # A single choice, because Hypothesis often draws the same again if there are several.
-    return st.sampled_from([View(front, left, right) for front in fronts for left, right in SIDES])
+    return st.sampled_from([View(front, left, right) for front in fronts for left, right in sides])
 
 
 @st.composite
 def turns(draw: st.DrawFn, limit: float = DEFAULTS["safety_distance"]) -> Drive:
     """Draw a drive with things around the safety distance, during which a side is blind at times."""
     offsets = -limit / 2, -0.01, 0.01, 0.05, TURN_MARGIN - 0.01, TURN_MARGIN + 0.01
-    around = views(*(limit + offset for offset in offsets), 3.0, math.inf, -math.inf)
+    around = views(*(limit + offset for offset in offsets), 3.0, math.inf, -math.inf, sides=SIDES)
     drive: list[Moment] = []
     for view in draw(st.lists(around, min_size=2, max_size=6)):
         drive.append(Moment(view))
@@ -204,7 +204,7 @@ def calls(draw: st.DrawFn) -> Drive:
     """Draw a drive with calls of enable; a robot that is held still sees what it saw before, or a clear way."""
     drive: list[Moment] = []
     called: bool | None = None
-    for view in draw(st.lists(views(0.3, 0.65, 0.3, 3.0), min_size=2, max_size=5)):
+    for view in draw(st.lists(views(0.3, 0.65, 0.3, 3.0, sides=SIDES[:4]), min_size=2, max_size=5)):
         drive.append(Moment(view, enable=called or draw(st.sampled_from((None, True)))))
         held = draw(st.integers(0, 2))
         drive += [Moment(draw(st.sampled_from((view, CLEAR))), enable=False)] * held
