@@ -32,7 +32,8 @@ def expect_each(
     """Fail the check with the simplest case found for which `judge` raises CheckFailed.
 
     A program with memory can violate the rule because of the case before. So the case that fails first is judged a
-    second time. If it passes then, it is reported as it is, together with the case before.
+    second time. If it passes then, it is reported as it is, together with the case before. A case that has passed is
+    not judged again: Hypothesis demands the same result for the same case.
 
     Args:
         cases: draws cases, which have a `repr` of their own.
@@ -82,6 +83,7 @@ class _Run:
     def __init__(self, judge: Callable[[Any], None]) -> None:
         self._judge = judge
         self._failures: dict[str, CheckFailed] = {}
+        self._passed: set[str] = set()
         self._before = ""
         self._budget = SHRINKS
         self.result: BaseException | None = None
@@ -97,8 +99,11 @@ class _Run:
         """Judge a case, as a test of Hypothesis."""
         text = repr(case)
         if text not in self._failures:
+            if text in self._passed:
+                return
             try:
                 self._judge(case)
+                self._passed.add(text)
             except CheckFailed as failure:
                 self._failures[text] = failure if self._failures else self._confirmed(case, failure)
             except BaseException as error:
