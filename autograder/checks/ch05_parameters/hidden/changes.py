@@ -9,11 +9,21 @@ from collections.abc import Mapping
 from autograder.checking import LOCKSTEP, Workspace, expect, group, hint
 from autograder.checking.probes import calls, parameters
 from autograder.checks.ch05_parameters.support import bench, contract
+from autograder.checks.ch05_parameters.support.answers import expect_answers
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, PACKAGE
+from autograder.checks.ch05_parameters.support.drawn_requests import (
+    ANY,
+    APART,
+    DISTANCES,
+    FOREIGN,
+    REFUSED,
+    TAKEN,
+    dialogues,
+    values_text,
+)
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, scan
 
 check = group("changes")
-DISTANCES = ("safety_distance", "slow_distance")
 DEFAULT_SPEED = 0.3  # m/s
 UNEVEN_RATES = (31.6, 40.6, 46.5)  # Hz: about 1 % off, or more, in whole hertz or in whole milliseconds
 LOCKSTEP_TOLERANCE = 0.005  # of the expected rate, in lockstep
@@ -32,18 +42,11 @@ def test_contradiction(robot: Robot, draw: random.Random) -> None:
     """A safety distance that would not be below the slow distance is refused, whichever of the two is set."""
     above, below = draw_contradictions(draw)
     above, below = robot.allowed("safety_distance", above), robot.allowed("slow_distance", below)
-    requests: list[tuple[dict[str, parameters.Value], float]] = [
-        ({"safety_distance": above}, 0.0),
-        ({"slow_distance": below}, 0.0),
-        ({"safety_distance": above, "slow_distance": robot.allowed("slow_distance", above - 0.2)}, 0.0),
-        ({"safety_distance": 1.0}, 0.5),  # equal distances
-    ]
-    current = parameters.as_declared({name: DEFAULTS[name] for name in DISTANCES}, robot.initial)
-    for request, fraction in requests:
-        answer = robot.change(request)
-        expect(not answer.accepted, f"With 0.5 m and 1.0 m, it took {_values_text(request)}.", fraction=fraction)
-        wrong = parameters.differences(robot.parameters.values(*DISTANCES), current)
-        expect(not wrong, f"It refused {_values_text(request)}, and yet {'; '.join(wrong)}.")
+    both = {"safety_distance": above, "slow_distance": robot.allowed("slow_distance", above - 0.2)}
+    for request in ({"safety_distance": above}, {"slow_distance": below}, both):
+        accepted = robot.change(request).accepted
+        expect(not accepted, f"With 0.5 m and 1.0 m, it took {values_text(request)}.")
+    expect_answers(robot, dialogues(REFUSED), draw, judged=(False,), fraction=0.5)
 
 
 @check(points=1, covers=("reason", "refused", "keep-value"), needs=("starts",), after=("contradiction",))
@@ -57,17 +60,20 @@ def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None
     current = {"safety_distance": safety, "slow_distance": slow}
     for name in reversed(DISTANCES):  # each also fits the default of the other
         _change(robot, {name: current[name]})
-    pairs = current | {"safety_distance": far}, current | {"slow_distance": near}
+    requests: list[dict[str, parameters.Value]]
+    requests = [{"safety_distance": far}, {"slow_distance": near}, {"slow_distance": near, "safety_distance": far}]
+    pairs = [{**current, **request} for request in requests]
     outcomes = calls.calls(
         workspace, f"{PACKAGE}.configuration", *(calls.call("contradiction", *pair.values()) for pair in pairs)
     )
-    for name, pair, outcome in zip(DISTANCES, pairs, outcomes, strict=True):
-        answer = robot.change({name: pair[name]})
+    for request, pair, outcome in zip(requests, pairs, outcomes, strict=True):
+        answer = robot.change(request)
         reason, sentence = answer.reason, parameters.shortened(str(outcome.value))
-        expect(not answer.accepted, f"With {_values_text(current)}, it took {name} = {pair[name]}.", fraction=0.5)
+        asked = values_text(request)
+        expect(not answer.accepted, f"With {values_text(current)}, it took {asked}.", fraction=0.5)
         missing = missing_from(reason, pair)
-        observation = f"With {_values_text(current)}, its reason to refuse {name} = {pair[name]} is “{reason}”"
-        fraction = 0.5 if reason or name == "slow_distance" else 0.0
+        observation = f"With {values_text(current)}, its reason to refuse {asked} is “{reason}”"
+        fraction = 0.5 if reason or request is not requests[0] else 0.0
         expect(not missing, f"{observation}: it does not name {', '.join(missing)}.", fraction=fraction)
         expect(sentence[:100] in reason, f"{observation}; contradiction says “{sentence}”.", fraction=0.5)
 
@@ -77,23 +83,20 @@ def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None
 def test_together(robot: Robot, draw: random.Random) -> None:
     """Two distances that fit each other are taken in one request, in either order and far from the present ones."""
     far = robot.allowed("safety_distance", round(draw.uniform(1.4, 1.8), 2))
-    up: dict[str, parameters.Value] = {
+    request: dict[str, parameters.Value] = {
         "safety_distance": far,
         "slow_distance": robot.allowed("slow_distance", far + 0.5, up=True),
     }
-    down: dict[str, parameters.Value] = {"slow_distance": 0.6, "safety_distance": 0.3}
-    close: dict[str, parameters.Value] = {"safety_distance": robot.allowed("safety_distance", 0.59)}
-    for request in (up, down, close):
-        answer = robot.change(request)
-        expect(answer.accepted, f"It refused {_values_text(request)}, which fit: “{answer.reason}”.")
-        wrong = parameters.differences(robot.parameters.values(*request), request)
-        expect(not wrong, f"It took {_values_text(request)}, and yet {'; '.join(wrong)}.")
+    _change(robot, request)
+    wrong = parameters.differences(robot.parameters.values(*request), parameters.as_declared(request, robot.initial))
+    expect(not wrong, f"It took {values_text(request)}, and yet {'; '.join(wrong)}.")
+    expect_answers(robot, dialogues(TAKEN), draw, judged=(True,), fraction=0.5)
 
 
 @check(points=2, covers="no-effect", needs=("starts",), after=("contradiction",), doc=contract.PARAMETERS)
 @hint("validate says yes or no and does nothing else: no attribute, no timer, no log of a change.")
 @hint("What is to be done once a request was accepted stands in apply.")
-def test_no_side_effects(fresh_robot: Robot, workspace: Workspace) -> None:
+def test_no_side_effects(fresh_robot: Robot, draw: random.Random, workspace: Workspace) -> None:
     """A refused request changes nothing: no value, no speed, no rate."""
     robot = fresh_robot
     request: dict[str, parameters.Value] = {
@@ -119,12 +122,14 @@ def test_no_side_effects(fresh_robot: Robot, workspace: Workspace) -> None:
         _change(robot, {"battery_threshold": 25}, fraction=0.75)
         situation = "After a refused request for 25 Hz and an accepted one without a frequency"
         expect_rate(robot.command_rate(), rate, situation, fraction=0.75)
+        after_a_refusal = dialogues(APART, TAKEN, REFUSED, first=REFUSED, is_tame=True)
+        expect_answers(robot, after_a_refusal, draw, fraction=0.75)
     period_before, period_after, accepted = bench.call_validate(workspace)
     observation = (
         f"While validate judged a request for 25 Hz, the timer's period went from {period_before} to {period_after} ns"
     )
     expect(period_before == period_after, f"{observation}: another callback may still refuse it.", fraction=0.75)
-    observation = f"With 0.5 m and 1.0 m, it took {_values_text(request)}: it refused nothing"
+    observation = f"With 0.5 m and 1.0 m, it took {values_text(request)}: it refused nothing"
     expect(not answer.accepted, f"{observation}.", fraction=0.5)
     observation = "validate accepted slow_distance = 2.0, which was not stored, and then safety_distance = 1.5 alone"
     expect(accepted is not True, f"{observation}, though slow_distance is still 1.0.", fraction=0.75)
@@ -177,20 +182,16 @@ def test_rate_change(robot: Robot, draw: random.Random) -> None:
     """A new control_frequency sets the rate of its commands, up and down."""
     for frequency in (draw.choice((20.0, 25.0, 50.0)), draw.choice((4.0, 5.0))):
         _change(robot, {"control_frequency": frequency})
-        expect_rate(robot.command_rate(), frequency, f"After control_frequency was set to {frequency}")
-    request = {"battery_threshold": 25, "control_frequency": 20.0}
-    _change(robot, request, fraction=0.75)
-    expect_rate(robot.command_rate(), 20.0, f"After one request for {_values_text(request)}", fraction=0.5)
+        expect_rate(robot.command_rate(1.0), frequency, f"After control_frequency was set to {frequency}")
     uneven = robot.allowed("control_frequency", draw.choice(UNEVEN_RATES))
-    _change(robot, {"control_frequency": uneven})
+    slow = robot.allowed("slow_distance", 1.2, up=True)
+    request = {"battery_threshold": 25, "control_frequency": uneven, "slow_distance": slow}
+    _change(robot, robot.without_read_only(request), fraction=0.75)
+    rate, situation = robot.command_rate(4.0), f"After one request for {values_text(request)}"
+    expect_rate(rate, uneven, situation, fraction=0.5)
     if robot.time == LOCKSTEP:  # in real time, no rate is exact enough
-        rate = robot.command_rate(4.0)
-        observation = f"After control_frequency was set to {uneven}, it published {rate:.2f} commands a second"
-        expect(
-            abs(rate - uneven) <= LOCKSTEP_TOLERANCE * uneven,
-            f"{observation}; it should publish {uneven:.2f}.",
-            fraction=0.5,
-        )
+        expectation = f"{situation}, it published {rate:.2f} commands a second; it should publish {uneven:.2f}."
+        expect(abs(rate - uneven) <= LOCKSTEP_TOLERANCE * uneven, expectation, fraction=0.5)
 
 
 @check(
@@ -207,27 +208,23 @@ def test_undisturbed(robot: Robot) -> None:
     expect(before > 0.0, "It publishes no commands.")
     start, change_count = robot.seconds, 40
     for i in range(change_count):
+        share = i // 2 / (change_count // 2 - 1)  # of the way from one limit to the other
         if i % 2 == 0:
             robot.publish("/scan", scan(2.5))
-        speed = robot.allowed("max_linear_velocity", i / (change_count - 1))  # from one limit to the other
-        _change(robot, {"max_linear_velocity": speed}, fraction=0.5)
+        name, value = ("battery_threshold", round(100 * share)) if i % 2 else ("max_linear_velocity", share)
+        _change(robot, robot.without_read_only({name: robot.allowed(name, value)}), fraction=0.5)
         robot.advance(0.05)
-    expect_rate(robot.rate_since(start), before, "While max_linear_velocity was changed all the time")
+    expect_rate(robot.rate_since(start), before, "While other parameters were changed all the time")
 
 
 @check(points=1, covers="lets-pass", needs=("starts",), after=("names",))
 @hint("A request may name no distance at all, or only rclpy's own use_sim_time: let it pass.")
-def test_passes(robot: Robot) -> None:
+def test_passes(robot: Robot, draw: random.Random) -> None:
     """Requests that have nothing to do with the distances pass."""
     _change(robot, robot.parameters.values("use_sim_time"))  # unchanged, because the harness sets the clock by it
-    request: dict[str, parameters.Value] = {"battery_threshold": 30, "max_linear_velocity": 0.4}
-    for name, value in request.items():
+    for name, value in (("battery_threshold", 30), ("max_linear_velocity", 0.4)):
         _change(robot, robot.without_read_only({name: value}))
-    _change(robot, robot.without_read_only(request), fraction=0.5)
-    wrong = parameters.differences(
-        robot.parameters.values(*request), parameters.as_declared(robot.without_read_only(request), robot.initial)
-    )
-    expect(not wrong, f"After these requests {'; '.join(wrong)}.", fraction=0.5)
+    expect_answers(robot, dialogues(APART, others=ANY), draw, judged=(True,), fraction=0.5)
 
 
 @check(
@@ -240,18 +237,14 @@ def test_passes(robot: Robot) -> None:
 @hint("ROS stores what is in the very list that validate gets: leave the list as it is.")
 def test_beside_others(robot: Robot, draw: random.Random, workspace: Workspace) -> None:
     """In a request that also names use_sim_time, the rest is judged and carried out as usual, in any order."""
-    other = robot.parameters.values("use_sim_time")
-    contradictory: dict[str, parameters.Value] = {
-        "safety_distance": robot.allowed("safety_distance", round(draw.uniform(1.1, 2.5), 2))
-    }
-    for request in ({**other, **contradictory}, {**contradictory, **other}):
-        accepted = robot.change(request).accepted
-        expect(not accepted, f"With 0.5 m and 1.0 m, it took {_values_text(request)}.", fraction=0.5)
+    beside = dialogues(REFUSED, TAKEN, APART, is_tame=True, names_foreign=True)
+    expect_answers(robot, beside, draw, fraction=0.5)
+    other = robot.parameters.values(FOREIGN)
     for frequency in (draw.choice((20.0, 25.0)), draw.choice((4.0, 5.0))):
         rate: dict[str, parameters.Value] = {"control_frequency": frequency}
         request = {**other, **rate} if frequency > 10.0 else {**rate, **other}
         _change(robot, request)
-        expect_rate(robot.command_rate(), frequency, f"After {_values_text(request)}", fraction=0.5)
+        expect_rate(robot.command_rate(1.0), frequency, f"After {values_text(request)}", fraction=0.5)
     stored = bench.set_use_sim_time(workspace)
     observation = "After a request for use_sim_time = True and slow_distance = 1.5, use_sim_time is still False"
     expect(stored is not False, f"{observation}: it is stored like any other.", fraction=0.5)
@@ -270,8 +263,4 @@ def draw_distances(draw: random.Random) -> tuple[float, float, float, float]:
 
 def _change(robot: Robot, request: Mapping[str, parameters.Value], fraction: float = 0.0) -> None:
     answer = robot.change(request)
-    expect(answer.accepted, f"It refused {_values_text(request)}: “{answer.reason}”.", fraction=fraction)
-
-
-def _values_text(request: Mapping[str, parameters.Value]) -> str:
-    return " and ".join(f"{name} = {value}" for name, value in request.items())
+    expect(answer.accepted, f"It refused {values_text(request)}: “{answer.reason}”.", fraction=fraction)

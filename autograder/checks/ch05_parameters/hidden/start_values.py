@@ -8,16 +8,29 @@ from random import Random
 
 import pytest
 
-from autograder.checking import Artifacts, CheckFailed, Shared, Workspace, drive, expect, group, hint, temporal
-from autograder.checking.probes import calls, parameters
-from autograder.checks.ch05_parameters.support import contract
+from autograder.checking import (
+    Artifacts,
+    CheckFailed,
+    Shared,
+    Workspace,
+    drive,
+    expect,
+    expect_each,
+    group,
+    hint,
+    temporal,
+)
+from autograder.checking.probes import parameters
+from autograder.checks.ch05_parameters.support import bench, contract
+from autograder.checks.ch05_parameters.support.answers import allowed_start, expect_start, subtlety
+from autograder.checks.ch05_parameters.support.drawn_requests import REFUSED, TAKEN, Request, starts, values_text
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, start_error
 from sim import Pose, RobotSpec, Simulation, World, box
 
 check = group("start")
-CONFIGURATION = "my_robot_package.configuration"
+STARTS = {REFUSED: 16, TAKEN: 6}  # numbers of drawn starts, all in one process
 RADIUS = 0.18  # m
-SECONDS = 20.0
+SECONDS = 16.0
 STOP_MARGIN = 0.02  # m between where it stands and where it should
 
 
@@ -137,55 +150,30 @@ def test_stops(configured: Configured, draw: Random, artifacts: Artifacts) -> No
 def test_contradictory_start(robot: Robot, workspace: Workspace, draw: Random) -> None:
     """It does not start with a safety distance that is not below the slow distance."""
     distance = robot.allowed("slow_distance", robot.allowed("safety_distance", draw.randrange(40, 90) / 100))
-    for safety, slow in ((robot.allowed("safety_distance", distance + 0.4), distance), (distance, distance)):
-        values = {"safety_distance": safety, "slow_distance": slow}
-        error = start_error(workspace, parameters.as_declared(values, robot.initial))
-        values_text = f"safety_distance {safety} and slow_distance {slow}"
-        fraction = 0.75 if safety == slow else 0.0
-        expect(error is not None, f"Started with {values_text}, the node runs.", fraction=fraction)
-        expect(not missing_from(error or "", values), f"It ends, but does not name {values_text}.", fraction=0.5)
-    frequency = draw.randrange(55, 90) + 0.5  # above the limits
-    fits, equal, start, beyond = _call_configuration(workspace, distance, frequency)
-    raised, message, sentence = (
-        start.raised,
-        parameters.shortened(start.message),
-        parameters.shortened(str(equal.value)),
-    )
-    observation = f"contradiction(0.5, 1.0) {f'raised {fits.raised}' if fits.raised else f'returned {fits.value!r}'}"
-    expect(fits.value == "", f"{observation}, instead of returning ''.", fraction=0.5)
-    observation = f"declare_configuration raised {raised or 'nothing'}, which is no ValueError"
-    expect("ValueError" in start.kinds, f"{observation}.", fraction=0.5)
-    observation = f"declare_configuration raised ValueError with “{message}”; contradiction says “{sentence}”"
-    expect(sentence[:100] in message, f"{observation}.", fraction=0.75)
-    observation = f"Started with control_frequency {frequency}, declare_configuration raised nothing"
+    values = {"safety_distance": robot.allowed("safety_distance", distance + 0.4), "slow_distance": distance}
+    error = start_error(workspace, parameters.as_declared(values, robot.initial))
+    expect(error is not None, f"Started with {values_text(values)}, the node runs.")
+    expect(not missing_from(error or "", values), f"It ends, but does not name {values_text(values)}.", fraction=0.5)
+    drawn: list[Request] = []
+    for kind, count in STARTS.items():
+        expect_each(starts(kind), drawn.append, draw, count=count)
+    beyond: dict[str, parameters.Value] = {"control_frequency": draw.randrange(55, 90) + 0.5}
+    inside = [allowed_start(robot, start) for start in ((), *drawn)]
+    *outcomes, outcome_beyond = bench.declare(workspace, [*inside, beyond])
+    for start, outcome in sorted(zip(inside, outcomes, strict=True), key=lambda pair: subtlety(pair[0])):
+        expect_start(start, outcome)
+    observation = f"Started with {values_text(beyond)}, declare_configuration raised nothing"
     expect(
-        bool(beyond.raised), f"{observation}: ROS refuses what is not in 1.0 to 50.0, and so should it.", fraction=0.75
+        bool(outcome_beyond.declared.raised),
+        f"{observation}: ROS refuses what is not in 1.0 to 50.0, and so should it.",
+        fraction=0.75,
     )
-
-
-def _call_configuration(workspace: Workspace, distance: float, frequency: float) -> tuple[calls.StepResult, ...]:
-    """Call contradiction with distances that fit and with equal ones, and declare with equal ones and a frequency."""
-    equal = parameters.override_arguments({"safety_distance": distance, "slow_distance": distance})
-    beyond = parameters.override_arguments({"control_frequency": frequency})
-    outcomes = calls.calls(
-        workspace,
-        CONFIGURATION,
-        calls.call("contradiction", 0.5, 1.0),
-        calls.call("contradiction", distance, distance),
-        calls.call("init", module="rclpy"),
-        calls.call("Node", "bench", module="rclpy.node", cli_args=["--ros-args", *equal]),
-        calls.call("declare_configuration", calls.result_of(3)),
-        calls.call("Node", "other_bench", module="rclpy.node", cli_args=["--ros-args", *beyond]),
-        calls.call("declare_configuration", calls.result_of(5)),
-        network=True,
-    )
-    return outcomes[0], outcomes[1], outcomes[4], outcomes[6]
 
 
 def _hall(draw: Random) -> Simulation:
     """Return a hall whose east wall is straight ahead of the robot, far beyond any slow distance."""
     world = World.from_segments(
-        box(draw.uniform(6.5, 7.5), 4.0).tolist(),
+        box(draw.uniform(5.5, 6.5), 4.0).tolist(),
         name="a hall",
         segment_names=["south wall", "east wall", "north wall", "west wall"],
         starts=[Pose(draw.uniform(-0.5, 0.0), draw.uniform(-0.5, 0.5), 0.0)],

@@ -1,12 +1,40 @@
-"""Calls the methods of the student's node without a harness, so that no request has to be sent."""
+"""Calls the student's functions and methods without a harness, so that no request has to be sent."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
 from autograder.checking import Workspace
 from autograder.checking.probes import calls, parameters
-from autograder.checks.ch05_parameters.support.contract import EXECUTABLE, PACKAGE
+from autograder.checks.ch05_parameters.support.contract import DEFAULTS, EXECUTABLE, PACKAGE
 
+CONFIGURATION = f"{PACKAGE}.configuration"
 MODULE = f"{PACKAGE}.nodes.{EXECUTABLE}"
+BARE: dict[str, Any] = {"start_parameter_services": False, "enable_rosout": False}  # such nodes are made quickly
+
+
+class Start(NamedTuple):
+    """What contradiction says about the distances of a start, and how declare_configuration ended."""
+
+    sentence: calls.StepResult
+    declared: calls.StepResult
+
+
+def declare(workspace: Workspace, starts: Sequence[Mapping[str, parameters.Value]]) -> list[Start]:
+    """Call declare_configuration on a node of its own for each of these sets of values."""
+    plan = calls.Plan()
+    add = plan.add
+    add(calls.call("init", module="rclpy"))
+    steps = []
+    for values in starts:
+        distances = (values.get(name, DEFAULTS[name]) for name in ("safety_distance", "slow_distance"))
+        arguments = ["--ros-args", *parameters.override_arguments(values)]
+        node = add(calls.call("Node", "bench", module="rclpy.node", cli_args=arguments, **BARE))
+        declared = add(calls.call("declare_configuration", calls.result_of(node)))
+        steps.append((add(calls.call("contradiction", *distances)), declared))
+    outcomes = calls.calls(workspace, CONFIGURATION, *plan.steps, network=True)
+    return [Start(outcomes[sentence], outcomes[declared]) for sentence, declared in steps]
 
 
 def call_validate(workspace: Workspace) -> tuple[parameters.Value, parameters.Value, parameters.Value]:
