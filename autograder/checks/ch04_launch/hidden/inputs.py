@@ -18,11 +18,12 @@ class Inputs:
         speed: a robot's speed in m/s, with a fraction.
         whole_speed: a robot's speed in m/s, without a decimal point.
         number_name: a robot's name that looks like a number.
-        quoted_name: a robot's name with quotation marks of both kinds.
+        quoted_name: a robot's name with quotation marks of both kinds, and other marks that YAML and Python know.
         names: the names of two robots.
         enough: a battery level that passes the self-test, in percent, with a fraction.
         whole_battery: another one, without a decimal point.
         empty: a battery level that fails it.
+        refused: texts for the argument report that are neither true nor false, though some conditions take them.
     """
 
     file: dict[str, float]
@@ -34,6 +35,7 @@ class Inputs:
     enough: float
     whole_battery: int
     empty: float
+    refused: tuple[str, ...]
 
 
 def draw_inputs(draw: random.Random) -> Inputs:
@@ -47,12 +49,13 @@ def draw_inputs(draw: random.Random) -> Inputs:
         },
         speed=round(draw.uniform(0.21, 0.45), 3),
         whole_speed=draw.randint(1, 3),
-        number_name=str(draw.randint(10, 99)),
-        quoted_name=f"""{first}'s "R{draw.randint(2, 9)}" robot""",
+        number_name=draw.choice(("{}", "0{}", "{}.50", "{}e3")).format(draw.randint(10, 99)),
+        quoted_name=rf"""{first}'s "R{draw.randint(2, 9)}": robot #{draw.randint(2, 9)}, [a] {{b}} \n""",
         names=(first, second),
         enough=draw.randint(21, 98) + 0.5,
         whole_battery=draw.randint(21, 98),
         empty=draw.randint(1, 18) + 0.5,
+        refused=("maybe", draw.choice(("1", "0")), draw.choice(("True", "TRUE", "False"))),
     )
 
 

@@ -15,7 +15,6 @@ from autograder.checks.ch04_launch.support.contract import DRIVER, PACKAGE, REPO
 
 check = group("robot")
 SHOWN_SECONDS = 5.0  # s of real time until a running node's line is shown
-REFUSED, CONDITIONS = ("maybe",), ("1",)  # values of report; IfCondition treats 1 as true
 REFUSE_SECONDS = 15.0  # s of real time until a launch that refuses an argument has ended
 TYPED = "ParameterValue(LaunchConfiguration(...), value_type=...) says which type the text becomes."
 
@@ -33,7 +32,7 @@ def test_arguments(launches: Launches) -> None:
 @check(points=2, covers="report", after=("arguments",), doc=contract.SUBSTITUTIONS)
 @hint("DeclareLaunchArgument takes choices=[...], a list of texts.")
 @hint("A value that is none of the choices ends the launch before anything is started.")
-def test_choices(workspace: Workspace, launches: Launches) -> None:
+def test_choices(workspace: Workspace, launches: Launches, inputs: Inputs) -> None:
     """Report can be true or false, and nothing else."""
     declared = launches.robot_arguments().get("report")
     expect(declared is not None, "The launch file declares no argument report.")
@@ -41,7 +40,7 @@ def test_choices(workspace: Workspace, launches: Launches) -> None:
     message = f"The argument report takes {', '.join(choices)}, instead of true and false."
     expect(sorted(choices) in ([], ["false", "true"]), message)
     # A launch file without choices may refuse a value by other means, so only a launch shows it.
-    for value in REFUSED if choices else (*REFUSED, *CONDITIONS):
+    for value in inputs.refused[:1] if choices else inputs.refused:
         with LaunchHarness(workspace, PACKAGE, ROBOT, {"report": value}) as harness:
             harness.wait_for(partial(_has_ended, harness), REFUSE_SECONDS)
             expect(

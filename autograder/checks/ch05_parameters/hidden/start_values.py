@@ -28,7 +28,7 @@ from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, 
 from sim import Pose, RobotSpec, Simulation, World, box
 
 check = group("start")
-STARTS = {REFUSED: 16, TAKEN: 6}  # numbers of drawn starts, all in one process
+STARTS = {REFUSED: 12, TAKEN: 4}  # numbers of drawn starts, all in one process
 RADIUS = 0.18  # m
 SECONDS = 16.0
 STOP_MARGIN = 0.02  # m between where it stands and where it should

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from autograder.checking import CheckFailed, ReceivedMessage, Workspace, expect
 from autograder.checking.probes import calls, node_callbacks
@@ -21,10 +22,11 @@ from autograder.checks.ch09_assessment.support.contract import (
     averages,
     decisions,
 )
-from autograder.checks.ch09_assessment.support.robot import NodeHarness, Start, near
+from autograder.checks.ch09_assessment.support.robot import MESSAGE_SECONDS, NodeHarness, Start, near
 
 READING_COUNT = 12  # readings in a series
 RECORDING_SECONDS = 2.2  # time for which readings are received, more than four default periods
+FLOAT32 = 1e-6  # the precision of a number in a message
 MAX_AGE = 0.1  # s between the stamp of a reading and its arrival
 
 
@@ -94,20 +96,43 @@ def expect_full_averages(
 
 def expect_decisions(
     harness: NodeHarness,
-    temperatures: list[float],
+    temperatures: Sequence[float],
     prefix: str,
     *,
     hot: float = HOT,
     cool: float = COOL,
     fraction: float = 0.0,
+    apart: float = MESSAGE_SECONDS,
 ) -> None:
-    """Fail the check unless the guard makes the right decisions on these temperatures."""
-    actual = [bool(message.cooling) for message in harness.send(temperatures)]
-    expect(len(actual) == len(temperatures), f"{len(temperatures)} averages became {len(actual)} decisions.")
-    expected = decisions(temperatures, hot, cool)
+    """Fail the check unless the guard makes right decisions on these temperatures, which come `apart` s apart."""
+    actual = [bool(message.cooling) for message in harness.send(temperatures, apart=apart)]
+    count = f"{len(temperatures)} averages became {len(actual)} decisions."
+    expect(len(actual) == len(temperatures), count, fraction=fraction)
+    allowed = decisions(temperatures, hot, cool)
     numbers = ", ".join(f"{celsius:g}" for celsius in temperatures)
-    message = f"{prefix}at {numbers} °C, cooling was {actual} and should have been {expected}."
-    expect(actual == expected, message[:1].upper() + message[1:], fraction=fraction)
+    wrong = next((i for i, decision in enumerate(actual) if decision not in allowed[i]), None)
+    message = f"{prefix}at {numbers} °C, cooling was {actual}; decision number {(wrong or 0) + 1} is wrong."
+    expect(wrong is None, message[:1].upper() + message[1:], fraction=fraction)
+
+
+def expect_passed_on(
+    temperatures: Sequence[float], decisions: Sequence[Any], stamp: tuple[int, int], *, fraction: float = 0.0
+) -> None:
+    """Fail the check unless these decisions have the temperatures and stamps of their averages.
+
+    The averages' stamps start with this one, in s and ns, and are a second apart.
+    """
+    expect(len(decisions) == len(temperatures), f"{len(temperatures)} averages became {len(decisions)} decisions.")
+    first, nanoseconds = stamp
+    for second, (celsius, decision) in enumerate(zip(temperatures, decisions, strict=True), first):
+        actual = decision.stamp
+        is_right = (actual.sec, actual.nanosec) == (second, nanoseconds)
+        observation = f"The decision's stamp is {actual.sec} s and {actual.nanosec} ns"
+        expectation = f"the average's, at {celsius:.1f} °C, was {second} s and {nanoseconds} ns."
+        is_partly_right = second > first or actual.sec == second
+        expect(is_right, f"{observation}; {expectation}", fraction=0.5 if is_partly_right else fraction)
+        is_same = math.isclose(decision.celsius, celsius, rel_tol=FLOAT32) or str(decision.celsius) == str(celsius)
+        expect(is_same, f"The decision on {celsius:.5f} °C says {decision.celsius:.5f} °C.", fraction=0.5)
 
 
 def expect_separate_windows(workspace: Workspace) -> None:

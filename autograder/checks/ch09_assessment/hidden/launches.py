@@ -9,13 +9,30 @@ from random import Random
 import pytest
 
 from autograder.checking import CheckFailed, Diagnosis, LaunchHarness, Workspace, expect, group, hint
-from autograder.checking.probes import installed, launch_probe
+from autograder.checking.probes import installed, launch_probe, parameters
 from autograder.checks.ch09_assessment.support import contract
-from autograder.checks.ch09_assessment.support.contract import COOL, GUARD, LAUNCH_FILE, PACKAGE, PROGRAMS
-from autograder.checks.ch09_assessment.support.robot import Types, require_built
+from autograder.checks.ch09_assessment.support.contract import (
+    COOL,
+    GUARD,
+    LAUNCH_FILE,
+    MEAN,
+    PACKAGE,
+    PERIOD,
+    PROGRAMS,
+    SMOOTHER,
+    SWING,
+    THERMOMETER,
+    WINDOW,
+)
+from autograder.checks.ch09_assessment.support.robot import Start, Types, require_built
 
 check = group("launch", doc=contract.LAUNCH_DOC)
 NODES = tuple(f"/{name}" for name in PROGRAMS)
+DEFAULTS: dict[str, dict[str, parameters.Value]] = {  # of the parameters that no argument sets
+    THERMOMETER: {"period": PERIOD, "mean": MEAN, "swing": SWING},
+    SMOOTHER: {"window": WINDOW},
+    GUARD: {"cool": COOL},
+}
 FIRST_SECONDS = 20.0  # real time for the first decision, which takes one period
 
 
@@ -76,7 +93,7 @@ def test_launches(launched: Launched) -> None:
 @check(points=2, covers=("hot-argument", "hot-cool"), after=("launches",))
 @hint("DeclareLaunchArgument('hot', default_value='60.0')")
 @hint("ParameterValue(LaunchConfiguration('hot'), value_type=float): else 55 becomes an integer.")
-def test_argument(workspace: Workspace, launched: Launched, hot: int, draw: Random) -> None:
+def test_argument(workspace: Workspace, launched: Launched, start: Start, hot: int, draw: Random) -> None:
     """Its argument hot, by default 60.0, becomes the guard's parameter, always as a float."""
     harness = launched.harness
     launch_probe.expect_parameters(harness, f"/{GUARD}", {"hot": float(hot)})
@@ -84,10 +101,16 @@ def test_argument(workspace: Workspace, launched: Launched, hot: int, draw: Rand
     expect(harness is launched.with_integer, f"Launched with hot:={hot}, guard does not run. {reason}", fraction=0.5)
     arguments = launch_probe.declared_arguments(workspace, PACKAGE, LAUNCH_FILE)
     launch_probe.expect_argument(arguments, "hot", "60.0", described=False)
-    try:
-        launch_probe.expect_parameters(harness, f"/{GUARD}", {"cool": COOL})
-    except CheckFailed as failed:
-        raise CheckFailed(f"Launched with hot:={hot} and nothing else: {failed.message}", fraction=0.75) from failed
+    for name, values in DEFAULTS.items():
+        launched_values = harness.parameters(f"/{name}", list(values)) or {}
+        if parameters.differences(launched_values, values):  # other checks test the node's own defaults
+            with start(name) as alone:
+                own = parameters.NodeParameters(alone, f"/{name}").values(*values)
+            others = parameters.differences(launched_values, own)
+            message = (
+                f"Launched with hot:={hot} and nothing else, {name} differs from {name} alone: {'; '.join(others)}."
+            )
+            expect(not others, message, fraction=0.75)
     fraction = hot + draw.randrange(100_001, 1_000_000, 2) / 1e6  # six digits, none of which may be lost
     with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": str(fraction)}) as precise:
         launch_probe.settle(precise, NODES)

@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from random import Random
 
 from autograder.checking import LOCKSTEP, CheckFailed, Workspace, expect, group, hint
 from autograder.checking.probes import namespaces
+from autograder.checks.ch09_assessment.hidden.drawn_temperatures import (
+    UNKNOWN,
+    expect_series,
+    expect_switching,
+    series,
+    switched,
+)
 from autograder.checks.ch09_assessment.hidden.expectations import (
     expect_averages,
     expect_decisions,
     expect_fresh_readings,
     expect_full_averages,
     expect_measured,
+    expect_passed_on,
     expect_separate_windows,
     student_reading,
 )
@@ -33,7 +42,6 @@ check = group("nodes")
 BUILT = ("installs",)
 BETWEEN = (COOL + 1.0, HOT - 1.0)  # degrees Celsius
 UNSUBSCRIBED_SECONDS = 2.2  # time after the start of a node before anything subscribes
-FLOAT32 = 1e-6  # the precision of a number in a message
 MARGIN = 0.002  # degrees: rounded to hundredths, such a temperature is no longer between the thresholds
 HUGE = 1e20  # degrees: added to a running sum, it erases all other numbers
 SILENCE = 2.5  # s without an average
@@ -105,16 +113,14 @@ def test_average(workspace: Workspace, start: Start, draw: Random) -> None:
     with start(SMOOTHER) as harness:
         harness.expect_in_graph()
         averages = harness.send(readings, first=7)
-    expect_averages([message.celsius for message in averages], readings, WINDOW)
-    stamps = [(message.stamp.sec, message.stamp.nanosec) for message in averages]
-    are_right = stamps == [(second, NANOSECONDS) for second in range(7, 7 + len(readings))]
-    expect(are_right, "The stamp of an average is not that of the newest reading.", fraction=0.66)
-    with start(SMOOTHER) as harness:
-        averages = harness.send([readings[0]] * QUEUE, apart=0.0)
-    message = (
-        f"Of {QUEUE} readings that came at once, {len(averages)} got an average: a queue of {QUEUE} holds them all."
-    )
-    expect(len(averages) == QUEUE, message, fraction=0.75)
+        expect_averages([message.celsius for message in averages], readings, WINDOW)
+        stamps = [(message.stamp.sec, message.stamp.nanosec) for message in averages]
+        are_right = stamps == [(second, NANOSECONDS) for second in range(7, 7 + len(readings))]
+        expect(are_right, "The stamp of an average is not that of the newest reading.", fraction=0.66)
+        expect_series(harness, series(), WINDOW, draw, readings, fraction=0.5)
+        count = len(harness.send([readings[0]] * QUEUE, apart=0.0))
+    message = f"Of {QUEUE} readings that came at once, {count} got an average: a queue of {QUEUE} holds them all."
+    expect(count == QUEUE, message, fraction=0.75)
     expect_separate_windows(workspace)
 
 
@@ -134,11 +140,8 @@ def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) 
         has_started = not refuses(workspace, types, SMOOTHER, window=limit)
         message = f"smoother {'started' if has_started else 'did not start'} with window {limit}."
         expect(has_started is is_valid, message, fraction=0.5)
-    cold = [readings[0], 0.0, *(-celsius for celsius in readings[:3])]
     with start(SMOOTHER, window=1) as harness:
-        averages = harness.send(cold)
-    prefix = f"At {', '.join(map(str, cold))} °C: "
-    expect_averages([message.celsius for message in averages], cold, 1, prefix, fraction=0.75)
+        expect_series(harness, series(0.0, low=-80.0), 1, draw, [], fraction=0.75)
 
 
 @check(points=2, covers=("not-finite", "window"), after=("average",))
@@ -147,35 +150,33 @@ def test_no_number(start: Start, draw: Random) -> None:
     """A reading that is nan or infinite does not count, and nothing is published for it."""
     first, second = round(draw.uniform(30.0, 40.0), 1), round(draw.uniform(50.0, 60.0), 1)
     with start(SMOOTHER, window=2) as harness:  # an ignored reading takes no place in the window
-        averages = harness.send([first, math.nan, math.inf, -math.inf, second])
-        later_averages = harness.send([HUGE, first, second])
-    actual = [round(message.celsius, 2) for message in averages]
-    observation = f"{first}, nan, inf, -inf, {second} °C became {actual}"
-    expected = [first, (first + second) / 2]
-    is_last_right = bool(actual) and abs(actual[-1] - expected[-1]) <= 0.01
-    expect(is_last_right, f"{observation}: the last average should have been {expected[-1]:.2f}.")
-    expect(len(actual) <= 2, f"{observation}: there are averages for what is no number.", fraction=0.5)
-    is_forgotten = bool(later_averages) and abs(later_averages[-1].celsius - expected[-1]) <= 0.01
-    expect(
-        is_forgotten,
-        f"Two readings after one of {HUGE:g} °C, which is finite, the average still has it.",
-        fraction=0.75,
-    )
+        averages = harness.send([first, *UNKNOWN, second])
+        actual = [round(message.celsius, 2) for message in averages]
+        observation = f"{first}, nan, inf, -inf, {second} °C became {actual}"
+        expected = (first + second) / 2
+        is_last_right = bool(actual) and abs(actual[-1] - expected) <= 0.01
+        expect(is_last_right, f"{observation}: the last average should have been {expected:.2f}.")
+        expect(len(actual) <= 2, f"{observation}: there are averages for what is no number.", fraction=0.5)
+        readings = [first, second]
+        expect_series(harness, series(*UNKNOWN), 2, draw, readings, fraction=0.5)
+        expect_series(harness, series(HUGE, -HUGE), 2, draw, readings, fraction=0.75)
 
 
 @check(points=4, covers=("hysteresis", "guard-topics"), after=BUILT, doc=contract.NODES_DOC)
 @hint("Two thresholds, and a decision that is remembered.", "elif: from hot on True, down to cool False.")
 def test_hysteresis(start: Start, draw: Random) -> None:
     """Guard switches the fan on when it is hot, off when it is cool, and leaves it as it was between the two."""
-    between = [round(draw.uniform(*BETWEEN), 1) for _ in range(4)]
-    cold, warm = round(draw.uniform(10.0, 40.0), 1), round(draw.uniform(70.0, 90.0), 1)
+    between, cold, warm = (round(draw.uniform(*limits), 1) for limits in (BETWEEN, (10.0, 40.0), (70.0, 90.0)))
     with start(GUARD) as harness:
         harness.expect_in_graph()
+        at_start = [bool(message.cooling) for message in harness.send([between])]
         expect_decisions(harness, [cold, warm, cold], "")
-        expect_decisions(harness, [warm, *between[:2], cold, *between[2:]], "Between the thresholds: ", fraction=0.5)
-        expect_decisions(harness, [HOT, COOL, HOT - 0.1, HOT, COOL + 0.1], "At the thresholds: ", fraction=0.75)
-    with start(GUARD) as harness:
-        expect_decisions(harness, between[:1], "At the start the fan is off: ", fraction=0.75)
+        expect_switching(harness, switched(), draw, "Between the thresholds: ", fraction=0.5)
+        edges = switched(HOT, COOL, HOT - 0.1, COOL + 0.1)
+        expect_switching(harness, edges, draw, "At the thresholds: ", fraction=0.75)
+        expect(
+            at_start == [False], f"At first, at {between} °C, cooling was {at_start}: the fan is off.", fraction=0.75
+        )
 
 
 @check(points=2, covers=("hot-cool", "hysteresis", "at-start"), after=("hysteresis",), doc=contract.PARAMETERS_DOC)
@@ -187,29 +188,37 @@ def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Rand
     with start(GUARD, hot=hot, cool=cool) as harness:
         prefix = f"With hot {hot} and cool {cool}: "
         expect_decisions(harness, [cool - 1.0, hot + 1.0, cool - 1.0], prefix, hot=hot, cool=cool)
-        between = [cool + 1.0, hot + 1.0, cool + 1.0, cool - 1.0, hot - 1.0]
-        expect_decisions(harness, between, prefix, hot=hot, cool=cool, fraction=0.5)
-        close = [hot - MARGIN, hot + 1.0, cool + MARGIN, cool - 1.0]
-        expect_decisions(harness, close, prefix, hot=hot, cool=cool, fraction=0.75)
+        expect_switching(harness, switched(hot=hot, cool=cool), draw, prefix, fraction=0.5, hot=hot, cool=cool)
+        edges = switched(hot - MARGIN, cool + MARGIN, hot=hot, cool=cool)
+        expect_switching(harness, edges, draw, prefix, fraction=0.75, hot=hot, cool=cool)
+        expect_decisions(harness, [cool - 1.0], prefix, hot=hot, cool=cool, fraction=0.75)
         harness.run(SILENCE)
         silence_prefix = f"{prefix}after {SILENCE} s without an average, "
         expect_decisions(harness, [cool + 1.0], silence_prefix, hot=hot, cool=cool, fraction=0.75)
         harness.try_to_set(hot=hot + 5.0, cool=cool - 5.0)
         prefix = f"Started with hot {hot} and cool {cool}, both then set 5 °C further apart: "
         expect_decisions(harness, [hot + 1.0, cool - 1.0], prefix, hot=hot, cool=cool, fraction=0.5)
-    for high, low in ((hot, hot), (hot, hot + 5.0), (hot, math.nan), (math.nan, cool)):
-        refused = refuses(workspace, types, GUARD, hot=high, cool=low)
-        expect(refused, f"guard started with hot {high} and cool {low}.", fraction=0.5)
+    odd: dict[str, float] = draw.choice(({"hot": 0.0, "cool": -20.0}, {"hot": 20.0, "cool": 0.0}))
+    with start(GUARD, **odd) as harness:
+        expect_switching(harness, switched(**odd), draw, f"With {_text(odd)}: ", fraction=0.75, **odd)
+    for wrong in (
+        {"hot": hot, "cool": hot},
+        {"hot": COOL - MARGIN},
+        {"cool": HOT + 5.0},
+        {"cool": math.nan},
+        {"hot": math.nan},
+    ):
+        refused = refuses(workspace, types, GUARD, **wrong)
+        expect(refused, f"guard started with {_text(wrong)}.", fraction=0.5)
 
 
 @check(points=1, covers="unknown", after=("hysteresis",))
 @hint("nan >= 60.0 is False, and so is nan <= 50.0.", "Ask math.isfinite first.")
-def test_unknown(start: Start) -> None:
+def test_unknown(start: Start, draw: Random) -> None:
     """When the temperature is no finite number, it is not known, and the fan runs."""
     with start(GUARD) as harness:
-        for unknown in (math.nan, -math.inf):
-            # The contract does not define decisions between the thresholds after an unknown temperature.
-            expect_decisions(harness, [20.0, unknown, 20.0, 70.0, unknown, 20.0], "")
+        expect_decisions(harness, [20.0, math.nan, 20.0, 70.0, -math.inf, 20.0], "")
+        expect_switching(harness, switched(*UNKNOWN), draw, fraction=0.5)
 
 
 @check(points=1, covers=("guard", "guard-topics"), after=("hysteresis",))
@@ -219,21 +228,11 @@ def test_passes_on(start: Start, draw: Random) -> None:
     temperatures = [draw.uniform(70.0, 90.0), draw.uniform(*BETWEEN), draw.uniform(20.0, 40.0)]
     first, nanoseconds = STAMP[0] + draw.randint(100, 999), STAMP[1]
     with start(GUARD) as harness:
-        decisions = harness.send(temperatures, first, nanoseconds=nanoseconds)
-        answers = harness.send([math.nan])  # test_unknown tests whether there is one
-    expect(len(decisions) == len(temperatures), f"{len(temperatures)} averages became {len(decisions)} decisions.")
-    for second, (celsius, decision) in enumerate(zip(temperatures, decisions, strict=True), first):
-        stamp = decision.stamp
-        is_right = (stamp.sec, stamp.nanosec) == (second, nanoseconds)
-        observation = f"The decision's stamp is {stamp.sec} s and {stamp.nanosec} ns"
-        expectation = f"the average's, at {celsius:.1f} °C, was {second} s and {nanoseconds} ns."
-        is_partly_right = second > first or stamp.sec == second
-        expect(is_right, f"{observation}; {expectation}", fraction=0.5 if is_partly_right else 0.0)
-        is_same = math.isclose(decision.celsius, celsius, rel_tol=FLOAT32)
-        expect(is_same, f"The decision on {celsius:.5f} °C says {decision.celsius:.5f} °C.", fraction=0.5)
-    numbers = [answer.celsius for answer in answers if not math.isnan(answer.celsius)]
-    expect(not numbers, f"The decision on nan °C, which is not known, says {numbers} °C.", fraction=0.5)
-    with start(GUARD) as harness:
+        expect_passed_on(temperatures, harness.send(temperatures, first, nanoseconds=nanoseconds), (first, nanoseconds))
+        others = [*UNKNOWN, -temperatures[0], HUGE]
+        decisions = harness.send(others, first, nanoseconds=nanoseconds)
+        if len(decisions) == len(others):  # test_unknown tests whether there is one for each
+            expect_passed_on(others, decisions, (first, nanoseconds), fraction=0.5)
         count = len(harness.send(temperatures[:1] * QUEUE, apart=0.0))
     observation = f"Of {QUEUE} averages that came at once, {count} got a decision: a queue of {QUEUE} holds them all."
     expect(count == QUEUE, observation, fraction=0.5)
@@ -257,10 +256,14 @@ def test_relative(workspace: Workspace) -> None:
     expect(not messages, " ".join(messages))
 
 
+def _text(values: Mapping[str, float]) -> str:
+    return " and ".join(f"{name} {value}" for name, value in values.items())
+
+
 def draw_wave(draw: Random) -> tuple[float, float, float]:
     """Return a period in s, a mean and a swing in degrees Celsius."""
     period = draw.choice((0.1, 0.2, 0.8))
-    return period, round(draw.uniform(20.0, 40.0), 1), round(draw.uniform(3.0, 9.0), 1)
+    return period, draw.choice((-1, 1)) * round(draw.uniform(20.0, 40.0), 1), round(draw.uniform(3.0, 9.0), 1)
 
 
 def draw_thresholds(draw: Random) -> tuple[float, float]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from itertools import accumulate
 from statistics import fmean
 
 SHEET = "assessment/answers.yaml"  # below src
@@ -40,17 +39,28 @@ def reading(number: int, mean: float = MEAN, swing: float = SWING) -> float:
     return mean + swing * math.sin(math.tau * number / READINGS_PER_TURN)
 
 
-def averages(readings: list[float], window: int = WINDOW) -> list[float]:
-    """Return the average after each reading. All readings are finite."""
-    return [fmean(readings[max(0, stop - window) : stop]) for stop in range(1, len(readings) + 1)]
+def windows(readings: Iterable[float], window: int = WINDOW) -> list[list[float]]:
+    """Return the readings that each average is made of. A reading that is not finite counts for none."""
+    finite = [celsius for celsius in readings if math.isfinite(celsius)]
+    return [finite[max(0, stop - window) : stop] for stop in range(1, len(finite) + 1)]
 
 
-def decisions(temperatures: Iterable[float], hot: float = HOT, cool: float = COOL) -> list[bool]:
-    """Return whether the fan runs after each temperature. It is off at first."""
+def averages(readings: Iterable[float], window: int = WINDOW) -> list[float]:
+    """Return the average after each finite reading."""
+    return [fmean(newest) for newest in windows(readings, window)]
 
-    def decide(cooling: bool, celsius: float) -> bool:
-        if not math.isfinite(celsius) or celsius >= hot:
-            return True
-        return cooling and celsius > cool
 
-    return list(accumulate(temperatures, decide, initial=False))[1:]
+def decisions(temperatures: Iterable[float], hot: float = HOT, cool: float = COOL) -> list[set[bool]]:
+    """Return whether the fan may run after each temperature. It is off at first.
+
+    Both decisions are allowed between the thresholds, after a temperature that is not finite.
+    """
+    allowed, remembered = [], {False}
+    for celsius in temperatures:
+        if not math.isfinite(celsius):
+            allowed.append({True})
+            remembered = {False, True}
+            continue
+        remembered = {True} if celsius >= hot else {False} if celsius <= cool else remembered
+        allowed.append(remembered)
+    return allowed
