@@ -60,9 +60,8 @@ def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None
     current = {"safety_distance": safety, "slow_distance": slow}
     for name in reversed(DISTANCES):  # each also fits the default of the other
         _change(robot, {name: current[name]})
-    requests: list[dict[str, parameters.Value]]
     requests = [{"safety_distance": far}, {"slow_distance": near}, {"slow_distance": near, "safety_distance": far}]
-    pairs = [{**current, **request} for request in requests]
+    pairs: list[dict[str, float]] = [{**current, **request} for request in requests]
     outcomes = calls.calls(
         workspace, f"{PACKAGE}.configuration", *(calls.call("contradiction", *pair.values()) for pair in pairs)
     )

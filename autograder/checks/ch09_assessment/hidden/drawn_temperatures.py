@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
-from functools import partial
+from collections.abc import Iterable, Sequence
 from random import Random
 from statistics import fmean
 
@@ -56,12 +55,20 @@ def expect_series(
 
 
 def expect_switching(
-    harness: NodeHarness, drawn: Temperatures, draw: Random, prefix: str = "", *, fraction: float, **thresholds: float
+    harness: NodeHarness,
+    drawn: Temperatures,
+    draw: Random,
+    prefix: str = "",
+    *,
+    fraction: float,
+    hot: float = HOT,
+    cool: float = COOL,
 ) -> None:
     """Fail the check unless a guard makes right decisions on each of these series."""
-    judge: Callable[[list[float]], None] = partial(
-        expect_decisions, harness, prefix=prefix, fraction=fraction, apart=_apart(harness), **thresholds
-    )
+
+    def judge(new: list[float]) -> None:
+        expect_decisions(harness, new, prefix, hot=hot, cool=cool, fraction=fraction, apart=_apart(harness))
+
     expect_each(drawn, judge, draw, count=_count(harness))
 
 
