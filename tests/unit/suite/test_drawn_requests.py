@@ -89,7 +89,6 @@ WRONG: dict[str, tuple[str, Validate]] = {
     "by the last name": ("contradiction", lambda node, new: [*new][-1] not in DISTANCES or _right(node, new)),
     "both alone": ("contradiction", lambda node, new: not set(DISTANCES) <= set(new) or _right(node, new)),
     "one alone": ("contradiction", lambda node, new: set(DISTANCES) <= set(new) or _right(node, new)),
-    "by the defaults": ("contradiction", lambda _, new: fits(new)),
     "in the order of the request": ("together", _one_after_the_other),
     "a gap": ("together", lambda node, new: (v := {**node.stored, **new})[SLOW] - v[SAFETY] > 0.1),
     "within the limits": ("together", lambda node, new: _right(node, new) and not {0.2, 3.0} & {*new.values()}),

@@ -171,7 +171,8 @@ def test_hysteresis(start: Start, draw: Random) -> None:
         harness.expect_in_graph()
         at_start = [bool(message.cooling) for message in harness.send([between])]
         expect_decisions(harness, [cold, warm, cold], "")
-        expect_switching(harness, switched(), draw, "Between the thresholds: ", fraction=0.5)
+        expect_decisions(harness, [warm, between, cold, between], "Between the thresholds: ", fraction=0.5)
+        expect_decisions(harness, [HOT, COOL, HOT - 0.1, HOT, COOL + 0.1], "At the thresholds: ", fraction=0.75)
         edges = switched(HOT, COOL, HOT - 0.1, COOL + 0.1)
         expect_switching(harness, edges, draw, "At the thresholds: ", fraction=0.75)
         expect(
@@ -188,7 +189,8 @@ def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Rand
     with start(GUARD, hot=hot, cool=cool) as harness:
         prefix = f"With hot {hot} and cool {cool}: "
         expect_decisions(harness, [cool - 1.0, hot + 1.0, cool - 1.0], prefix, hot=hot, cool=cool)
-        expect_switching(harness, switched(hot=hot, cool=cool), draw, prefix, fraction=0.5, hot=hot, cool=cool)
+        between = [cool + 1.0, hot + 1.0, cool + 1.0, cool - 1.0, hot - 1.0]
+        expect_decisions(harness, between, prefix, hot=hot, cool=cool, fraction=0.5)
         edges = switched(hot - MARGIN, cool + MARGIN, hot=hot, cool=cool)
         expect_switching(harness, edges, draw, prefix, fraction=0.75, hot=hot, cool=cool)
         expect_decisions(harness, [cool - 1.0], prefix, hot=hot, cool=cool, fraction=0.75)
@@ -200,7 +202,8 @@ def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Rand
         expect_decisions(harness, [hot + 1.0, cool - 1.0], prefix, hot=hot, cool=cool, fraction=0.5)
     odd: dict[str, float] = draw.choice(({"hot": 0.0, "cool": -20.0}, {"hot": 20.0, "cool": 0.0}))
     with start(GUARD, **odd) as harness:
-        expect_switching(harness, switched(**odd), draw, f"With {_text(odd)}: ", fraction=0.75, **odd)
+        both_ways = [odd["hot"] + 1.0, odd["cool"] + 1.0, odd["cool"] - 1.0, odd["hot"] - 1.0]
+        expect_decisions(harness, both_ways, f"With {_text(odd)}: ", fraction=0.75, **odd)
     for wrong in (
         {"hot": hot, "cool": hot},
         {"hot": COOL - MARGIN},
