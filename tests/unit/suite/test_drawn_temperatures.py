@@ -79,9 +79,9 @@ def test_temperatures_tell_smoothers_apart(
 @pytest.mark.parametrize(
     ("hot", "cool", "edges", "compare", "is_right"),
     [
-        (60.0, 50.0, (60.0, 50.0), lambda celsius: (celsius >= 60.0, celsius <= 50.0), True),
-        (60.0, 50.0, (60.0, 50.0), lambda celsius: (celsius > 60.0, celsius <= 50.0), False),
-        (60.0, 50.0, (60.0, 50.0), lambda celsius: (celsius >= 60.0, celsius < 50.0), False),
+        (60.0, 50.0, (60.0, 60.0, 50.0, 50.0), lambda celsius: (celsius >= 60.0, celsius <= 50.0), True),
+        (60.0, 50.0, (60.0, 60.0, 50.0, 50.0), lambda celsius: (celsius > 60.0, celsius <= 50.0), False),
+        (60.0, 50.0, (60.0, 60.0, 50.0, 50.0), lambda celsius: (celsius >= 60.0, celsius < 50.0), False),
         (60.0, 50.0, (), lambda celsius: (celsius >= 60.0, celsius < 60.0), False),
         (60.0, 50.0, drawn.UNKNOWN, lambda celsius: (celsius >= 60.0, celsius <= 50.0), False),
         (0.0, -20.0, (), lambda celsius: (abs(celsius) >= 0.0, celsius <= -20.0), False),
