@@ -18,11 +18,15 @@ from typing import Any, TypeVar
 
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis.errors import Flaky
+from hypothesis.internal.conjecture import providers
 from hypothesis.strategies import DrawFn, SearchStrategy, composite
 
 from autograder.suite.declaration import CheckFailed
 
 Case = TypeVar("Case")
+# Hypothesis would also draw constants of all modules loaded so far. The cases would then depend on these modules, and
+# reading them takes half a second.
+providers._get_local_constants = lambda: providers._local_constants
 SHRINKS = 200  # attempts to draw a simpler case
 
 

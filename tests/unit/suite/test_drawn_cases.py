@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
 import random
+from pathlib import Path
 
 import pytest
 from hypothesis import strategies as st
@@ -24,6 +26,16 @@ def drawn(seed: int, count: int = 60) -> list[int]:
 def test_the_same_seed_draws_the_same_cases() -> None:
     assert drawn(1) == drawn(1)
     assert drawn(1) != drawn(2)
+
+
+def test_the_cases_do_not_depend_on_the_modules_that_are_loaded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = drawn(8, count=200)
+    (tmp_path / "module_of_constants.py").write_text("NUMBERS = (4321, 4322, 4323, 4324, 4325)\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    importlib.import_module("module_of_constants")
+    assert drawn(8, count=200) == before
 
 
 def test_a_rule_that_holds_is_judged_as_often_as_asked() -> None:

@@ -51,7 +51,7 @@ def test_a_robot_that_keeps_to_the_rule_drives_far_enough_and_touches_nothing(na
 def test_a_near_obstacle_is_measurable_and_within_the_sector_for_every_limit() -> None:
     assert all(RANGE_MIN < near < 0.2 for near in (*NEAR, JUST_AHEAD.value))
     assert all(0.0 < bearing < nodes.HALF_SECTOR - 6.0 for bearing in BESIDE)
-    for low, high, other_distance, valid, phantom in OTHER_LIMITS:
+    for (low, high), other_distance, (valid, phantom) in OTHER_LIMITS:
         assert low <= valid <= high <= RANGE_MAX
         assert not low <= phantom <= high
         assert other_distance > nodes.SAFETY_DISTANCE

@@ -10,7 +10,8 @@ from geometry_msgs.msg import Twist
 from rclpy.action import get_action_names_and_types
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
-from autograder.checking import LOCKSTEP, expect, expect_each, group, hint
+from autograder.checking import LOCKSTEP, expect, group, hint
+from autograder.checking.drawn_cases import expect_each
 from autograder.checking.probes import message_period
 from autograder.checks.ch03_interfaces.hidden.goals import INVALID_GOALS, PLAIN_DISTANCE, VALID_GOALS
 from autograder.checks.ch03_interfaces.support import contract

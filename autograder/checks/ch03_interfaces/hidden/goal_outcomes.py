@@ -10,7 +10,8 @@ from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Twist
 from hypothesis import strategies as st
 
-from autograder.checking import LOCKSTEP, REAL, Goal, ReceivedMessage, expect, expect_each, group, hint
+from autograder.checking import LOCKSTEP, REAL, Goal, ReceivedMessage, expect, group, hint
+from autograder.checking.drawn_cases import expect_each
 from autograder.checks.ch03_interfaces.hidden.action import (
     LONG_SECONDS,
     MOTION_CHECK,

@@ -8,7 +8,8 @@ from dataclasses import replace
 
 from hypothesis import strategies as st
 
-from autograder.checking import LOCKSTEP, REAL, expect, expect_each, group, hint
+from autograder.checking import LOCKSTEP, REAL, expect, group, hint
+from autograder.checking.drawn_cases import expect_each
 from autograder.checks.ch03_interfaces.hidden.trips import (
     NO_PERCENTAGES,
     Trip,

@@ -8,7 +8,8 @@ import random
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import BatteryState
 
-from autograder.checking import LOCKSTEP, ReceivedMessage, expect, expect_each, group, hint
+from autograder.checking import LOCKSTEP, ReceivedMessage, expect, group, hint
+from autograder.checking.drawn_cases import expect_each
 from autograder.checking.probes import late_joiner, message_period
 from autograder.checks.ch03_interfaces.hidden.trips import NO_PERCENTAGES, PERCENTAGES, whole_percents
 from autograder.checks.ch03_interfaces.support import contract

@@ -7,7 +7,8 @@ from collections.abc import Collection
 
 from hypothesis.strategies import SearchStrategy
 
-from autograder.checking import LOCKSTEP, expect, expect_each
+from autograder.checking import LOCKSTEP, expect
+from autograder.checking.drawn_cases import expect_each
 from autograder.checking.probes import parameters
 from autograder.checks.ch05_parameters.support import bench
 from autograder.checks.ch05_parameters.support.drawn_requests import (

@@ -11,7 +11,8 @@ from typing import Any, TypeVar
 
 from hypothesis import strategies as st
 
-from autograder.checking import CheckFailed, expect_each
+from autograder.checking import CheckFailed
+from autograder.checking.drawn_cases import expect_each
 
 LOW, HIGH = 0.2, 6.0  # m: the limits of a usual lidar
 BEYOND_LIMIT = 1e-4  # m beyond a limit, more than a rounding error

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from rclpy.time import Time
 from sensor_msgs.msg import LaserScan
 
-from autograder.checking import LOCKSTEP, expect, expect_each, group, hint
+from autograder.checking import LOCKSTEP, expect, group, hint
+from autograder.checking.drawn_cases import expect_each
 from autograder.checks.ch08_capstone.hidden.drawn_scans import (
     OTHER_LIMITS,
     USUAL_LIMITS,

@@ -6,7 +6,8 @@ import math
 import random
 from dataclasses import replace
 
-from autograder.checking import LOCKSTEP, expect, expect_each, group, hint
+from autograder.checking import LOCKSTEP, expect, group, hint
+from autograder.checking.drawn_cases import expect_each
 from autograder.checking.probes import message_period
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden.drawn_drives import (

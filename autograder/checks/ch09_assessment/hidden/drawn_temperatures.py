@@ -9,7 +9,8 @@ from statistics import fmean
 
 from hypothesis import strategies as st
 
-from autograder.checking import LOCKSTEP, expect, expect_each
+from autograder.checking import LOCKSTEP, expect
+from autograder.checking.drawn_cases import expect_each
 from autograder.checks.ch09_assessment.hidden.expectations import expect_decisions
 from autograder.checks.ch09_assessment.support.contract import COOL, HOT, TOLERANCE, windows
 from autograder.checks.ch09_assessment.support.robot import MESSAGE_SECONDS, NodeHarness
