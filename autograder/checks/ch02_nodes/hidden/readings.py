@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+from functools import partial
 
 from hypothesis import strategies as st
 
@@ -73,13 +74,8 @@ def test_phantoms(robot: Robot, reactions: Reactions, draw: random.Random) -> No
     expect_each(phantoms, lambda case: reactions.expect_for(robot, case), draw, count=cases(robot) // 2)
     for limits, fill, readings in OTHER_LIMITS:
         edges = drawn_scans(st.sampled_from(readings), st.just(fill), lidars=USUAL_LIDAR, limits=limits)
-        fraction = 0.75 if math.isinf(fill) else 0.0
-        expect_each(
-            edges,
-            lambda case, fraction=fraction: reactions.expect_for(robot, case, fraction=fraction),
-            draw,
-            count=cases(robot) // 4,
-        )
+        expect = partial(reactions.expect_for, robot, fraction=0.75 if math.isinf(fill) else 0.0)
+        expect_each(edges, expect, draw, count=cases(robot) // 4)
     far = scan(fill=5.0, limits=(RANGE_MIN, 10.0))
     reactions.expect_forward(
         robot.see(far), f"With 5 m of free space all around, from a lidar of {RANGE_MIN:g} to 10 m"

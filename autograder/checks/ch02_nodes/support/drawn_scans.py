@@ -91,9 +91,9 @@ def nearest_ahead(message: LaserScan) -> set[float | None]:
     counts = np.isinf(ranges) | ((ranges >= message.range_min) & (ranges <= message.range_max))
     inside = counts & (np.abs(degrees) < HALF_SECTOR - EDGE)
     on_edge = counts & ~inside & (np.abs(degrees) <= HALF_SECTOR + EDGE)
-    candidates: set[float | None] = {float(reading) for reading in ranges[on_edge]}
     nearest = _smallest(ranges[inside])
-    return {nearest, *(reading for reading in candidates if nearest is None or reading < nearest)}
+    on_edges = map(float, ranges[on_edge])
+    return {nearest, *(reading for reading in on_edges if nearest is None or reading < nearest)}
 
 
 def is_near(distance: float) -> bool:

@@ -9,6 +9,7 @@ from random import Random
 import pytest
 
 from autograder.checking import (
+from autograder.checking.drawn_cases import expect_each
     Artifacts,
     CheckFailed,
     Shared,
