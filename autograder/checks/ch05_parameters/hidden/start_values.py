@@ -9,18 +9,17 @@ from random import Random
 import pytest
 
 from autograder.checking import (
-from autograder.checking.drawn_cases import expect_each
     Artifacts,
     CheckFailed,
     Shared,
     Workspace,
     drive,
     expect,
-    expect_each,
     group,
     hint,
     temporal,
 )
+from autograder.checking.drawn_cases import expect_each
 from autograder.checking.probes import parameters
 from autograder.checks.ch05_parameters.support import bench, contract
 from autograder.checks.ch05_parameters.support.answers import allowed_start, expect_start, subtlety
