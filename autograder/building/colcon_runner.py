@@ -4,13 +4,18 @@
 
 To build one Python package, colcon starts Python three times for its setup.py, mostly to import setuptools. If this
 process was forked, they are forked, too.
+
+Two threads of colcon write: one prints what the packages' builds do, the other logs. Each print is one write here, so
+no log line comes between a line and its end.
 """
 
 from __future__ import annotations
 
+import builtins
 import importlib
 import sys
 from pathlib import Path
+from typing import TextIO
 
 
 def main() -> int | str | None:
@@ -19,8 +24,19 @@ def main() -> int | str | None:
     sys.argv[0] = "colcon"
     if fork_children := globals().get("fork_children"):  # set by the fork server
         fork_children()
+    builtins.print = print_in_one_write
     status: int | str | None = importlib.import_module("colcon_core.command").main()
     return status
+
+
+def print_in_one_write(
+    *values: object, sep: str | None = None, end: str | None = None, file: TextIO | None = None, flush: bool = False
+) -> None:
+    """Do what `print` does; `print` writes each value, and the end of the line, by a call of its own."""
+    stream = sys.stdout if file is None else file
+    stream.write((" " if sep is None else sep).join(map(str, values)) + ("\n" if end is None else end))
+    if flush:
+        stream.flush()
 
 
 if __name__ == "__main__":

@@ -93,10 +93,9 @@ def build_both_ways(scratch: Path, packages: list[list[str]]) -> list[dict[str, 
 def relevant_lines(output: str) -> set[str]:
     """Return the lines about packages and errors, as a set: colcon mixes its children's streams in any order.
 
-    Its own threads share stderr, so one may log before another has ended its line. Since Python 3.13, the traceback of
-    a started program also shows the source of `python -c`.
+    Since Python 3.13, the traceback of a started program also shows the source of `python -c`.
     """
-    text = re.sub(r" (ERROR|WARNING):", r"\n\1:", DIFFERS_BETWEEN_RUNS.sub("", output))
+    text = DIFFERS_BETWEEN_RUNS.sub("", output)
     lines = (line.strip() for line in text.splitlines() if re.search(r"speed_guard|setup\.py|[Ee]rror|status", line))
     return {line for line in lines if not line.startswith("import sys;")}
 
