@@ -24,7 +24,7 @@ def main() -> int | str | None:
     sys.argv[0] = "colcon"
     if fork_children := globals().get("fork_children"):  # set by the fork server
         fork_children()
-    builtins.print = print_in_one_write
+    builtins.print = print_in_one_write  # type: ignore[assignment]
     status: int | str | None = importlib.import_module("colcon_core.command").main()
     return status
 
