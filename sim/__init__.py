@@ -1,4 +1,4 @@
-"""A 2D lidar simulator: an exact, pure core that steps robots through a world of walls.
+"""A 2D lidar simulator. Its core consists of pure functions that move robots in a world of walls, with exact results.
 
 >>> from sim import Command, Simulation, World, box, observe, start, step
 >>> simulation = Simulation(World.from_segments(box(4.0, 3.0)))

@@ -1,4 +1,4 @@
-"""The simulator's command line: `python -m sim WORLD` starts it as a ROS 2 node; the other verbs draw and export."""
+"""The simulator's command line. `python -m sim WORLD` starts it as a ROS 2 node; other commands draw and export."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _THEME = click.option("--theme", type=click.Choice(["light", "dark"]), default="
 
 
 class _WorldFirst(click.Group):
-    """A group whose verb `run` may be left out: a first word that is no verb is the world."""
+    """A group in which the command `run` is optional: a first argument that is not a command is the world."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         if args and not args[0].startswith("-") and args[0] not in self.commands:
@@ -46,7 +46,7 @@ python -m sim teleop                 drive a robot by the keys of this terminal
 
 @click.group(cls=_WorldFirst, help=_HELP, context_settings={"help_option_names": ["-h", "--help"]})
 def main() -> None:
-    """Hold the verbs."""
+    """Group the commands."""
 
 
 @main.command(context_settings={"ignore_unknown_options": True, "allow_extra_args": True})
@@ -85,7 +85,7 @@ def run(
         f"start_paused:={str(paused).lower()}",
     )
     arguments = [text for parameter in parameters for text in ("-p", parameter)]
-    # The user's own arguments come last, so that they win.
+    # The user's own arguments are last, so that they have precedence.
     sys.exit(run_node(["--ros-args", *arguments, "--", *ctx.args]))
 
 
@@ -99,11 +99,11 @@ def picture(world: Path, picture: Path, theme: str, scan: bool) -> None:
     from sim.view import show
 
     loaded = load(world)
-    drawn = show(loaded, theme=theme)
+    drawing = show(loaded, theme=theme)
     if scan:
         simulation = Simulation(loaded)
-        drawn = show(simulation, start(simulation), theme=theme)
-    _save(drawn, picture)
+        drawing = show(simulation, start(simulation), theme=theme)
+    _save(drawing, picture)
 
 
 @main.command()
@@ -129,8 +129,8 @@ def export_(recording: Path, out: Path, **options: float | None) -> None:
     """Write a saved RECORDING as OUT: .gif, .mp4, .html, or .mcap for a rosbag2 folder of that name."""
     from sim.export import export
 
-    given = {name: value for name, value in options.items() if value is not None}
-    click.echo(export(load_recording(recording), out, **given))
+    set_options = {name: value for name, value in options.items() if value is not None}
+    click.echo(export(load_recording(recording), out, **set_options))
 
 
 @main.command()
@@ -143,9 +143,9 @@ def teleop(namespace: str, stamped: bool) -> None:
     drive(namespace, stamped=stamped)
 
 
-def _save(drawn: Any, path: Path) -> None:
+def _save(drawing: Any, path: Path) -> None:
     try:
-        click.echo(drawn.save(path))
+        click.echo(drawing.save(path))
     except (OSError, ValueError) as error:
         raise click.ClickException(str(error)) from None
 

@@ -1,4 +1,4 @@
-"""Whether a notebook runs under the grader, where nothing is shown and only its files matter."""
+"""Tests whether a notebook runs under the grader, which shows nothing and reads only the notebook's files."""
 
 from __future__ import annotations
 

@@ -2,8 +2,8 @@
 
     python colcon_runner.py ARGUMENTS-OF-COLCON
 
-To build one Python package, colcon starts Python three times for its setup.py, mostly to import setuptools. If this
-process was forked, they are forked, too.
+To build a Python package, colcon starts Python three times for its setup.py, and most of the time is the import of
+setuptools. If this process was forked, these programs are forked, too.
 
 Two threads of colcon write: one prints what the packages' builds do, the other logs. Each print is one write here, so
 no log line comes between a line and its end.
@@ -20,7 +20,7 @@ from typing import TextIO
 
 def main() -> int | str | None:
     """Run colcon."""
-    sys.path[0] = str(Path(sys.executable).parent)  # where colcon's own script is, and no module of this folder
+    sys.path[0] = str(Path(sys.executable).parent)  # the folder of colcon's script, not of this module
     sys.argv[0] = "colcon"
     if fork_children := globals().get("fork_children"):  # set by the fork server
         fork_children()

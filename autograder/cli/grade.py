@@ -16,13 +16,13 @@ from autograder.cli.submissions import find_submissions, roster_option
 from autograder.cli.terminal import INTERRUPTED, echo, on_line
 from autograder.cli.text_tables import failure_summary, score_text, table
 from autograder.exceptions import StudentError, UsageError
-from autograder.grade.apart import read_preview
-from autograder.grade.batch import GradeEach, grade_all, stored
+from autograder.grade.batch import GradeJobs, grade_all, stored_result
+from autograder.grade.isolated_reader import read_preview
 from autograder.grade.job import Job
 from autograder.grade.store import LOG, RESULT
 from autograder.report import feedback
 from autograder.report.export import load
-from autograder.report.export.earlier import EarlierMarks
+from autograder.report.export.earlier_marks import EarlierMarks
 from autograder.result.model import Result, Status, write_json
 from autograder.run.sandbox import Isolation
 from autograder.suite import suites
@@ -89,18 +89,18 @@ def grade(
     suites.hidden(assignment)
     if dry_run:
         with find_submissions(paths, assignment, roster) as (submissions, all_match):
-            jobs_to_do = [
+            preview_jobs = [
                 Job(path, assignment, name, seed, out / name, Isolation(isolation))
                 for name, path in submissions.items()
             ]
-            sys.exit(0 if _preview(jobs_to_do, resume) and all_match else 1)
+            sys.exit(0 if _preview(preview_jobs, resume) and all_match else 1)
     with (
         find_submissions(paths, assignment, roster, out=out) as (submissions, all_match),
         Progress(len(submissions)) as progress,
     ):
         earlier = EarlierMarks(out, submissions)
         try:
-            with _cluster_grader(scheduler, jobs, certificates) as grade_each:
+            with _cluster_grader(scheduler, jobs, certificates) as grade_jobs:
                 results = grade_all(
                     submissions,
                     assignment,
@@ -110,7 +110,7 @@ def grade(
                     isolation=Isolation(isolation),
                     resume=resume,
                     on_result=progress.show,
-                    grade_each=grade_each,
+                    grade_jobs=grade_jobs,
                 )
         except KeyboardInterrupt:
             message = f"Stopped. Finished results are in {out}: the same command with --resume grades the rest."
@@ -171,7 +171,7 @@ def _effect(job: Job, resume: bool) -> str:
     file = job.out / RESULT
     if not file.is_file():
         return "new"
-    if resume and (reusable := stored(job)) is not None:
+    if resume and (reusable := stored_result(job)) is not None:
         return f"keeps {score_text(reusable)}"
     try:
         (previous,) = load(file)
@@ -185,7 +185,7 @@ def _not_used(names: Sequence[str]) -> str:
 
 
 @contextmanager
-def _cluster_grader(scheduler: str | None, jobs: int, certificates: Path) -> Iterator[GradeEach | None]:
+def _cluster_grader(scheduler: str | None, jobs: int, certificates: Path) -> Iterator[GradeJobs | None]:
     """Yield the function that grades on a cluster, or None if the class is graded on this machine."""
     if scheduler is None:
         yield None

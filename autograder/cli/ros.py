@@ -38,7 +38,7 @@ def _run(command: tuple[str, ...]) -> int:
             return 0
         activate(domain=number)
         if domain is not None:
-            domain.keep_in_next_program()
+            domain.keep_across_exec()
         os.execvp(command[0], command)
     except RosError as error:
         click.echo(f"ROS 2: {error}.", err=True)

@@ -16,7 +16,7 @@ from autograder.cli.options import json_option
 from autograder.cli.submissions import find_submissions, roster_option
 from autograder.cli.terminal import echo, on_line
 from autograder.exceptions import AutograderError, StudentError, UsageError
-from autograder.grade.apart import code, read_code
+from autograder.grade.isolated_reader import code, read_code
 from autograder.result.model import write_json
 from autograder.run.sandbox import Isolation
 from autograder.submission.intake import read_submission

@@ -1,4 +1,6 @@
-"""Installs what pip cannot with apt, if that needs no password: `python3 -I autograder/doctor/apt.py`.
+"""Installs packages with apt that pip cannot install, unless sudo asks for a password.
+
+Run as `python3 -I autograder/doctor/apt.py`.
 
 `autograder/bootstrap.py` runs this script in the system's Python, where only the standard library can be imported.
 """
@@ -14,7 +16,7 @@ import sysconfig
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-# The apt packages, each with the commands that show that it or an equivalent is installed.
+# The apt packages. Each is installed, or has an equivalent, if one of its commands exists.
 TOOLS = {
     "g++": ("g++",),
     "bubblewrap": ("bwrap",),
@@ -66,7 +68,7 @@ def require_compiler(missing: Sequence[str]) -> None:
 
 
 def main() -> None:
-    """Install what is missing."""
+    """Install the missing packages."""
     parser = argparse.ArgumentParser(description="Install what pip cannot with apt, if that needs no password.")
     parser.add_argument("--browser", action="store_true", help="also install Chromium if there is no browser")
     parser.add_argument("--require-compiler", action="store_true", help="fail if messages cannot be compiled")

@@ -29,19 +29,19 @@ def attempt(escape: Escape, home: Path, port: int, profile: str | None) -> str:
         escape: the escape to try.
         home: an empty folder that the program can write to.
         port: an open port of the machine outside the worker sandbox.
-        profile: the import profile of the fork server to fork the program from; None starts a new interpreter.
+        profile: the import profile of the fork server that forks the program; None starts a new interpreter.
     """
     program = home / "program.py"
     program.write_text(f"PORT, OUTSIDE = {port}, {os.getpid()}\n{escape.program}")
     spec = Sandbox(home, mounts=(Mount(home, writable=True),), network=escape.network, limits=escape.limits)
-    earlier = processes()
+    earlier_processes = processes()
     with launch([sys.executable, str(program)], spec, profile=profile) as process:
         process.wait(escape.limits.wall_seconds + 60)
     problems = [line for line in process.output.splitlines() if line.startswith("OUT")]
     if process.exit_reason not in escape.exit_reasons:
         problems.append(f"it ended as {process.exit_reason and process.exit_reason.value}: {process.output[-200:]}")
     deadline = time.monotonic() + 20
-    while (survivors := processes() - earlier) and time.monotonic() < deadline:
+    while (survivors := processes() - earlier_processes) and time.monotonic() < deadline:
         time.sleep(0.05)
     return "; ".join([*problems, *(f"process {pid} survived" for pid in survivors)])
 
@@ -58,7 +58,7 @@ def processes() -> set[int]:
 
 
 def examine() -> tuple[Finding, ...]:
-    """Try every escape on this machine, both started and forked in a sandbox, and return the findings."""
+    """Try every escape on this machine, in a new interpreter and in a forked one, and return the findings."""
     failure = namespaces_failure()
     if failure is not None:
         state = f"not tried: {failure}; without namespaces, a student's code has the rights of the grader's user"

@@ -18,7 +18,7 @@ from autograder import course_paths
 from autograder.bootstrap import closed_to_other_users
 from autograder.ros import find
 from autograder.ros.launch_packages import describe_launch
-from autograder.ros.patch_wheels import baked_files
+from autograder.ros.patch_wheels import unpatched_cmake_files
 from autograder.run.sandbox import cgroup
 from autograder.run.sandbox.isolation import namespaces_failure
 
@@ -54,7 +54,7 @@ class System:
         self.disk_usage = shutil.disk_usage
         self.find_ros = find
         self.describe_launch = describe_launch
-        self.unpatched_cmake_files = baked_files
+        self.unpatched_cmake_files = unpatched_cmake_files
         self.namespaces_failure = namespaces_failure
         self.bounds = cgroup.bounds
 

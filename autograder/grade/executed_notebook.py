@@ -1,4 +1,4 @@
-"""The notebook that a worker leaves beside a result: written within bounds, and read as a stranger's."""
+"""Writes and reads the executed notebook beside a result. Its size is limited, and its content is untrusted."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ MAX_BYTES = 48 * 1024 * 1024
 
 
 def encode(notebook: NotebookNode) -> bytes:
-    """Return an executed notebook as a file, without its outputs if these would make it too large.
+    """Return the bytes of an executed notebook, without its outputs if it is too large with them.
 
-    A text is one string: its lines in a list, as nbformat writes them, could be millions of values.
+    Each text is one string, because a list of its lines, as nbformat writes it, could have millions of values.
     """
     data = _encoded(notebook)
     if len(data) <= MAX_BYTES:
@@ -27,7 +27,7 @@ def encode(notebook: NotebookNode) -> bytes:
 def decode(data: bytes) -> list[NotebookNode]:
     """Return the code cells of an executed notebook, each with a text and with outputs that are objects.
 
-    More is not looked at: to validate the notebook's format can take a minute.
+    Nothing else is checked, because a validation of the notebook's format can take a minute.
 
     Raises:
         ValueError: it is not a notebook, or exceeds a bound.
@@ -41,13 +41,13 @@ def decode(data: bytes) -> list[NotebookNode]:
 
 
 def _encoded(notebook: Any) -> bytes:
-    # Half a surrogate pair, in a cell or its output, is not UTF-8.
+    # A single surrogate in a cell or its output cannot be encoded as UTF-8.
     return json.dumps(notebook, ensure_ascii=False, sort_keys=True).encode("utf-8", errors="replace")
 
 
 def _code_cell(cell: dict[str, Any]) -> NotebookNode:
     source, outputs, metadata = cell.get("source"), cell.get("outputs"), cell.get("metadata", {})
-    if isinstance(source, list) and all(isinstance(line, str) for line in source):  # of an earlier version
+    if isinstance(source, list) and all(isinstance(line, str) for line in source):  # written by an earlier version
         source = "".join(source)
     if not isinstance(source, str) or not isinstance(outputs, list) or not isinstance(metadata, dict):
         raise ValueError("it has a cell without a text or outputs")

@@ -1,4 +1,4 @@
-"""Driving: a student's program steers the simulated robot by ROS messages."""
+"""Lets a student's program steer the simulated robot by ROS messages."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ from sim.bridge.messages import odom_to_msg, scan_to_msg, twist_to_command
 
 SENSOR_TOPICS = {"/scan": LaserScan, "/odom": Odometry}
 COMMAND_TOPICS = {"/cmd_vel": Twist}
-PHYSICS_NS = 60_000_000  # between two rows of the recording: 18 mm at 0.3 m/s; whole ticks of the simulator's 20 ms
+PHYSICS_NS = 60_000_000  # between two rows of the recording: 18 mm at 0.3 m/s, a multiple of the simulator's 20 ms
 SCAN_NS = 100_000_000
 SCAN_SECONDS = SCAN_NS / 1e9
 
-# The time of ROS's log is the machine's, which is another one at each run.
-_LOGGED = re.compile(r"^(\[\w+\]) \[\d+\.\d+\] (?=\[)")
+# The time in ROS's log is the machine's, which differs from run to run.
+_LOG_TIME = re.compile(r"^(\[\w+\]) \[\d+\.\d+\] (?=\[)")
 
 ScanFilter = Callable[[Scan, float], Scan | None]
-"""Changes a scan before it is sent, or drops it (None); gets the scan and the seconds since the start."""
+"""Called with a scan and the seconds since the start. Returns the scan to send, or None to drop it."""
 
 
 @dataclass(frozen=True)
 class Drive:
-    """A robot's run with the programs' log lines, their messages on /cmd_vel, and all their output."""
+    """A robot's run, with the programs' log lines, their messages on /cmd_vel and their whole output."""
 
     recording: Recording
     commands: tuple[ReceivedMessage, ...]
@@ -51,48 +51,51 @@ def drive(
 ) -> Drive:
     """Let the program in a harness steer the simulation's one robot.
 
-    Scans come at 10 Hz, odometry with them. Simulated time starts with the program: a scan's stamp is the program's own
+    Scans and odometry are sent at 10 Hz. Simulated time starts with the program: the stamp of a scan is the program's
     ROS time.
 
     Args:
-        harness: must have been given `SENSOR_TOPICS` and `COMMAND_TOPICS`.
-        simulation: its world and its robot.
-        seconds: of ROS time, at most.
+        harness: a harness that publishes `SENSOR_TOPICS` and subscribes to `COMMAND_TOPICS`.
+        simulation: the world and the robot.
+        seconds: the longest duration, in ROS time.
         alter_scan: changes scans before they are sent.
-        until: the drive ends in a state for which it returns True.
+        until: ends the drive at the first state for which it returns True.
 
     Raises:
-        StudentError: the program published a command that no robot can obey.
+        StudentError: the program published a command that no robot can execute.
     """
     state = start(simulation)
     recorder = Recorder(simulation, state)
     origin = harness.now_ns
     command: Command | None = None
-    end = round(seconds * 1e9)
-    recorded: dict[Process, int] = {}
+    end_ns = round(seconds * 1e9)
+    recorded_bytes: dict[Process, int] = {}
     if harness.seconds > 0.0:  # earlier output belongs to another run
-        _record_output(harness, 0.0, Recorder(simulation, state), recorded)
-    while state.time_ns < end and not until(state):
-        target = min(state.time_ns + harness.tick_ns, end)
-        state = _move(simulation, state, command, target, recorder)
-        if target % SCAN_NS == 0:
+        _record_output(harness, 0.0, Recorder(simulation, state), recorded_bytes)
+    while state.time_ns < end_ns and not until(state):
+        target_ns = min(state.time_ns + harness.tick_ns, end_ns)
+        state = _move(simulation, state, command, target_ns, recorder)
+        if target_ns % SCAN_NS == 0:
             _sense(harness, simulation, state, origin, recorder, alter_scan)
-        before = len(harness.messages("/cmd_vel"))
-        harness.step(target - (harness.now_ns - origin))
-        _record_output(harness, target / 1e9, recorder, recorded)
-        fresh = harness.messages("/cmd_vel")[before:]
-        command = _command(fresh[-1]) if fresh else None
+        count = len(harness.messages("/cmd_vel"))
+        harness.step(target_ns - (harness.now_ns - origin))
+        _record_output(harness, target_ns / 1e9, recorder, recorded_bytes)
+        new_messages = harness.messages("/cmd_vel")[count:]
+        command = _command(new_messages[-1]) if new_messages else None
     return Drive(recorder.recording(), tuple(harness.messages("/cmd_vel")), harness.output)
 
 
-def _record_output(harness: Harness, seconds: float, recorder: Recorder, recorded: dict[Process, int]) -> None:
-    """Record the lines that the programs have ended since the last time; `recorded` counts their bytes."""
+def _record_output(harness: Harness, seconds: float, recorder: Recorder, recorded_bytes: dict[Process, int]) -> None:
+    """Record the complete lines that the programs have printed since the last call.
+
+    `recorded_bytes` counts what was recorded of each program.
+    """
     for process in harness.processes:
-        text = process.written(recorded.get(process, 0))
+        text = process.output_from(recorded_bytes.get(process, 0))
         end = text.rfind(b"\n") + 1
-        recorded[process] = recorded.get(process, 0) + end
+        recorded_bytes[process] = recorded_bytes.get(process, 0) + end
         for line in clean(text[:end].decode("utf-8", errors="replace")).split("\n"):
-            recorder.log.add(seconds, _LOGGED.sub(r"\1 ", line))
+            recorder.log.add(seconds, _LOG_TIME.sub(r"\1 ", line))
 
 
 def _command(received: ReceivedMessage) -> Command:

@@ -1,14 +1,14 @@
-"""How long a step of ROS time is: the constants and the rules, for every harness."""
+"""The length of a step of ROS time: constants and rules for every harness."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
 
-# Both have to divide `drive.SCAN_NS`: a scan is sent where a step ends.
+# Both have to divide `drive.SCAN_NS`, because a scan is sent at the end of a step.
 TICK_NS = 100_000_000  # the longest step that `Harness.run` takes
-FINEST_TICK_NS = 10_000_000  # the shortest, however short the programs' timers are
-SLACK_NS = 1_000_000  # a program that wants to wake so shortly before the end of a step wakes at its end
+FINEST_TICK_NS = 10_000_000  # the shortest step, even if the programs' timers are faster
+SLACK_NS = 1_000_000  # a wake-up this shortly before the end of a step is moved to its end
 
 
 def tick_of(tick_ns: int, timers: Iterable[int]) -> int:
@@ -20,13 +20,13 @@ def next_instant(now_ns: int, end_ns: int, wakes: Iterable[int | None]) -> int:
     """Return the instant up to which programs can be stepped at once.
 
     Args:
-        now_ns: the present ROS time.
+        now_ns: the current ROS time.
         end_ns: the end of the step.
-        wakes: when each program wants to continue besides its timers; None for one that does not.
+        wakes: the next wake-up of each program besides its timers, or None.
 
     Returns:
-        The first of the wakes in the step, or the end of the step.
+        The first wake-up in the step, or the end of the step.
     """
     earliest = now_ns + FINEST_TICK_NS
-    later = (max(wake, earliest) for wake in wakes if wake is not None)
-    return min((wake for wake in later if wake < end_ns - SLACK_NS), default=end_ns)
+    possible_wakes = (max(wake, earliest) for wake in wakes if wake is not None)
+    return min((wake for wake in possible_wakes if wake < end_ns - SLACK_NS), default=end_ns)

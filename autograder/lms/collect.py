@@ -18,7 +18,7 @@ from autograder.grade.batch import submission_in
 from autograder.lms.clones import FOLDER_SUFFIX, account_in, assignment_of, prefixes
 from autograder.lms.roster import Roster
 from autograder.lms.submission_names import METADATA, DownloadedItem, read_metadata, read_names, resubmitted
-from autograder.result.class_folder import why_not_a_folder
+from autograder.result.class_folder import folder_name_problem
 from autograder.submission.intake.ignored import is_ignored
 from autograder.submission.intake.names import is_archive, is_notebook
 
@@ -105,7 +105,7 @@ def _by_student(
         student = roster.find(item.keys)
         if student is None:
             unmatched.append((item.listed_name, item.doubt or f"it matches no student in {roster.path.name}"))
-        elif reason := why_not_a_folder(student.id):
+        elif reason := folder_name_problem(student.id):
             unmatched.append((item.listed_name, f"{reason} in {roster.path.name}"))
         elif not item.is_submission:
             texts.append((student.id, item))

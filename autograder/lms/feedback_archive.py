@@ -1,8 +1,8 @@
 """Writes the zip of feedback pages that Moodle or Canvas returns to students. File names identify the student.
 
 Moodle ("Upload multiple feedback files in a zip"; mod/assign/feedback/file/importziplib.php): a path contains
-NAME_NUMBER_assignsubmission_file_, as in a download of submissions. The number is the participant's, the name has no
-underscore, and the rest is the name of the feedback file.
+NAME_NUMBER_assignsubmission_file_, as in a download of submissions, and then the name of the feedback file. NUMBER is
+the participant's number, and NAME must not contain an underscore.
 
 Canvas ("Re-Upload Submissions"; app/models/abstract_assignment.rb, `infer_comment_context_from_filename`): a file has
 the same name as in the download. The first two numbers between underscores are the ids of the user and of an attachment

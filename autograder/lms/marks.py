@@ -29,7 +29,7 @@ class MarkTable:
 
     Attributes:
         rows: all of its rows, the headings first.
-        marks: the cell of each student with a mark, before and after.
+        marks: the old and the new cell of each student with a mark.
         unknown: the students who have a result but are not in the table.
     """
 

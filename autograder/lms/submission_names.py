@@ -35,7 +35,7 @@ from autograder.submission.intake.ignored import is_ignored
 METADATA = "submission_metadata.yml"  # of Gradescope
 
 # Files that a system adds to a download for the instructor.
-ADDED = {
+ADDED_FILES = {
     "brightspace": frozenset(("index.html",)),
     "sakai": frozenset(("grades.csv", "grades.xls", "grades.xlsx")),
 }
@@ -105,7 +105,7 @@ def read_names(folder: Path) -> list[DownloadedItem]:
     """Parse the names in a folder, with an item for each member of a group and none for files that a system added."""
     children = [child for child in sorted(folder.iterdir()) if not is_ignored(child.name)]
     items = _without_doubtful_groups([item for child in children for item in _read_name(child)])
-    added = frozenset[str]().union(*(ADDED.get(item.system, ()) for item in items))
+    added = frozenset[str]().union(*(ADDED_FILES.get(item.system, ()) for item in items))
     return [item for item in items if item.path.name not in added]
 
 

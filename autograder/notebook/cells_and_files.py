@@ -7,7 +7,7 @@ from pathlib import Path, PurePosixPath
 
 from autograder.notebook.written_record import digest, read_record
 from autograder.submission.exercise_stubs import STILL_TO_BE_WRITTEN
-from autograder.submission.intake.counting import differs
+from autograder.submission.intake.counting import difference_notice
 from autograder.submission.intake.exercises import SOURCE, text_of
 from autograder.submission.intake.names import is_notebook, names_assignment
 from autograder.submission.intake.notebooks import read_cells
@@ -46,10 +46,10 @@ def differences(
             continue
         if last_digest is not None and last_digest != digest(text):  # changed since a cell wrote it
             is_stub = cell is not None and not is_answered and digest(cell) == last_digest
-            sentences += [] if is_stub else [differs(path)]
+            sentences += [] if is_stub else [difference_notice(path)]
         elif is_answered and notebook is not None:
             is_stale = last_digest is not None and notebook.stat().st_mtime <= file.stat().st_mtime
-            sentences += [] if is_stale else [differs(path)]
+            sentences += [] if is_stale else [difference_notice(path)]
     return tuple(sentences)
 
 

@@ -36,13 +36,13 @@ if TYPE_CHECKING:
     from autograder.run.workspace import Workspace
 
 SEED = 1  # for the inputs of visible checks
-NEEDS_ITS_NOTEBOOK = "The visible checks need the executed notebook: run check(...) in it."
+NEEDS_NOTEBOOK = "The visible checks need the executed notebook: run check(...) in it."
 
 
 def main() -> None:
     """Run the request in the file from the command line."""
     request = json.loads(Path(sys.argv[1]).read_text())
-    line.take(Connection(int(sys.argv[2])))
+    line.set_line(Connection(int(sys.argv[2])))
     restore_sigint()
     ros = activate()
     from autograder.run.workspace import Workspace  # imports rclpy, so ROS must be active
@@ -53,7 +53,7 @@ def main() -> None:
     domain = 0 if current_isolation() is Isolation.BUBBLEWRAP else Domain().number
     workspace = Workspace(scratch / "ws", ros, home, domain=domain)
     try:
-        _fill(workspace, Path(request["source"]), request["arguments"])
+        _copy_packages(workspace, Path(request["source"]), request["arguments"])
     except StudentError as error:
         reply: dict[str, Any] = {"diagnosis": asdict(error.diagnosis), "checks": ()}
     else:
@@ -61,14 +61,14 @@ def main() -> None:
     write_json(out / REPLY_FILE, reply)
 
 
-def _fill(workspace: Workspace, source: Path, arguments: dict[str, Any]) -> None:
-    """Put a source tree into the workspace, or the packages of an answer as it was handed in."""
+def _copy_packages(workspace: Workspace, source: Path, arguments: dict[str, Any]) -> None:
+    """Copy a source tree, or the packages of a submission, to the workspace."""
     if source.is_dir():
         shutil.copytree(source, workspace.root / "src", ignore=course_paths.NOT_COPIED)
         return
     packages = intake.read_submission(source, arguments["assignment"]).packages
     if packages is None:
-        raise StudentError(Diagnosis(Kind.NOTHING_SUBMITTED, NEEDS_ITS_NOTEBOOK))
+        raise StudentError(Diagnosis(Kind.NOTHING_SUBMITTED, NEEDS_NOTEBOOK))
     with reading("Your submission"):
         intake.write_tree(packages, workspace.root / "src")
 
@@ -115,12 +115,12 @@ def _drive(
                     harness.publish(topic, message)
                 return False
 
-            driven = drive(harness, from_json(simulation), seconds, until=publish)
+            result = drive(harness, from_json(simulation), seconds, until=publish)
     except StudentError as error:
         return {"diagnosis": asdict(error.diagnosis)}
-    driven.recording.save(out / RECORDING)
-    commands = [[c.seconds, c.message.linear.x, c.message.angular.z] for c in driven.commands]
-    return {"diagnosis": asdict(OK), "output": driven.output, "commands": commands}
+    result.recording.save(out / RECORDING)
+    commands = [[c.seconds, c.message.linear.x, c.message.angular.z] for c in result.commands]
+    return {"diagnosis": asdict(OK), "output": result.output, "commands": commands}
 
 
 def _check(
@@ -131,9 +131,9 @@ def _check(
     part: str,
     first: list[str],
 ) -> dict[str, Any]:
-    """Run the checks of a chapter, or of the exercise called `part`. Those with ids in `first` run before the others.
+    """Run the checks of a chapter, or of the exercise called `part`.
 
-    Their results are written to `out` immediately.
+    The checks with ids in `first` run before the others, and their results are written to `out` immediately.
     """
     from autograder.building.build import build_workspace
     from autograder.building.colcon import StoppedBuildError

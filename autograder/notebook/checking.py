@@ -41,7 +41,7 @@ class Part:
     @property
     def later(self) -> tuple[str, ...]:
         """The files that only cells after this exercise write."""
-        return next((each.later for each in self.exercises if each.name == self.name), ())
+        return next((exercise.later for exercise in self.exercises if exercise.name == self.name), ())
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class CheckReport:
 
     @property
     def shown_trouble(self) -> Notice | None:
-        """The trouble, or None if a part passed in spite of it: it concerns a package of another exercise."""
+        """The trouble, or None if the checked part passed, because then it concerns another exercise's package."""
         return None if self.part and self.passed else self.trouble
 
     @property
@@ -157,14 +157,14 @@ def part_of(assignment: str, exercise: int | None, step: int | None, question: i
     if assignment not in (known := suites.checkable_assignments()):
         raise UsageError(f"{assignment!r} has no visible checks; choose one of: {', '.join(known)}")
     numbers = zip(KINDS, (exercise, step, question), strict=True)
-    given = [(kind, number) for kind, number in numbers if number is not None]
-    if not given:
+    requested = [(kind, number) for kind, number in numbers if number is not None]
+    if not requested:
         return Part(assignment)
-    if len(given) > 1:
-        listed = " and ".join(f"{kind} {number}" for kind, number in given)
+    if len(requested) > 1:
+        listed = " and ".join(f"{kind} {number}" for kind, number in requested)
         raise UsageError(f"{listed} are two parts of {assignment}: ask for one at a time, or for the whole chapter")
     available = exercises(assignment)
-    return Part(assignment, find_exercise(assignment, available, *given[0]).name, available)
+    return Part(assignment, find_exercise(assignment, available, *requested[0]).name, available)
 
 
 def run_part(
@@ -198,7 +198,7 @@ def run_part(
         if early is not None:
             early(_report(replace(part, name=FAILED_BEFORE), workspace, reply))
 
-    arguments = {"exercises": [asdict(each) for each in part.exercises], "part": part.name, "first": [*first]}
+    arguments = {"exercises": [asdict(exercise) for exercise in part.exercises], "part": part.name, "first": [*first]}
     with run_in_worker("check", workspace, early=report_early, assignment=part.assignment, **arguments) as (reply, _):
         created_at = datetime.now().isoformat(timespec="seconds")
     is_unchanged = inputs is not None and inputs == current_inputs(part.assignment, workspace / "src", reads)

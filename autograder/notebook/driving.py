@@ -47,7 +47,7 @@ Parameters = Mapping[str, object] | str | Path
 class DriveReport:
     """A drive. It is shown in the player, or as a picture of the robot's track if the player is not available.
 
-    The player plays once when it is seen. A drive with a collision is shown at its first collision instead.
+    The player plays once when it becomes visible. If the robot collides, it shows the first collision instead.
 
     Attributes:
         recording: the run: times, poses, scans, collisions.

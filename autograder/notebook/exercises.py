@@ -72,7 +72,7 @@ def find_exercise(assignment: str, available: Sequence[Exercise], kind: str, num
         if (exercise.kind, exercise.number) == (kind, number):
             return exercise
     in_order = sorted(available, key=lambda exercise: (exercise.kind, exercise.number))
-    known = ", ".join(f"{each.name} ({each.title})" if each.title else each.name for each in in_order)
+    known = ", ".join(f"{entry.name} ({entry.title})" if entry.title else entry.name for entry in in_order)
     raise UsageError(f"{assignment} has no {kind} {number}; it has: {known or 'no exercise with a number'}")
 
 
@@ -88,15 +88,17 @@ def checks_of(exercise: Exercise, available: Sequence[Exercise], checks: Sequenc
 
 def _exercise_of(check: Check, available: Sequence[Exercise], checks: Sequence[Check]) -> Exercise | None:
     """Return the exercise of a check, or None if no exercise contains one of its requirements."""
-    group = [each for other in checks if other.group == check.group for each in _exercises_covering(other, available)]
+    group = [
+        exercise for other in checks if other.group == check.group for exercise in _exercises_covering(other, available)
+    ]
     if len(set(group)) > 1:
-        assigned = next((each for each in available if check.group in each.groups), None)
+        assigned = next((exercise for exercise in available if check.group in exercise.groups), None)
         return assigned or next(reversed(_exercises_covering(check, available)), None)
     return next(iter(_exercises_covering(check, available)), None)
 
 
 def _exercises_covering(check: Check, available: Sequence[Exercise]) -> list[Exercise]:
-    return [each for each in available if not set(each.sentences).isdisjoint(check.covers)]
+    return [exercise for exercise in available if not set(exercise.sentences).isdisjoint(check.covers)]
 
 
 def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]:
@@ -107,7 +109,7 @@ def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]
             cells_of_group.setdefault(group, set()).add(objective["exercise"])
     by_name: dict[str, Exercise] = {}
     sentences: dict[str, dict[str, Any]] = {}
-    files: list[str] = []  # that cells write, in the order of the notebook
+    files: list[str] = []  # the files that cells write, in the order of the notebook
     file_counts: dict[str, int] = {}  # the number of files that are written up to the end of an exercise
     level, current = 0, ""
     for cell in cells:
@@ -124,11 +126,11 @@ def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]
         if current:
             sentences.setdefault(current, {}).update(cell["metadata"].get("course", {}).get("contract", {}))
             file_counts[current] = len(files)
-    for name, each in by_name.items():
+    for name, exercise in by_name.items():
         if requirements := sentences.get(name):  # empty for a question that a person grades
-            written, rest = files[: file_counts[name]], files[file_counts[name] :]
+            before, after = files[: file_counts[name]], files[file_counts[name] :]
             yield replace(
-                each, sentences=tuple(requirements), later=tuple(file for file in rest if file not in written)
+                exercise, sentences=tuple(requirements), later=tuple(file for file in after if file not in before)
             )
 
 

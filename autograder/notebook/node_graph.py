@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from autograder.notebook.notices import Notice
-from autograder.ros.discovery import announcing_often
+from autograder.ros.discovery import fast_discovery
 from sim.grading import grading
 
-HIDDEN_TOPICS = ("/rosout", "/parameter_events", "/clock")  # of nearly every node; they would clutter the drawing
+HIDDEN_TOPICS = ("/rosout", "/parameter_events", "/clock")  # nearly every node has them; they clutter the drawing
 STABLE_SECONDS = 1.0  # real time without a change until discovery counts as finished
 ROW, NODE, TOPIC, GAP = 46, 190, 210, 110  # pixels: row height, box widths, space between columns
 
@@ -87,7 +87,7 @@ def graph(seconds: float = 10.0) -> Graph | Notice:
     from rclpy.node import Node
 
     context = Context()
-    with announcing_often():
+    with fast_discovery():
         rclpy.init(context=context)
     try:
         observer = Node("_graph", context=context, start_parameter_services=False, enable_rosout=False)

@@ -16,7 +16,7 @@ from typing import Any
 
 from autograder.exceptions import UsageError
 
-STEP_SECONDS = 0.1  # of ROS time between two calls, at the instants of the simulator's scans
+STEP_SECONDS = 0.1  # of ROS time between two calls, at the times of the simulator's scans
 RESERVED_TOPICS = ("/scan", "/odom", "/clock", "/cmd_vel")  # topics of the simulator and of the controlling program
 _TOPIC = re.compile(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
 
@@ -64,11 +64,11 @@ def types_of(plan: Mapping[str, Any]) -> dict[str, type]:
 
 
 def messages_at(plan: Mapping[str, Any], types: Mapping[str, type], time_ns: int) -> dict[str, Any]:
-    """Return the messages of a plan for an instant, in ns since the start. There are none between two steps."""
+    """Return a plan's messages at a time in ns since the start, or an empty mapping between two steps."""
     from rclpy.serialization import deserialize_message
 
-    number, rest = divmod(time_ns, round(STEP_SECONDS * 1e9))
-    step = plan["steps"][number - 1] if rest == 0 and 0 < number <= len(plan["steps"]) else {}
+    number, remainder = divmod(time_ns, round(STEP_SECONDS * 1e9))
+    step = plan["steps"][number - 1] if remainder == 0 and 0 < number <= len(plan["steps"]) else {}
     return {topic: deserialize_message(base64.b64decode(text), types[topic]) for topic, text in step.items()}
 
 

@@ -18,12 +18,12 @@ from pathlib import Path
 
 from autograder.diagnosis import OK
 from autograder.exceptions import UsageError
-from autograder.ros.discovery import announcing_often
+from autograder.ros.discovery import fast_discovery
 from autograder.submission.exercise_stubs import explain
 from sim.grading import grading
 
 NOT_WHILE_GRADING = "Commands are not run while the notebook is graded."
-STOP_SECONDS = 30.0  # real time for a command to end after Ctrl-C; `ros2 launch` itself gives its nodes 10
+STOP_SECONDS = 30.0  # real time for a command to end after Ctrl-C; `ros2 launch` waits 10 s for its nodes
 _STEP = 0.05
 _BUILD = re.compile(r"\bcolcon\b[^|;&]*\bbuild\b(?:[^|;&]*--packages-select(?P<packages>(?: +[\w.]+)+))?")
 _SOURCED = '[ ! -f "$0" ] || . "$0" || exit; eval "$1"'
@@ -77,7 +77,7 @@ def running(
         return
     texts = [until] if isinstance(until, str) else until
     # All programs in the block announce themselves often, so that `ros2 node list` finds them within a second.
-    with announcing_often(), _Terminal(command, Path(workspace)) as terminal:
+    with fast_discovery(), _Terminal(command, Path(workspace)) as terminal:
         terminal.wait(lambda: all(text in terminal.output() for text in texts), seconds)
         terminal.show()
         missing = [text for text in texts if text not in terminal.output()]

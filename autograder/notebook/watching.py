@@ -67,5 +67,5 @@ def _wait(assignment: str, workspace: Path, checked_stamp: str, pause: Callable[
 
 def _stamp(assignment: str, workspace: Path) -> str:
     """Return a digest of when the files that a student or an author saves were last written."""
-    checks = fingerprint.places(assignment, parts=("visible",))
+    checks = fingerprint.suite_paths(assignment, parts=("visible",))
     return stamp_of((workspace / "src", course_paths.source_notebook(assignment), *checks))

@@ -25,11 +25,11 @@ REPLACED = "replaced"
 
 
 def register(shell: InteractiveShell | None) -> None:
-    """Replace `%%writefile` of this shell by the course's. Without a shell, do nothing. Safe to call twice."""
+    """Replace the shell's `%%writefile` with the course's. Without a shell, do nothing. Safe to call twice."""
     if shell is None:
         return
-    in_shell: Any = shell  # IPython has no types
-    original = in_shell.find_cell_magic("writefile")
+    untyped_shell: Any = shell  # IPython has no type annotations
+    original = untyped_shell.find_cell_magic("writefile")
     if original is None or getattr(original, "is_course_magic", False):
         return
 
@@ -37,7 +37,7 @@ def register(shell: InteractiveShell | None) -> None:
         write(line, cell, original)
 
     writefile.is_course_magic = True  # type: ignore[attr-defined]
-    in_shell.register_magic_function(writefile, "cell")
+    untyped_shell.register_magic_function(writefile, "cell")
 
 
 def write(line: str, cell: str, original: Any) -> None:

@@ -1,22 +1,23 @@
-"""Whether the files that came with a package are as they were given."""
+"""Finds files that came with a package and that the student has changed or deleted."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 
 
-def changed_files(kept: Mapping[str, bytes], given: Mapping[str, bytes], folders: Collection[str]) -> list[str]:
-    """Return the given files, below these folders of a package, that are missing or changed; white space is free.
+def changed_files(actual: Mapping[str, bytes], given: Mapping[str, bytes], folders: Collection[str]) -> list[str]:
+    """Return the given files, below these folders of a package, that are missing or changed.
 
-    The copyright comment at the start is free, too: a cell of a notebook gives a file without it.
+    White space does not count, and neither does the copyright comment at the start: a cell of a notebook gives a file
+    without it.
 
     Args:
-        kept: the student's files, by their paths below the package's folder.
+        actual: the student's files, by their paths below the package's folder.
         given: the files as they were given, by the same paths.
         folders: names of folders of the package.
     """
-    mine = [name for name in given if name.partition("/")[0] in folders]
-    return [name for name in mine if not _is_as_given(kept.get(name, b""), given[name])]
+    names = [name for name in given if name.partition("/")[0] in folders]
+    return [name for name in names if not _is_as_given(actual.get(name, b""), given[name])]
 
 
 def strip_licence(text: str) -> str:
@@ -28,6 +29,6 @@ def strip_licence(text: str) -> str:
     return "".join(lines[body:]).lstrip("\n")
 
 
-def _is_as_given(kept: bytes, given: bytes) -> bool:
+def _is_as_given(actual: bytes, given: bytes) -> bool:
     unlicensed = strip_licence(given.decode(errors="surrogateescape")).encode(errors="surrogateescape")
-    return kept.split() in (given.split(), unlicensed.split())
+    return actual.split() in (given.split(), unlicensed.split())

@@ -43,7 +43,7 @@ class Cause:
 
     @property
     def not_checked(self) -> str:
-        """The line about checks that could not run, or an empty string. It names a few checks, but only counts many."""
+        """The line about checks that could not run, or an empty string. It names at most `MAX_NAMED` checks."""
         if not self.unchecked:
             return ""
         titles = " ".join(check.title for check in self.unchecked)

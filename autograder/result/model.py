@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from jsonschema.protocols import Validator
 
 SCHEMA = "autograder-result/1"
-UNFINISHED = ".unfinished"  # in the folder of a result: the folder of a grading that is to replace it
-MAX_HARMLESS_DELAY = 0.1  # s, one period at 10 Hz; so short a delay makes a program fail no check
+UNFINISHED = ".unfinished"  # folder in that of a result, for the grading that will replace the result
+MAX_HARMLESS_DELAY = 0.1  # s, one period at 10 Hz; a program that was delayed for less fails no check because of it
 
 
 class Status(str, Enum):
@@ -41,7 +41,7 @@ class Status(str, Enum):
 
     @property
     def words(self) -> str:
-        """The status as people read it."""
+        """The status in words, for people."""
         return self.value.replace("_", " ")
 
 
@@ -107,7 +107,7 @@ class CheckResult:
 
 @dataclass(frozen=True)
 class Build:
-    """The result of building the student's packages. `log` is the end of colcon's output on those that failed."""
+    """The result of building the student's packages. `log` is the end of colcon's output about those that failed."""
 
     ok: bool
     seconds: float
@@ -124,7 +124,7 @@ class Artifact:
 
     name: str  # path of the file, below the folder of the result
     kind: str  # kind of the artifact, such as "track"
-    # Digest of the file; of the recording for a track, as the bytes of a picture may differ from run to run.
+    # Digest of the file. For a track, of the recording, because the bytes of a picture may differ from run to run.
     sha256: str
     check: str  # id of the check that saved it
     caption: str = ""  # alternative text of the picture
@@ -133,7 +133,7 @@ class Artifact:
 
 @dataclass(frozen=True)
 class Result:
-    """Everything that is recorded of one graded submission."""
+    """Everything that is recorded about one graded submission."""
 
     assignment: str
     student: str
@@ -182,10 +182,10 @@ class Result:
         return tuple(check for check in self.checks if check.group == name)
 
     def only(self, check: str) -> Result:
-        """Return the result with one check alone."""
-        (kept,) = (each for each in self.checks if each.id == check)
+        """Return a copy of the result that contains only one check."""
+        (selected,) = (result for result in self.checks if result.id == check)
         artifacts = tuple(artifact for artifact in self.artifacts if artifact.check == check)
-        return dataclasses.replace(self, checks=(kept,), max_score=kept.max_points, artifacts=artifacts)
+        return dataclasses.replace(self, checks=(selected,), max_score=selected.max_points, artifacts=artifacts)
 
     def to_json(self) -> dict[str, Any]:
         """Return the JSON form."""
@@ -200,7 +200,7 @@ def _enum_value(value: object) -> object:
     raise TypeError(f"{type(value).__name__} has no JSON form")
 
 
-_first_use = Lock()  # two threads that import jsonschema at once fail: its modules import each other
+_import_lock = Lock()  # jsonschema cannot be imported in two threads at once: its modules import each other
 
 
 @cache
@@ -223,7 +223,7 @@ def from_json(data: Any, *, source: str = "result", folder: Path = Path()) -> Re
     Raises:
         UsageError: `data` does not match the schema, or has more points than possible. The message names `source`.
     """
-    with _first_use:
+    with _import_lock:
         from jsonschema.exceptions import best_match  # imported here because it takes a second; workers do not need it
 
         validator = _validator()
@@ -241,11 +241,11 @@ def from_json(data: Any, *, source: str = "result", folder: Path = Path()) -> Re
 
 
 def structure(kind: Any, data: Any) -> Any:
-    """Return the value of a type that JSON describes; fields that this version does not know are left out."""
+    """Return the value of type `kind` from its JSON form, without the fields that this version does not know."""
     if dataclasses.is_dataclass(kind):
         known = get_type_hints(kind)
         return kind(**{name: structure(known[name], value) for name, value in data.items() if name in known})  # type: ignore[operator]
-    if get_origin(kind) is UnionType:  # with None
+    if get_origin(kind) is UnionType:  # an optional value
         return None if data is None else structure(get_args(kind)[0], data)
     if get_origin(kind) is tuple:
         return tuple(structure(get_args(kind)[0], item) for item in data)
@@ -255,7 +255,7 @@ def structure(kind: Any, data: Any) -> Any:
 def write_json(path: Path, data: object) -> None:
     """Write JSON atomically."""
     text = json.dumps(data, indent=2, ensure_ascii=False, default=_enum_value) + "\n"
-    # Half a surrogate pair, which a file name that is not UTF-8 gives, is written as a JSON escape.
+    # A file name that is not UTF-8 contains lone surrogates. They are written as JSON escapes.
     write_atomically(path, text.encode("utf-8", "backslashreplace"))
 
 

@@ -1,9 +1,9 @@
 """Errors of finding and using ROS 2.
 
 RosError
-├── RosNotFoundError   neither a sourced ROS 2 nor the wheels are there
-├── WrongDistroError   a ROS 2 is sourced, but it is of another distribution
-└── NoDomainLeftError  each ROS domain of this machine is in use
+├── RosNotFoundError   neither a sourced ROS 2 nor its wheels can be imported
+├── WrongDistroError   the sourced ROS 2 is a different distribution from the course's
+└── NoFreeDomainError  all ROS domains of this machine are in use
 """
 
 
@@ -16,8 +16,8 @@ class RosNotFoundError(RosError):
 
 
 class WrongDistroError(RosError):
-    """The sourced ROS 2 is of another distribution than the course's."""
+    """The sourced ROS 2 is a different distribution from the course's."""
 
 
-class NoDomainLeftError(RosError):
-    """Each ROS domain of this machine is in use."""
+class NoFreeDomainError(RosError):
+    """All ROS domains of this machine are in use."""

@@ -9,8 +9,8 @@ row of a table is named with its bars, and a wrapped line as one line:
                 "explains": ["- a row, a bullet or a docstring that requires nothing"]}}
 
 The same id in two cells is one requirement that is stated twice. A list of texts is a requirement in several sentences.
-A check names the ids that it covers. Feedback quotes the whole sentence or row, as it is read
-(`autograder.suite.quotation`).
+A check names the ids that it covers. Feedback quotes the whole sentence or row, as it looks on the
+page (`autograder.suite.quotation`).
 """
 
 from __future__ import annotations
@@ -50,19 +50,20 @@ def contract(assignment: str) -> dict[str, Requirement]:
 
 
 def counts(assignments: Iterable[str]) -> dict[str, int]:
-    """Return how many requirements chapters have, and how many of them no check covers."""
-    every = [requirement for name in assignments for requirement in contract(name).values()]
-    return {"contract_sentences": len(every), "contract_unchecked": sum(bool(each.unchecked) for each in every)}
+    """Count the requirements of some chapters, and those that no check covers."""
+    stated = [requirement for name in assignments for requirement in contract(name).values()]
+    unchecked = sum(bool(requirement.unchecked) for requirement in stated)
+    return {"contract_sentences": len(stated), "contract_unchecked": unchecked}
 
 
 def requirements(cells: Iterable[Mapping[str, Any]]) -> dict[str, Requirement]:
-    """Return the requirements that the metadata of a notebook's cells name. The first cell of an id counts."""
+    """Return the requirements in the metadata of a notebook's cells. Of two cells with one id, the first counts."""
     by_id: dict[str, Requirement] = {}
     for cell in cells:
         course = cell["metadata"].get("course", {})
         for name, texts in course.get("contract", {}).items():
-            named = [texts] if isinstance(texts, str) else texts
-            whole = dict.fromkeys(quote(cell, text) or text for text in named)
+            parts = [texts] if isinstance(texts, str) else texts
+            quotations = dict.fromkeys(quote(cell, text) or text for text in parts)
             unchecked = course.get("unchecked", {}).get(name, "")
-            by_id.setdefault(name, Requirement(name, " ".join(whole), unchecked))
+            by_id.setdefault(name, Requirement(name, " ".join(quotations), unchecked))
     return by_id

@@ -16,7 +16,7 @@ A suite is a pytest module. Each of its tests is a check, in the group of checks
 check for every row of a table. A check in a folder called `visible` is visible, any other is hidden.
 
 A check passes, fails (with a fraction of its points) or is not checked, because a check that it `needs` did not pass:
-for example, no program starts, or a topic does not exist. A check `after` another one runs in any case and judges its
+for example, no program starts, or a topic does not exist. A check `after` another one runs in any case and tests its
 own requirement. If both fail, feedback shows it under the other one. Any other exception is a failure of the grader,
 never a zero for the student.
 """
@@ -46,7 +46,7 @@ class Visibility(str, Enum):
 
 
 class Outcome(str, Enum):
-    """How a check ended."""
+    """The outcome of a check."""
 
     PASSED = "passed"
     FAILED = "failed"
@@ -54,7 +54,7 @@ class Outcome(str, Enum):
 
     @property
     def text(self) -> str:
-        """The outcome as people read it, in feedback and in notebooks."""
+        """The outcome in words, for feedback and notebooks."""
         return self.value.replace("_", " ")
 
 
@@ -65,13 +65,13 @@ class Check:
     Attributes:
         id: the function's name without `test_`; unique in its suite.
         title: the first paragraph of its docstring.
-        points: its worth, above 0.
+        points: the points that it can earn, above 0.
         group: the locked grade cell that it counts for.
         hints: shown one after the other when it fails.
         doc: a page to read, or None.
-        needs: ids of checks without which this one cannot be run; it is not checked unless all of them passed.
+        needs: ids of checks without which this one cannot be run; it runs only if all of them passed.
         covers: ids of the requirements that it covers; see `autograder.suite.contract`.
-        after: ids of checks whose failure is likely to be the cause if this one fails, too; it is run in any case.
+        after: ids of checks whose failure is a likely cause if this one also fails; it runs in any case.
     """
 
     id: str
@@ -92,11 +92,11 @@ class Check:
 
 
 class FractionError(GraderError, ValueError):
-    """A failed check's fraction is none: the check is wrong, or did not expect the data that it worked it out of."""
+    """A failed check's fraction is invalid: the check is wrong, or did not expect the data that it used."""
 
 
 class CheckFailed(AutograderError):
-    """A check's verdict "failed": a sentence for the student and the fraction of the points that was reached.
+    """A check's verdict "failed": a sentence for the student and the fraction of the points that the check earns.
 
     `hints` are the hints for this failure, or None for those of the check.
     """
@@ -111,7 +111,7 @@ class CheckFailed(AutograderError):
 
 
 class Declare(Protocol):
-    """Declares a function a check of one group; see `check`."""
+    """Declares functions as checks of one group; see `check`."""
 
     def __call__(
         self,
@@ -128,8 +128,7 @@ class Declare(Protocol):
 class CheckRow:
     """A row of a table of checks with a common body. A subclass adds the fields that the body needs.
 
-    Attributes:
-        id: the check's, as in `Check`; so are the others.
+    `Check` explains the attributes.
     """
 
     id: str
@@ -200,7 +199,7 @@ def hint(*texts: str) -> Callable[[F], F]:
     """Add hints to the function of a check, before those of the `hint` below it. Use it below `check`.
 
     Raises:
-        GraderError: it is used above `check`, which would not see it.
+        GraderError: it is used above `check`, which would ignore the hints.
     """
 
     def add(function: F) -> F:
@@ -222,7 +221,7 @@ def check_each_row(check: Declare, rows: Iterable[R]) -> Callable[[F], F]:
         rows: the table.
 
     Raises:
-        GraderError: pytest would take the body itself for a test.
+        GraderError: pytest would collect the body itself as a test.
     """
 
     def declare_each(body: F) -> F:
@@ -237,7 +236,7 @@ def check_each_row(check: Declare, rows: Iterable[R]) -> Callable[[F], F]:
 
 
 def expect(condition: bool, message: str, *, fraction: float = 0.0, hints: tuple[str, ...] | None = None) -> None:
-    """Fail the check with `message` unless `condition` holds, and with `hints` if those of the check do not fit.
+    """Fail the check with `message` unless `condition` holds. `hints` replace those of the check.
 
     Raises:
         CheckFailed: it does not hold.

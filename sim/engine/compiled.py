@@ -1,7 +1,7 @@
-"""The fast engine: the scalar sources compiled by numba, unchanged and without fast-math, so that no bit differs.
+"""The fast engine: the scalar sources, compiled by numba without changes and without fast-math, so that no bit differs.
 
-Machine code is kept in the user's cache folder (or in NUMBA_CACHE_DIR) under a hash of those sources: a change in
-any of them compiles anew, and an installation that can't be written to does not matter.
+The machine code is stored in the user's cache folder (or in NUMBA_CACHE_DIR) under a hash of these sources. So a change
+in a source compiles all again, and the installation may be read-only.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def _compiler() -> Callable[[Any], Any]:
         try:
             numba.config.CACHE_DIR = str(folder)
             return numba.njit(cache=True, error_model="numpy", nogil=True)(function)
-        except (OSError, RuntimeError):  # nowhere to write: compile once a process
+        except (OSError, RuntimeError):  # no writable cache: compile once in each process
             return numba.njit(error_model="numpy", nogil=True)(function)
         finally:
             numba.config.CACHE_DIR = before

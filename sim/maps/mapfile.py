@@ -1,4 +1,4 @@
-"""The YAML file of a ROS map: read by the rules of nav2's map_server, each fault named with its line."""
+"""Reads the YAML file of a ROS map by the rules of nav2's map_server. Errors name the line."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ REQUIRED = ("image", "resolution", "origin", "occupied_thresh", "free_thresh", "
 
 @dataclass(frozen=True)
 class MapFile:
-    """What a map_server YAML says: `image` is a full path, `resolution` metres a cell.
+    """The fields of a map_server YAML file. `image` is a full path, and `resolution` is in metres a cell.
 
-    `origin` is the pose (m, m, rad) of the picture's lower left corner in the frame `map`; a cell is occupied above
-    `occupied_thresh`, free below `free_thresh`, both shares of 1.
+    `origin` is the pose (m, m, rad) of the picture's lower left corner in the frame `map`. A cell is occupied above
+    `occupied_thresh` and free below `free_thresh`, both from 0 to 1.
     """
 
     path: Path
@@ -38,7 +38,7 @@ def read_map_file(path: Path) -> MapFile:
     """Read the YAML of a map.
 
     Raises:
-        WorldError: naming the file, the line, what is wrong and what to do.
+        WorldError: the file cannot be read or is invalid.
     """
     fields = _Fields(path, _compose(path))
     fields.require(*REQUIRED)
@@ -70,7 +70,7 @@ def read_map_file(path: Path) -> MapFile:
 
 
 def is_map_file(path: Path) -> bool:
-    """Say whether `path` is a YAML file with the key that only a map has: 'image'. False for what can't be read."""
+    """Return whether `path` is a readable YAML file with the key 'image', which only a map has."""
     try:
         node = _compose(path)
     except WorldError:
@@ -100,7 +100,7 @@ def _compose(path: Path) -> yaml.MappingNode:
 
 
 class _Fields:
-    """The top-level keys of a YAML file, each with its line."""
+    """The top-level keys of a YAML file, with their lines."""
 
     def __init__(self, path: Path, node: yaml.MappingNode) -> None:
         self._path = path

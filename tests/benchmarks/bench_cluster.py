@@ -17,7 +17,7 @@ from autograder.grade.cluster.connection import LOCAL, connected
 from autograder.grade.cluster.dispatch import grade_on
 from autograder.grade.cluster.task import Reply, Task
 from autograder.grade.job import Job
-from autograder.grade.pipeline import refused
+from autograder.grade.pipeline import unclear_result
 from autograder.result.model import Result
 from autograder.run.sandbox import Isolation
 from autograder.submission.intake import detect_layout
@@ -60,6 +60,6 @@ def _reply(pauses: Sequence[float], data: bytes) -> bytes:
     sha256 = detect_layout(list(task.files), ASSIGNMENT).sha256
     pause = pauses[int(sha256, 16) % len(pauses)]
     time.sleep(pause)
-    result = refused(task.job, Diagnosis(Kind.BUILD_FAILED, "no", "x" * 4000))
+    result = unclear_result(task.job, Diagnosis(Kind.BUILD_FAILED, "no", "x" * 4000))
     graded = replace(result, submission_sha256=sha256, seconds=pause).to_json()
     return Reply({"result.json": json.dumps(graded).encode()}).pack()

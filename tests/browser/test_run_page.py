@@ -316,7 +316,7 @@ def test_lines_of_programs_are_shown_as_text_with_their_instants(
 ) -> None:
     attack = "<script>document.title = 'owned'</script><img src=x onerror=\"document.title='owned'\">"
     flood = tuple((0.5 + number / 1000, f"[INFO] [loop]: {number}") for number in range(1000))
-    recording = replace(drive("lab", 3.0), said=((0.3, attack), *flood, (2.0, "the last one")))
+    recording = replace(drive("lab", 3.0), log_lines=((0.3, attack), *flood, (2.0, "the last one")))
     page.goto(to_html(recording, tmp_path / "run.html").as_uri())
     lines, clock = page.locator(".run-log li"), page.locator(".run-player output")
     expect(lines).to_have_count(1002, timeout=PATIENCE)

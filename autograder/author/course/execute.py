@@ -63,12 +63,12 @@ def run_notebook(
     `packages`.
     """
     notebook = in_form(chapter.read(), form)
-    started = time.monotonic()
+    start = time.monotonic()
     with working_copy(chapter.folder) as folder, Domain() as domain:
         failure = execute(notebook, folder, timeout, domain.number)
         if packages is not None and (folder / "ws" / "src").is_dir():
             shutil.copytree(folder / "ws" / "src", packages, ignore=course_paths.NOT_COPIED, dirs_exist_ok=True)
-    seconds = time.monotonic() - started
+    seconds = time.monotonic() - start
     if report is not None:
         report.parent.mkdir(parents=True, exist_ok=True)
         nbformat.write(notebook, report)

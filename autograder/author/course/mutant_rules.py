@@ -27,11 +27,11 @@ def broken_mutants(folder: Path, checks: Collection[str] | None, sources: Collec
             yield from read_yaml(folder / name).findings
     file = _read_mutants(folder)
     yield from file.findings
-    seen: set[str] = set()
+    ids: set[str] = set()
     for path, entry in _entries(file):
-        if (id := str(entry.get("id"))) in seen:
+        if (id := str(entry.get("id"))) in ids:
             yield file.finding((*path, "id"), f"two mutants are called `{id}`")
-        seen.add(id)
+        ids.add(id)
         check = str(entry.get("check"))
         if checks is not None and "check" in entry and check not in checks:
             message = f"the hidden suite has no check `{check}`: {suggestion(check, checks)}"

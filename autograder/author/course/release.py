@@ -28,8 +28,8 @@ STUDENT_FILES = course_paths.ROOT / "assets" / "students"  # the README and the 
 STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})
 # The command-line modules that students get: their verbs and the dependencies of these.
 STUDENT_CLI = frozenset({"__init__.py", "options.py", "terminal.py", "check.py", "doctor.py", "ros.py", "update.py"})
-# The folders and modules for instructors only.
-WITHHELD = ("author/course", "author/verification", "checking/attacks.py", "grade/cluster", "lms", "report")
+# The folders and modules that only instructors get.
+INSTRUCTOR_PARTS = ("author/course", "author/verification", "checking/attacks.py", "grade/cluster", "lms", "report")
 
 
 def write_release(out: Path, names: tuple[str, ...] = (), newest: str = "") -> list[str]:
@@ -45,7 +45,7 @@ def write_release(out: Path, names: tuple[str, ...] = (), newest: str = "") -> l
     with tempfile.TemporaryDirectory(prefix=f".{out.name}-", dir=out.parent) as scratch:
         release = Path(scratch) / out.name
         copy_tool(COPIED, release)
-        _withhold(release)
+        _remove_instructor_parts(release)
         copy_course((course_paths.COURSE_FILE, course_paths.course().worlds, *course_paths.course().released), release)
         checks = [path for path in course_paths.CHECKS.glob("ch*/*") if path.name in STUDENT_CHECKS]
         copy_course((str(path.relative_to(course_paths.course().root)) for path in checks), release)
@@ -83,9 +83,9 @@ def _copy(root: Path, parts: Iterable[str], folder: Path) -> None:
             shutil.copy2(source, target)
 
 
-def _withhold(release: Path) -> None:
+def _remove_instructor_parts(release: Path) -> None:
     tool = release / "autograder"
-    for path in (tool / name for name in WITHHELD):
+    for path in (tool / name for name in INSTRUCTOR_PARTS):
         shutil.rmtree(path) if path.is_dir() else path.unlink()
     for module in (tool / "cli").iterdir():
         if module.name not in STUDENT_CLI:

@@ -67,7 +67,7 @@ def _sentences(error: Any, subject: str) -> Iterator[tuple[KeyPath, str]]:
     schema, rule, expected, instance = error.schema, error.validator, error.validator_value, error.instance
     if rule == "additionalProperties" and expected is False:
         known = list(schema["properties"])
-        for key in (str(each) for each in instance if each not in known):
+        for key in (str(entry) for entry in instance if entry not in known):
             yield (key,), f"{subject} has an unknown key `{key}`: {suggestion(key, known)}"
     elif rule == "required":
         for key in expected:

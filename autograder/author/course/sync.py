@@ -20,7 +20,7 @@ from autograder.author.course.points import point_differences
 from autograder.result.model import write_atomically
 from autograder.suite import suites
 
-SHOWN_LINES = 12
+MAX_DIFF_LINES = 12
 
 
 @dataclass(frozen=True)
@@ -138,5 +138,5 @@ def _diff(current: str, expected: str) -> str:
     """Return the first differing lines, indented."""
     lines = difflib.unified_diff(current.splitlines(), expected.splitlines(), "notebook", "reference", n=1, lineterm="")
     diff_lines = list(lines)[2:]
-    omitted = [f"... and {len(diff_lines) - SHOWN_LINES} more lines"] if len(diff_lines) > SHOWN_LINES else []
-    return "".join(f"\n    {line}" for line in diff_lines[:SHOWN_LINES] + omitted)
+    omitted = [f"... and {len(diff_lines) - MAX_DIFF_LINES} more lines"] if len(diff_lines) > MAX_DIFF_LINES else []
+    return "".join(f"\n    {line}" for line in diff_lines[:MAX_DIFF_LINES] + omitted)

@@ -75,12 +75,12 @@ def one_mutant_per_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]
     quick = [m for m in candidates if not m.slow]
     chosen: dict[str, set[str]] = {}
     uncovered = set(dependencies)
-    for covers, among in ((direct, quick), (failed, quick), (failed, candidates)):
-        while best := max(among, key=lambda m: len(covers[m.id] & uncovered), default=None):
-            if not covers[best.id] & uncovered:
+    for covered_by, pool in ((direct, quick), (failed, quick), (failed, candidates)):
+        while best := max(pool, key=lambda m: len(covered_by[m.id] & uncovered), default=None):
+            if not covered_by[best.id] & uncovered:
                 break
-            chosen.setdefault(best.id, set()).update(covers[best.id] & uncovered)
-            uncovered -= covers[best.id]
+            chosen.setdefault(best.id, set()).update(covered_by[best.id] & uncovered)
+            uncovered -= covered_by[best.id]
     return [(m, suite.with_dependencies(*chosen[m.id])) for m in candidates if m.id in chosen]
 
 

@@ -30,7 +30,8 @@ def checks_page() -> str:
 def _chapter(name: str) -> list[str]:
     checks, named_mutants = suites.hidden(name).checks, mutants(name)
     check_rows = _check_rows(checks, named_mutants)
-    requirement_rows = [_requirement_row(each, checks, named_mutants) for each in contract(name).values()]
+    requirements = contract(name).values()
+    requirement_rows = [_requirement_row(requirement, checks, named_mutants) for requirement in requirements]
     heading = f"### The requirements of {name}\n"
     return [*table(CHECK_HEADINGS, check_rows), heading, *table(REQUIREMENT_HEADINGS, requirement_rows)]
 

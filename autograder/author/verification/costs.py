@@ -62,8 +62,12 @@ class Cost:
 
 def costs(verdicts: Iterable[Verdict]) -> tuple[Cost, ...]:
     """Return the costs of the named mutants, most expensive first. Their whole suites must have been run."""
-    graded = [each for each in verdicts if each.kind is CaseKind.MUTANT and each.result.status is Status.GRADED]
-    by_id = {(name, each.id): each for name in {verdict.assignment for verdict in graded} for each in mutants(name)}
+    graded = [
+        verdict for verdict in verdicts if verdict.kind is CaseKind.MUTANT and verdict.result.status is Status.GRADED
+    ]
+    by_id = {
+        (name, mutant.id): mutant for name in {verdict.assignment for verdict in graded} for mutant in mutants(name)
+    }
     unsorted = [_cost(by_id[verdict.assignment, verdict.name], verdict.result) for verdict in graded]
     return tuple(sorted(unsorted, key=lambda cost: cost.lost / cost.points, reverse=True))
 
@@ -98,43 +102,44 @@ def _cells(cost: Cost) -> Iterator[str]:
 
 
 def _cost(mutant: Mutant, result: Result) -> Cost:
-    lost = [check for check in result.checks if check.outcome is not Outcome.PASSED]
-    own = next(check for check in result.checks if check.id == mutant.check)
-    broken = dict.fromkeys(name for check in lost if check.outcome is Outcome.FAILED for name in check.holds)
-    cost = Cost(result.assignment, mutant.id, own.id, own.max_points, _points(lost), tuple(broken))
-    return replace(cost, reason=_reason(mutant, result, own, lost)) if cost.is_expensive else cost
+    not_passed = [check for check in result.checks if check.outcome is not Outcome.PASSED]
+    own_check = next(check for check in result.checks if check.id == mutant.check)
+    broken = dict.fromkeys(name for check in not_passed if check.outcome is Outcome.FAILED for name in check.holds)
+    lost = _points(not_passed)
+    cost = Cost(result.assignment, mutant.id, own_check.id, own_check.max_points, lost, tuple(broken))
+    return replace(cost, reason=_reason(mutant, result, own_check, not_passed)) if cost.is_expensive else cost
 
 
-def _reason(mutant: Mutant, result: Result, own: CheckResult, lost: Sequence[CheckResult]) -> str:
+def _reason(mutant: Mutant, result: Result, own_check: CheckResult, not_passed: Sequence[CheckResult]) -> str:
     if mutant.reason:
         return mutant.reason
     if result.diagnosis.kind is not Kind.OK:
         return str(result.diagnosis.kind.value).replace("_", " ")
     by_explanation: dict[str, list[CheckResult]] = {}
-    for check in lost:
-        by_explanation.setdefault(_explanation(check, own, lost), []).append(check)
-    if _points(by_explanation.pop("", ())) > MAX_RATIO * own.max_points:
+    for check in not_passed:
+        by_explanation.setdefault(_explanation(check, own_check, not_passed), []).append(check)
+    if _points(by_explanation.pop("", ())) > MAX_RATIO * own_check.max_points:
         return ""
     return "; ".join(f"{_points(checks):g} {explanation}" for explanation, checks in by_explanation.items())
 
 
-def _explanation(check: CheckResult, own: CheckResult, lost: Sequence[CheckResult]) -> str:
+def _explanation(check: CheckResult, own_check: CheckResult, not_passed: Sequence[CheckResult]) -> str:
     """Return why a check failed together with the mutant's own check, or an empty string if nothing explains it."""
-    if check.id == own.id:
+    if check.id == own_check.id:
         return ""
     if check.outcome is Outcome.NOT_CHECKED:
         return NOT_CHECKED
-    if set(check.holds) & set(own.holds):
+    if set(check.holds) & set(own_check.holds):
         return SAME_REQUIREMENT
-    predecessors = {each.id: each.after for each in lost}
+    predecessors = {other.id: other.after for other in not_passed}
     reached, pending = set[str](), [check.id]
     while pending:
         if (name := pending.pop()) in predecessors and name not in reached:
             reached.add(name)
             pending += predecessors[name]
-    if own.id in reached:
+    if own_check.id in reached:
         return AFTER
-    return SAME_MESSAGE if sum(each.message == check.message for each in lost) > 1 else ""
+    return SAME_MESSAGE if sum(other.message == check.message for other in not_passed) > 1 else ""
 
 
 def _points(checks: Iterable[CheckResult]) -> float:

@@ -29,7 +29,7 @@ from autograder.author.verification.python_operators import (
 MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
 # Operands that bind tighter than a comparison.
 TIGHT_OPERANDS = (ast.Attribute, ast.BinOp, ast.Call, ast.Constant, ast.Name, ast.Subscript, ast.UnaryOp)
-LONGEST_LINE = 99  # columns, the limit of the ROS linters
+MAX_COLUMNS = 99  # of a line, the limit of the ROS linters
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -49,7 +49,7 @@ def rewritten(text: str) -> str:
 
 def formatted(text: str) -> str:
     """Format a module with ruff. The quotes are preserved, because ROS has its own rule for them."""
-    command = [sys.executable, "-m", "ruff", "format", "--isolated", f"--line-length={LONGEST_LINE}"]
+    command = [sys.executable, "-m", "ruff", "format", "--isolated", f"--line-length={MAX_COLUMNS}"]
     command += ["--config", "format.quote-style='preserve'", "-"]
     return subprocess.run(command, cwd="/", input=text, stdout=subprocess.PIPE, text=True, check=True).stdout
 
@@ -65,16 +65,16 @@ def _only_fitting(
     """Keep only replacements that do not overlap, stay within one line, and do not make it too long."""
 
     @functools.wraps(rewriting)
-    def fitting(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
+    def filtered(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
         last_end = -1
-        for start, end, new in sorted(rewriting(source, nodes), key=lambda one: (one[0], -one[1])):
+        for start, end, new in sorted(rewriting(source, nodes), key=lambda change: (change[0], -change[1])):
             first, last = source.data.rfind(b"\n", 0, start) + 1, source.data.find(b"\n", end)
             columns = (start - first) + len(new) + (last - end)
-            if start > last_end and b"\n" not in source.data[start:end] and columns <= LONGEST_LINE:
+            if start > last_end and b"\n" not in source.data[start:end] and columns <= MAX_COLUMNS:
                 yield start, end, new
                 last_end = end
 
-    return fitting
+    return filtered
 
 
 @_only_fitting
@@ -112,27 +112,27 @@ def expanded_increments(source: Source, nodes: list[NodeInContext]) -> Iterator[
 
 def renamed_variables(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield a new name of the same length for each local variable, so that continuation lines stay aligned."""
-    taken = set(re.findall(r"\w+", source.data.decode()))
+    used_names = set(re.findall(r"\w+", source.data.decode()))
     for context in nodes:
         function = context.node
         if not isinstance(function, FUNCTIONS) or any(isinstance(outer, FUNCTIONS) for outer in context.ancestors):
             continue
-        names = {name: f"{name[:-1]}_" for name in _variables(function) if len(name) > 1}
-        once = {name for name, count in Counter(names.values()).items() if count == 1} - taken
+        new_names = {name: f"{name[:-1]}_" for name in _variables(function) if len(name) > 1}
+        unique = {name for name, count in Counter(new_names.values()).items() if count == 1} - used_names
         for node in ast.walk(function):
-            if isinstance(node, ast.Name) and names.get(node.id) in once:
-                yield (*source.span(node), names[node.id])
+            if isinstance(node, ast.Name) and new_names.get(node.id) in unique:
+                yield (*source.span(node), new_names[node.id])
 
 
 def reordered_methods(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield the methods of each class, except `__init__`, in reverse order."""
     for node in (context.node for context in nodes if isinstance(context.node, ast.ClassDef)):
-        methods = [each for each in node.body if isinstance(each, FUNCTIONS) and each.name != "__init__"]
-        names = {each.name for each in methods}
-        decorators = [ast.walk(decorator) for each in methods for decorator in each.decorator_list]
+        methods = [method for method in node.body if isinstance(method, FUNCTIONS) and method.name != "__init__"]
+        names = {method.name for method in methods}
+        decorators = [ast.walk(decorator) for method in methods for decorator in method.decorator_list]
         needed = {part.id for walk in decorators for part in walk if isinstance(part, ast.Name)}
         if len(names) == len(methods) and not needed & names:
-            spans = [_with_decorators(source, each) for each in methods]
+            spans = [_with_decorators(source, method) for method in methods]
             for (start, end), (first, last) in zip(spans, reversed(spans), strict=True):
                 yield start, end, source.data[first:last].decode()
 
@@ -142,9 +142,9 @@ def return_types(source: Source, nodes: list[NodeInContext]) -> Iterator[Replace
     """Yield `-> None` for each function that returns nothing."""
     for node in (context.node for context in nodes if isinstance(context.node, FUNCTIONS)):
         results = [
-            each
-            for each in ast.walk(node)
-            if isinstance(each, ast.Yield | ast.YieldFrom) or (isinstance(each, ast.Return) and each.value)
+            part
+            for part in ast.walk(node)
+            if isinstance(part, ast.Yield | ast.YieldFrom) or (isinstance(part, ast.Return) and part.value)
         ]
         if node.returns is None and not results:
             colon = _end_of_header(source, node)
@@ -160,7 +160,7 @@ def postponed_annotations(source: Source, nodes: list[NodeInContext]) -> Iterato
 
 
 def _calls(node: ast.AST) -> bool:
-    return any(isinstance(each, ast.Call | ast.Await) for each in ast.walk(node))
+    return any(isinstance(part, ast.Call | ast.Await) for part in ast.walk(node))
 
 
 def _operand(source: Source, node: ast.expr) -> str:
@@ -172,14 +172,14 @@ def _variables(function: Function) -> set[str]:
 
     Before Python 3.12, `ast` reports wrong positions inside f-strings.
     """
-    inside = list(ast.walk(function))
-    stored = {node.id for node in inside if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
-    other = {node.arg for node in inside if isinstance(node, ast.arg)}
-    other |= {name for node in inside if isinstance(node, ast.Global | ast.Nonlocal) for name in node.names}
-    other |= {node.name for node in inside if isinstance(node, ast.ExceptHandler) and node.name}
-    for outer in (node for node in inside if isinstance(node, ast.JoinedStr | ast.ClassDef)):
-        other |= {node.id for node in ast.walk(outer) if isinstance(node, ast.Name)}
-    return stored - other
+    nodes = list(ast.walk(function))
+    assigned = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    excluded = {node.arg for node in nodes if isinstance(node, ast.arg)}
+    excluded |= {name for node in nodes if isinstance(node, ast.Global | ast.Nonlocal) for name in node.names}
+    excluded |= {node.name for node in nodes if isinstance(node, ast.ExceptHandler) and node.name}
+    for outer in (node for node in nodes if isinstance(node, ast.JoinedStr | ast.ClassDef)):
+        excluded |= {node.id for node in ast.walk(outer) if isinstance(node, ast.Name)}
+    return assigned - excluded
 
 
 def _with_decorators(source: Source, function: Function) -> tuple[int, int]:

@@ -4,8 +4,8 @@
 
 Starting a worker takes about one core-second, as long as the checks of many submissions. The verification grades
 thousands of submissions that the course itself contains, so one worker in one worker sandbox grades many of them in
-sequence. A student's submission always gets a new worker in a new sandbox (`own_sandbox.in_own_sandbox`), and so does
-an attack. The inner sandboxes around students' code are the same in both cases.
+sequence. A student's submission always gets a new worker in a new sandbox (`own_sandbox.run_in_own_sandbox`), and so
+does an attack. The inner sandboxes around students' code are the same in both cases.
 
 The server receives jobs. For each job, a child sends the files that it produced, and then the server sends the child's
 exit status and output. Neither side unpickles anything.
@@ -43,7 +43,7 @@ def serve(scratch: Path, client: Connection) -> None:
         )  # computed here, so that the children inherit the cached values
         child = os.fork()
         if child == 0:
-            line.take(client)
+            line.set_line(client)
             _work(job, log_file)
         _, status = os.waitpid(child, 0)
         _reap_orphans()

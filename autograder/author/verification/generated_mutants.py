@@ -83,17 +83,17 @@ def generated_mutants(assignment: str) -> GeneratedMutants:
     """Return the mutants of a chapter. They depend only on its reference."""
     mutants: dict[str, GeneratedMutant] = {}
     omitted = 0
-    for file, functions, given in written_by_students(assignment):
+    for file, functions, provided_lines in written_by_students(assignment):
         text = (course_paths.SOLUTIONS / file).read_text(encoding="utf-8")
-        seen = {_meaning(file, text)}
+        meanings = {_meaning(file, text)}
         for function, (operator, changes) in mutations(file, text, functions):
-            if given.issuperset(_lines(text.encode(), changes)):
+            if provided_lines.issuperset(_lines(text.encode(), changes)):
                 continue
             meaning = _meaning(file, replaced(text.encode(), changes).decode())
-            if meaning in seen:
+            if meaning in meanings:
                 omitted += 1
                 continue
-            seen.add(meaning)
+            meanings.add(meaning)
             mutant = _named(file, function, operator, changes, text)
             assert mutant.id not in mutants, f"two mutants are called {mutant.id}"
             mutants[mutant.id] = mutant
@@ -101,19 +101,22 @@ def generated_mutants(assignment: str) -> GeneratedMutants:
 
 
 def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None, frozenset[bytes]]]:
-    """Yield (path, functions, given lines) for each file that students write or correct. None means all functions."""
+    """Yield (path, functions, provided lines) for each file that students write or correct.
+
+    The functions are those that students write; None means all. The provided lines are those of the faulty version.
+    """
     packages, chapter = suites.hidden(assignment).sources, Chapter(course_paths.chapter(assignment))
     copies = [(cell, copied) for cell in chapter.read().cells if (copied := copied_file(cell))]
     for cell, copied in copies:
         if is_solution(cell) and copied.source.parts[0] in packages:
             yield str(copied.source), frozenset(copied.hidden_functions) or None, frozenset()
-    given = chapter.folder / "ws" / "src"
-    written = {copied.source.parts[0] for _, copied in copies}
-    for package in set(packages) - written:  # students get a faulty version and correct it
-        for path in sorted((given / package).rglob("*")):
-            correct = course_paths.SOLUTIONS / path.relative_to(given)
+    source_folder = chapter.folder / "ws" / "src"
+    written_packages = {copied.source.parts[0] for _, copied in copies}
+    for package in set(packages) - written_packages:  # students get a faulty version and correct it
+        for path in sorted((source_folder / package).rglob("*")):
+            correct = course_paths.SOLUTIONS / path.relative_to(source_folder)
             if correct.is_file() and path.is_file() and correct.read_bytes() != path.read_bytes():
-                yield str(path.relative_to(given)), None, frozenset(path.read_bytes().splitlines())
+                yield str(path.relative_to(source_folder)), None, frozenset(path.read_bytes().splitlines())
 
 
 def mutations(file: str, text: str, functions: frozenset[str] | None) -> Iterator[tuple[str, Mutation]]:
@@ -125,12 +128,12 @@ def mutations(file: str, text: str, functions: frozenset[str] | None) -> Iterato
     nodes: list[ast.AST] = []
     for function, context in nodes_in_context(source, functions):
         nodes.append(context.node)
-        simple = itertools.chain(
+        single_node = itertools.chain(
             () if is_queue_length(context) else classic_mutations(source, context.node), ros_mutations(source, context)
         )
-        yield from ((function, (name, ((*source.span(node), new),))) for name, node, new in simple)
-        wider = itertools.chain(removal_mutations(source, context.node), multi_node_mutations(source, context))
-        yield from ((function, mutation) for mutation in wider)
+        yield from ((function, (name, ((*source.span(node), new),))) for name, node, new in single_node)
+        multi_node = itertools.chain(removal_mutations(source, context.node), multi_node_mutations(source, context))
+        yield from ((function, mutation) for mutation in multi_node)
     yield from (("", mutation) for mutation in wall_time(source, nodes))
 
 
@@ -177,7 +180,8 @@ def _meaning(file: str, text: str) -> object:
 
 def _code(code: CodeType) -> tuple[object, ...]:
     constants = tuple(
-        _code(each) if isinstance(each, CodeType) else (type(each), repr(each)) for each in code.co_consts
+        _code(constant) if isinstance(constant, CodeType) else (type(constant), repr(constant))
+        for constant in code.co_consts
     )
     exception_table = getattr(code, "co_exceptiontable", b"")  # since Python 3.11
     return code.co_code, constants, code.co_names, code.co_varnames, exception_table

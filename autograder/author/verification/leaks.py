@@ -34,10 +34,12 @@ def hidden_text_in(text: str, lines: Iterable[str] = ()) -> list[str]:
         lines: lines that occur only in hidden files.
     """
     decodings = list(_decodings(text))
-    words = {word for decoding in decodings for word in markers_in(decoding.lower())}
-    letters = {line: _letters(line) for line in lines}
-    words |= {line for line, short in letters.items() if any(line in each or short in each for each in decodings)}
-    return sorted(words)
+    leaked = {word for decoding in decodings for word in markers_in(decoding.lower())}
+    letters_of = {line: _letters(line) for line in lines}
+    for line, letters in letters_of.items():
+        if any(line in decoding or letters in decoding for decoding in decodings):
+            leaked.add(line)
+    return sorted(leaked)
 
 
 def texts_of(folder: Path) -> Iterator[str]:

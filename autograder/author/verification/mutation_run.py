@@ -46,7 +46,7 @@ class MutantResult:
 
     Attributes:
         killer: the check that failed, "" if none did, or FAILED if the grader failed.
-        error: what the grader reported when it failed; the last line of its log.
+        error: the last line of the grader's log if the grader failed.
     """
 
     id: str
@@ -84,24 +84,24 @@ class MutationRun:
 
     def _passed(self, built: Path) -> frozenset[str]:
         """Return the checks that the reference passes with this workspace instead of a new build."""
-        result = self._grade({}, Options(pictures=False, built=str(built)))
+        result = self._grade({}, Options(pictures=False, prebuilt=str(built)))
         return frozenset(check.id for check in result.checks if check.outcome is Outcome.PASSED)
 
     def run_mutant(self, mutant: GeneratedMutant, version: str = "") -> MutantResult:
         """Grade a mutant until a check fails."""
-        started = time.monotonic()
+        start = time.monotonic()
         try:
             killer, error = next(filter(None, self._stages(mutant)), ""), ""
         except GraderError as failure:
             killer, error = FAILED, str(failure)
-        result = MutantResult(mutant.id, killer, round(time.monotonic() - started, 2), version, error)
+        result = MutantResult(mutant.id, killer, round(time.monotonic() - start, 2), version, error)
         if result.killed:
             for location in {(mutant.file, mutant.function), (mutant.file, "")}:
                 self._killers[location][killer] += 1
         return result
 
     def _stages(self, mutant: GeneratedMutant) -> Iterator[str]:
-        """Yield the killer of each stage, or "". Fast checks and likely killers come first."""
+        """Grade the mutant in stages, and yield each one's killer or "". Fast checks and likely killers come first."""
         texts = mutant.texts()
         in_tests = all("/test/" in file for file in texts)
         # The reference's own tests would kill many mutants, but a student has other tests.
@@ -123,7 +123,7 @@ class MutationRun:
         return frozenset(name for name, _ in killers.most_common(MAX_LIKELY))
 
     def _killer(self, texts: dict[str, str], only: tuple[str, ...], built: str) -> str:
-        result = self._grade(texts, Options(only=only, first_loss=True, pictures=False, built=built))
+        result = self._grade(texts, Options(only=only, exit_first=True, pictures=False, prebuilt=built))
         if result.unjudged:
             raise GraderError(f"errors in the checks {', '.join(result.unjudged)}")
         failed = [check.id for check in result.checks if check.outcome is Outcome.FAILED]
@@ -162,14 +162,14 @@ def run_mutants(
     `cache` is a file of results. A stored result is reused if suite and reference are unchanged, so that an interrupted
     run can continue. Each new result is appended to the file and passed to `on_result`.
     """
-    version, chosen = _version(assignment), list(mutants)
+    version, all_mutants = _version(assignment), list(mutants)
     lines = cache.read_text(encoding="utf-8").splitlines() if cache.is_file() else []
     stored = {
         result.id: result
         for result in (MutantResult(**json.loads(line)) for line in lines)
         if result.version == version
     }
-    missing = [mutant for mutant in chosen if mutant.id not in stored]
+    missing = [mutant for mutant in all_mutants if mutant.id not in stored]
     cache.parent.mkdir(parents=True, exist_ok=True)
     with cache.open("a", encoding="utf-8") as file:
 
@@ -186,7 +186,7 @@ def run_mutants(
                     lambda mutant: run.run_mutant(mutant, version), missing, jobs=workers.count, on_done=append
                 )
     by_id = stored | {result.id: result for result in new}
-    return tuple(by_id[mutant.id] for mutant in chosen)
+    return tuple(by_id[mutant.id] for mutant in all_mutants)
 
 
 @contextmanager

@@ -84,7 +84,11 @@ def nodes_in_context(source: Source, functions: frozenset[str] | None) -> Iterat
             name = f"{name}.{node.name}".lstrip(".")
             function = node if isinstance(node, FUNCTIONS) else None
             inner = NodeInContext(node, inner.ancestors, function or context.function)
-            if function and functions is not None and not any(f"{name}.".startswith(f"{own}.") for own in functions):
+            if (
+                function
+                and functions is not None
+                and not any(f"{name}.".startswith(f"{written}.") for written in functions)
+            ):
                 return
         elif _is_not_mutated(node, context):
             return
@@ -129,8 +133,8 @@ def _operators(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
                 symbols = [SYMBOLS[type(op)] for op in node.ops]
                 if (symbol := SYMBOLS[type(old)]) in table:
                     symbols[changed] = table[symbol]
-                    rest = (f" {symbol} {operand}" for symbol, operand in zip(symbols, operands[1:], strict=True))
-                    yield name, node, f"({operands[0]}{''.join(rest)})"
+                    pairs = (f" {symbol} {operand}" for symbol, operand in zip(symbols, operands[1:], strict=True))
+                    yield name, node, f"({operands[0]}{''.join(pairs)})"
     elif isinstance(node, ast.BinOp) and type(node.op) in ARITHMETIC:
         new = ARITHMETIC[type(node.op)][1]
         yield "arithmetic", node, f"(({source.text(node.left)}) {new} ({source.text(node.right)}))"
@@ -190,8 +194,8 @@ def _statements(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     elif isinstance(node, ast.Assign | ast.AugAssign):
         target = node.targets[0] if isinstance(node, ast.Assign) else node.target
         owner = getattr(getattr(target, "value", None), "id", "self")
-        of_message = isinstance(target, ast.Attribute) and (owner != "self" or isinstance(target.value, ast.Attribute))
-        yield "no field" if of_message else "no assignment", node, "pass"
+        is_field = isinstance(target, ast.Attribute) and (owner != "self" or isinstance(target.value, ast.Attribute))
+        yield "no field" if is_field else "no assignment", node, "pass"
     elif isinstance(node, ast.Return):
         yield "no return", node, "return None" if node.value else "pass"
     elif isinstance(node, ast.Raise | ast.Assert | ast.Break | ast.Continue | ast.Delete):
@@ -211,8 +215,8 @@ def _arguments(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
         return
     positional = [source.text(argument) for argument in node.args]
     keywords = [
-        f"{each.arg}={source.text(each.value)}" if each.arg else f"**{source.text(each.value)}"
-        for each in node.keywords
+        f"{keyword.arg}={source.text(keyword.value)}" if keyword.arg else f"**{source.text(keyword.value)}"
+        for keyword in node.keywords
     ]
     function = source.text(node.func)
     if isinstance(node.func, ast.Attribute) and node.func.attr in LEVELS:
@@ -228,8 +232,8 @@ def _elements(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     if isinstance(node, ast.Tuple) and isinstance(node.ctx, ast.Load):
         elements = [source.text(element) for element in node.elts]
         for index in range(len(elements)):
-            rest = "".join(f"{element}, " for element in elements[:index] + elements[index + 1 :])
-            yield "element", node, f"({rest})"
+            remaining = "".join(f"{element}, " for element in elements[:index] + elements[index + 1 :])
+            yield "element", node, f"({remaining})"
 
 
 def removal_mutations(source: Source, node: ast.AST) -> Iterator[Mutation]:
@@ -237,9 +241,10 @@ def removal_mutations(source: Source, node: ast.AST) -> Iterator[Mutation]:
     parts: list[tuple[ast.AST, ast.AST]] = []
     if isinstance(node, ast.Call):
         arguments: list[ast.expr | ast.keyword] = [*node.args, *node.keywords]
-        parts = [(each, each) for each in sorted(arguments, key=lambda each: (each.lineno, each.col_offset))]
+        arguments.sort(key=lambda argument: (argument.lineno, argument.col_offset))
+        parts = [(argument, argument) for argument in arguments]
     elif isinstance(node, ast.List):
-        parts = [(each, each) for each in node.elts]
+        parts = [(element, element) for element in node.elts]
     elif isinstance(node, ast.Dict) and None not in node.keys:
         parts = [(key, value) for key, value in zip(node.keys, node.values, strict=True) if key is not None]
     spans = [source.span(*part) for part in parts]

@@ -16,7 +16,11 @@ def summary(verdicts: Sequence[Verdict], seconds: float) -> dict[str, object]:
     snapshot.
     """
     mutants = _of(verdicts, CaseKind.MUTANT)
-    missed = [each for each in mutants if not (each.result.status is Status.GRADED and failed_checks(each.result))]
+    missed = [
+        verdict
+        for verdict in mutants
+        if verdict.result.status is not Status.GRADED or not failed_checks(verdict.result)
+    ]
     attacks = _of(verdicts, CaseKind.ATTACK)
     return {
         "reference": min(_percents(verdicts, CaseKind.REFERENCE), default=None),

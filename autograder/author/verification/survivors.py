@@ -47,12 +47,12 @@ class ChapterMutationResult:
 
     @property
     def killed(self) -> int:
-        """How many mutants a check killed."""
+        """The number of mutants that a check killed."""
         return len(self.results) - len(self.survivors)
 
     @property
     def killable(self) -> int:
-        """How many mutants were graded, except survivors that are equivalent to the reference."""
+        """The number of graded mutants, except survivors that are equivalent to the reference."""
         return len(self.results) - sum(reason.startswith("equivalent: ") for reason in self.survivors.values())
 
     @property
@@ -97,20 +97,20 @@ def faults(chapters: Sequence[ChapterMutationResult]) -> list[str]:
     judged if all mutants of the chapter, or of all chapters, were graded.
     """
     sentences = [
-        f"{each.assignment}: the grader failed on {name}: {error}"
-        for each in chapters
-        for name, error in each.failed.items()
+        f"{chapter.assignment}: the grader failed on {name}: {error}"
+        for chapter in chapters
+        for name, error in chapter.failed.items()
     ]
-    for each in chapters:
-        diffs = {mutant.id: mutant.diff for mutant in each.generated.mutants}
+    for chapter in chapters:
+        diffs = {mutant.id: mutant.diff for mutant in chapter.generated.mutants}
         sentences += [
-            f"{each.assignment}: {name} survives without a reason\n{textwrap.indent(diffs[name](), '    ')}"
-            for name in each.unexplained
+            f"{chapter.assignment}: {name} survives without a reason\n{textwrap.indent(diffs[name](), '    ')}"
+            for name in chapter.unexplained
         ]
-    complete = [each for each in chapters if len(each.results) == len(each.generated.mutants)]
-    scores = [(each.assignment, each.killed, each.killable, MIN_KILLED) for each in complete]
-    if {each.assignment for each in complete} == set(suites.graded_assignments()):
-        killed, killable = sum(each.killed for each in complete), sum(each.killable for each in complete)
+    complete = [chapter for chapter in chapters if len(chapter.results) == len(chapter.generated.mutants)]
+    scores = [(chapter.assignment, chapter.killed, chapter.killable, MIN_KILLED) for chapter in complete]
+    if {chapter.assignment for chapter in complete} == set(suites.graded_assignments()):
+        killed, killable = sum(chapter.killed for chapter in complete), sum(chapter.killable for chapter in complete)
         scores.append(("all chapters", killed, killable, MIN_KILLED_OF_ALL))
     return sentences + [
         f"{name}: {killed} of {killable} mutants fail a check, but at least {required:.0%} must"
@@ -122,10 +122,10 @@ def faults(chapters: Sequence[ChapterMutationResult]) -> list[str]:
 def mutant_counts(chapters: Iterable[ChapterMutationResult]) -> dict[str, dict[str, list[int]]]:
     """Return the counts [killed, all] by chapter and operator."""
     counts: dict[str, dict[str, list[int]]] = {}
-    for each in chapters:
-        operators = {mutant.id: mutant.operator for mutant in each.generated.mutants}
-        by_operator = counts[each.assignment] = defaultdict(lambda: [0, 0])
-        for result in each.results:
+    for chapter in chapters:
+        operators = {mutant.id: mutant.operator for mutant in chapter.generated.mutants}
+        by_operator = counts[chapter.assignment] = defaultdict(lambda: [0, 0])
+        for result in chapter.results:
             for count in (by_operator[operators[result.id]], by_operator["all"]):
                 count[0] += result.killed
                 count[1] += 1
@@ -134,7 +134,7 @@ def mutant_counts(chapters: Iterable[ChapterMutationResult]) -> dict[str, dict[s
 
 def report(chapters: Sequence[ChapterMutationResult]) -> str:
     """Return a Markdown table of chapters and operators, followed by all survivors with their diffs."""
-    omitted = sum(each.generated.omitted for each in chapters)
+    omitted = sum(chapter.generated.omitted for chapter in chapters)
     return "\n".join([f"{HEAD}{omitted}.\n", *_table(chapters), *_survivors(chapters)])
 
 
@@ -146,15 +146,15 @@ def _table(chapters: Sequence[ChapterMutationResult]) -> Iterator[str]:
         cells = [chapter.get(operator, [0, 0]) for chapter in counts.values()]
         cells.insert(0, [sum(cell[i] for cell in cells) for i in (0, 1)])
         rows.append((operator, *(f"{killed}/{total}" if total else "" for killed, total in cells)))
-    scores = [(each.killed, each.killable) for each in chapters]
+    scores = [(chapter.killed, chapter.killable) for chapter in chapters]
     scores.insert(0, (sum(killed for killed, _ in scores), sum(killable for _, killable in scores)))
     rows.append(("without equivalent ones", *(f"{killed}/{killable}" for killed, killable in scores)))
     yield from table(("operator", "all", *(name[:2] for name in counts)), rows)
 
 
 def _survivors(chapters: Iterable[ChapterMutationResult]) -> Iterator[str]:
-    for each in chapters:
-        mutants = {mutant.id: mutant for mutant in each.generated.mutants}
-        yield f"## {each.assignment}: {len(each.survivors)} of {len(each.results)} survive\n"
-        for name, reason in each.survivors.items():
+    for chapter in chapters:
+        mutants = {mutant.id: mutant for mutant in chapter.generated.mutants}
+        yield f"## {chapter.assignment}: {len(chapter.survivors)} of {len(chapter.results)} survive\n"
+        for name, reason in chapter.survivors.items():
             yield f"`{name}`: {reason or '**no reason**'}\n\n```diff\n{mutants[name].diff()}\n```\n"

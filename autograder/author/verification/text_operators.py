@@ -84,7 +84,7 @@ def _in_definition(line: str) -> Iterator[tuple[str, int, int, str]]:
 def _numbers(text: str, offset: int) -> Iterator[tuple[str, int, int, str]]:
     for match in NUMBER.finditer(text):
         value = float(match[0]) if "." in match[0] else int(match[0])
-        negative = text[: match.start()].rstrip().endswith("-")
+        is_negative = text[: match.start()].rstrip().endswith("-")
         for name, new in numbers(value):
-            if not (negative and new.startswith("(")):
+            if not (is_negative and new.startswith("(")):
                 yield name, offset + match.start(), offset + match.end(), new.strip("()")

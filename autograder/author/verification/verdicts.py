@@ -60,7 +60,7 @@ class Verdict:
 
 
 def verify_full_marks(result: Result) -> str:
-    """Describe why a correct answer does not have every point."""
+    """Describe why a correct answer does not have full marks, or return an empty string."""
     if result.diagnosis.kind is not Kind.OK:
         return result.diagnosis.sentence
     missing = failed_checks(result)
@@ -68,7 +68,7 @@ def verify_full_marks(result: Result) -> str:
 
 
 def verify_zero(result: Result) -> str:
-    """Describe why an untouched student release does not have 0 points, or has them because it is broken."""
+    """Describe why an untouched student release scores points or is broken, or return an empty string."""
     if result.score:
         return f"it scores {result.score:g}"
     broken = BROKEN if suites.hidden(result.assignment).build_may_fail else BROKEN | NOT_BUILT

@@ -13,9 +13,9 @@ from autograder.author.verification.check_errors import errors_in_checks
 from autograder.author.verification.leaks import hidden_text_in, texts_of
 from autograder.author.verification.verdicts import CaseKind, Verdict, hidden_lines
 from autograder.author.verification.worker_pool import WorkerPool
-from autograder.grade.batch import stored
+from autograder.grade.batch import stored_result
 from autograder.grade.job import Job
-from autograder.grade.own_sandbox import in_own_sandbox
+from autograder.grade.own_sandbox import run_in_own_sandbox
 from autograder.grade.parallel import map_parallel
 from autograder.grade.pipeline import grade_submission
 from autograder.grade.store import LOG
@@ -54,9 +54,9 @@ def verify_cases(
             is_whole_suite = not case.options.only
             folder = folder if is_whole_suite else folder / PARTIAL
             job = Job(path, case.assignment, case.name, seed, folder, workers.isolation, case.options)
-            result = stored(job) if is_whole_suite else None
+            result = stored_result(job) if is_whole_suite else None
             if result is None or result.files_digest != job.suite.files_digest:  # the grader has changed
-                result = grade_submission(job, in_own_sandbox if case.kind is CaseKind.ATTACK else workers)
+                result = grade_submission(job, run_in_own_sandbox if case.kind is CaseKind.ATTACK else workers)
         mismatch = case.verify(result) if result.status is Status.GRADED else result.diagnosis.sentence
         if case.kind is CaseKind.ATTACK:
             mismatch = "; ".join(filter(None, (mismatch, _leak(result, folder))))

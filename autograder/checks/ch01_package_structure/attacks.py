@@ -1,4 +1,4 @@
-"""Attacks on 01: set-up files that steal, forge what was built and tested, and tests that fail whatever they see."""
+"""Attacks on 01: set-up files that steal and forge, and tests that always fail or report the reference."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ TestReference = tell(inspect.getsource(steps) + inspect.getsource(dancer))
 )
 
 
-def _with_hidden_copy(folder: Path) -> None:
+def _write_hidden_copy(folder: Path) -> None:
     """Write a package that lists its files by hand, and the reference below a folder that colcon ignores."""
     CHAPTER.write("files_by_hand")(folder)
     CHAPTER.write()(folder / "src/zz")
@@ -41,7 +41,7 @@ def _with_hidden_copy(folder: Path) -> None:
 
 
 def attacks() -> tuple[Attack, ...]:
-    """Return the attacks."""
+    """Return the attacks on the chapter."""
     unnamed, unlaunched = CHAPTER.mutant("pytest_unnamed").fails, CHAPTER.mutant("launch_not_installed").fails
     return (
         Attack(
@@ -55,7 +55,7 @@ def attacks() -> tuple[Attack, ...]:
         Attack(
             "package behind the package",
             "a right package of the same name, in a folder that colcon ignores, for the checks to read",
-            _with_hidden_copy,
+            _write_hidden_copy,
             CHAPTER.mutant("files_by_hand").fails,
             exactly=True,
         ),
@@ -76,7 +76,7 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "names in the way",
-            "a folder with the name of a file that the checks add, and a manifest with an encoding that nobody knows",
+            "a folder with the name of a file that the checks add, and a manifest with an unknown encoding",
             CHAPTER.write(
                 swaps={"wall_alarm/package.xml": ('<?xml version="1.0"?>', '<?xml version="1.0" encoding="foo"?>')},
                 files={f"{TESTS}/__init__.py/note.txt": ""},

@@ -34,7 +34,7 @@ WRITEFILE = f"%%writefile ws/src/{PACKAGE}/{CONTROLLER}\n"
 
 PUBLISH = "        self.cmd_vel_pub.publish(command)"
 COUNT = "        self.calls = getattr(self, 'calls', 0) + 1\n"
-# Name, description and first lines: robots that look at no scan, and touch little or nothing all the same.
+# Robots that ignore every scan and still touch little or nothing: name, description, and lines before the command.
 BLIND = (
     (
         "late driver",
@@ -60,7 +60,7 @@ def package_writer(
     """Return a function that writes a source tree with payloads.
 
     Args:
-        base: the mutant that gets them; the reference if None.
+        base: the mutant that gets them, or None for the reference.
         head: text before the controller's source.
         foot: text before the controller's `if __name__`.
         replace: parts of the controller's source, each with its new text.
@@ -69,14 +69,14 @@ def package_writer(
 
     def write(folder: Path) -> None:
         CHAPTER.write(base)(folder)
-        home = folder / "src" / PACKAGE
-        text = (home / CONTROLLER).read_text()
-        for find, put in replace.items():
-            assert text.count(find) == 1, find
-            text = text.replace(find, put)
-        (home / CONTROLLER).write_text(f"{head}\n{text}".replace("\nif __name__", f"\n{foot}\nif __name__"))
+        package = folder / "src" / PACKAGE
+        text = (package / CONTROLLER).read_text()
+        for old, new in replace.items():
+            assert text.count(old) == 1, old
+            text = text.replace(old, new)
+        (package / CONTROLLER).write_text(f"{head}\n{text}".replace("\nif __name__", f"\n{foot}\nif __name__"))
         for name, content in files.items():
-            path = (folder / name) if name.startswith("../") else (home / name)
+            path = (folder / name) if name.startswith("../") else (package / name)
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(content + (path.read_text() if name == "setup.py" else ""))
 
@@ -104,7 +104,7 @@ def notebook_writer(*cells: str, base: str | None = None) -> Callable[[Path], No
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks. One submission combines attacks that do not disturb each other."""
     slow, blind = CHAPTER.mutant("five_hertz").fails, CHAPTER.mutant("drives_blind").fails
-    everything = CHAPTER.checks
+    all_checks = CHAPTER.checks
     return (
         Attack(
             "thief",
@@ -115,7 +115,7 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "kernel holder",
-            "writes to settings of the kernel; holds inotify and descriptors that others of the machine's user need",
+            "writes kernel settings; holds inotify watches and descriptors that other processes of the user need",
             package_writer("five_hertz", head=HOLD_KERNEL),
             slow,
             exactly=True,
@@ -134,7 +134,7 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "lost messages",
-            "says in the host's place that no message of the grader's arrives",
+            "reports in the host's place that no message of the grader arrives",
             package_writer("five_hertz", head=LOSE_MESSAGES),
             slow,
         ),
@@ -150,9 +150,9 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "grader's name",
-            "calls its node as the grader's is called",
+            "gives its node the name of the grader's node",
             package_writer(None, replace={"__init__('robot_controller'": "__init__('grader'"}),
-            everything,
+            all_checks,
             frozenset({Kind.RESERVED_NAME}),
         ),
         Attack(
@@ -189,7 +189,7 @@ def attacks() -> tuple[Attack, ...]:
             "build link",
             "setup.py leaves a link out of the install space, which a mount would follow",
             package_writer(None, files={"setup.py": LEAVE_LINK}),
-            everything,
+            all_checks,
             frozenset({Kind.BUILD_FAILED}),
         ),
         Attack(
@@ -199,14 +199,14 @@ def attacks() -> tuple[Attack, ...]:
                 None,
                 files={"rclpy/__init__.py": "print('51/51')\nraise SystemExit(0)", "setup.py": INSTALL_OWN_RCLPY},
             ),
-            everything,
+            all_checks,
             frozenset({Kind.ENDED_EARLY, Kind.BUILD_FAILED, Kind.CRASHED_AT_IMPORT}),
         ),
         Attack(
             "fork bomb",
             "a fork bomb in __init__",
             package_writer(None, replace={"        self.last_scan_time = None\n": FORK_BOMB}),
-            everything,
+            all_checks,
             frozenset({Kind.OUT_OF_MEMORY}),
         ),
         Attack(
@@ -220,7 +220,7 @@ def attacks() -> tuple[Attack, ...]:
             "notebook link",
             "a cell puts a link to / where the workspace was",
             notebook_writer("import os\nos.rename('ws', 'old')\nos.symlink('/', 'ws')"),
-            everything,
+            all_checks,
             frozenset({Kind.NOTHING_SUBMITTED, Kind.UNSAFE_ARCHIVE}),
         ),
     )

@@ -1,4 +1,4 @@
-"""Fixtures of the suite: robots in the harness."""
+"""Fixtures that the visible and the hidden checks share: robots in a harness."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 from sensor_msgs.msg import LaserScan
 
 from autograder.checking import ReceivedMessage, Shared, StudentError, Workspace
-from autograder.checks.ch02_nodes.support.robot import Reactions, Robot, own_reactions
+from autograder.checks.ch02_nodes.support.robot import Reactions, Robot, observed_reactions
 from autograder.checks.ch02_nodes.support.scans import JUST_AHEAD, scan
 
 
@@ -21,14 +21,16 @@ def shared_robot(workspace: Workspace) -> Iterator[Shared[Robot]]:
 
 @pytest.fixture
 def robot(shared_robot: Shared[Robot]) -> Robot:
-    """A robot that has already seen other scans; each check shows it at least a second of its own."""
+    """A robot that has received other scans before; each check publishes its own for at least a second."""
     return shared_robot.get()
 
 
 @pytest.fixture(scope="session")
-def own(shared_robot: Shared[Robot]) -> Reactions:
-    """What this robot does where the way is clear, and where it is not."""
-    return own_reactions(_seen(shared_robot, scan(fill=2.0)), _seen(shared_robot, scan(JUST_AHEAD)))
+def reactions(shared_robot: Shared[Robot]) -> Reactions:
+    """The commands with which this robot reacts to a clear way and to an obstacle."""
+    return observed_reactions(
+        _commands_for(shared_robot, scan(fill=2.0)), _commands_for(shared_robot, scan(JUST_AHEAD))
+    )
 
 
 @pytest.fixture
@@ -38,8 +40,8 @@ def fresh_robot(workspace: Workspace) -> Iterator[Robot]:
         yield robot
 
 
-def _seen(shared: Shared[Robot], shown: LaserScan) -> list[ReceivedMessage]:
+def _commands_for(shared: Shared[Robot], message: LaserScan) -> list[ReceivedMessage]:
     try:
-        return shared.get().see(shown)
-    except StudentError:  # it is for the checks that show such a scan
+        return shared.get().see(message)
+    except StudentError:  # the checks that publish such a scan report it
         return []

@@ -1,4 +1,4 @@
-"""Attacks on 07: answers and log lines that are forged."""
+"""Attacks on 07: forged answers and log lines."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ CHAPTER = Chapter("07_best_practices")
 HOME = "my_robot_package/my_robot_package"
 UTILS = f"{HOME}/utils/data_processing.py"
 NODE, ROBUST = (f"{HOME}/nodes/{name}.py" for name in ("sensor_processor", "robust_node"))
-# Answers in the place of the program that calls the functions, wherever it is that.
+# Answers instead of the program that calls the functions, if it is imported by that program.
 FORGE_ANSWERS = """
 import json as _json, os as _os, sys as _sys
-_order = _sys._getframe()
-while _order and "order" not in _order.f_locals:
-    _order = _order.f_back
-if _order:
-    _steps = _order.f_locals["order"]["steps"]
-    _outcomes = [{"value": [1.0], "arguments": each["args"], "printed": ""} for each in _steps]
+_frame = _sys._getframe()
+while _frame and not isinstance(_frame.f_locals.get("request"), dict):  # that of call_runner.main
+    _frame = _frame.f_back
+if _frame:
+    _steps = _frame.f_locals["request"]["steps"]
+    _outcomes = [{"value": [1.0], "arguments": step["args"], "printed": ""} for step in _steps]
     for _descriptor in range(3, 64):
         try:
             _os.write(_descriptor, _json.dumps({"outcomes": _outcomes, "passed": True}).encode())

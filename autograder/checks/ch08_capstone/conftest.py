@@ -1,4 +1,4 @@
-"""Fixtures of the suite: the system in the harness."""
+"""Fixtures of the visible and the hidden checks: the student's programs in a harness."""
 
 from __future__ import annotations
 
@@ -21,5 +21,5 @@ def shared_system(workspace: Workspace) -> Iterator[SharedSystem]:
 
 @pytest.fixture
 def system(shared_system: SharedSystem) -> System:
-    """The system, which has seen other scans before; each check shows it an open space first, if that matters."""
+    """The system, which may have received scans of other checks; some checks publish an open space first."""
     return shared_system.get(*PROGRAMS)

@@ -80,7 +80,7 @@ class Reply:
 
 
 def _reply(data: bytes) -> tuple[dict[str, bytes], str]:
-    """Read a reply piece by piece, because 64 MiB at once could unpack to as many million empty lists."""
+    """Read a reply piece by piece, because unpacking 64 MiB at once could create 64 million empty lists."""
     if len(data) > MAX_REPLY:
         raise ValueError(f"it has {len(data)} bytes, but at most {MAX_REPLY} are allowed")
     unpacker = msgpack.Unpacker(

@@ -12,7 +12,7 @@ from jupyterhub.spawner import LocalProcessSpawner
 from traitlets import Unicode
 
 from autograder.ros.domains import DOMAINS, Domain
-from autograder.ros.exceptions import NoDomainLeftError
+from autograder.ros.exceptions import NoFreeDomainError
 
 SYSTEM_PATH = "/usr/local/bin:/usr/bin:/bin"
 
@@ -91,7 +91,7 @@ class CourseSpawner(LocalProcessSpawner):
         try:
             first = None if number is None else DOMAINS.index(number)
             self._domain = Domain(first, user=pwd.getpwnam(self.user.name).pw_uid)
-        except NoDomainLeftError as error:
+        except NoFreeDomainError as error:
             raise NoServerError(NoServerError.jupyterhub_message) from error
 
     def release_domain(self) -> None:

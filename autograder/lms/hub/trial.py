@@ -74,7 +74,9 @@ def install_release(folder: Path) -> Path:
 
 
 def install_proxy() -> Path:
-    """Install the hub's proxy with npm, as its lock file pins it, unless it is installed, and return its folder.
+    """Install the hub's proxy with npm, at the versions in its lock file, and return its folder.
+
+    An existing installation is reused.
 
     Raises:
         UsageError: npm failed.

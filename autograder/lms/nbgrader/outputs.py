@@ -54,8 +54,8 @@ def grade_outputs(points: float, page: PageView, group: GroupView, *, first: boo
 def _lines(check: CheckView) -> list[str]:
     """Return a check, and the checks that failed with it, as lines of text."""
     lines = [f"[{check.result.outcome.text}] {check.result.title} {check.message}".strip()]
-    if check.also:
-        lines += [FAILED_AS_WELL, *(line for other in check.also for line in _lines(other))]
+    if check.also_failed:
+        lines += [FAILED_AS_WELL, *(line for other in check.also_failed for line in _lines(other))]
     return lines + ([check.not_checked] if check.not_checked else [])
 
 

@@ -1,7 +1,7 @@
 """Hands in the submissions that students make through nbgrader's exchange.
 
-A submission is a folder STUDENT+ASSIGNMENT+TIME+RANDOM in the course's folder of the exchange. It belongs to the
-student, who can still change it. Therefore a process with the student's own rights packs it, without following links.
+A submission is a folder STUDENT+ASSIGNMENT+TIME+RANDOM in the course's folder of the exchange. The student owns it and
+can still change it. Therefore, a process that runs as the student packs it, without following links.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def find_submissions(inbound: Path) -> Iterator[ExchangeSubmission]:
     if not inbound.exists():
         return
     for entry in sorted(os.scandir(inbound), key=lambda item: item.name):
-        student, separator, rest = entry.name.partition("+")
+        student, separator, suffix = entry.name.partition("+")
         status = entry.stat(follow_symlinks=False)
         if not separator or not stat.S_ISDIR(status.st_mode) or not os.path.lexists(Path(entry.path, LAST_FILE)):
             continue
@@ -70,7 +70,7 @@ def find_submissions(inbound: Path) -> Iterator[ExchangeSubmission]:
         if owner.pw_name == student:
             # A student could forge the time in the name, but not this one.
             at = datetime.fromtimestamp(status.st_ctime, timezone.utc)
-            assignment = rest.partition("+")[0]
+            assignment = suffix.partition("+")[0]
             yield ExchangeSubmission(Path(entry.path), student, owner.pw_uid, owner.pw_gid, assignment, at)
 
 
@@ -83,7 +83,7 @@ def pack(submission: ExchangeSubmission) -> bytes:
     is_root = os.geteuid() == 0
     with subprocess.Popen(
         ["tar", "--create", "--gzip", "--directory", str(submission.folder), "."],
-        cwd="/",  # tar enters `--directory` with the student's rights
+        cwd="/",  # tar changes to `--directory` as the student
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         env={"PATH": os.defpath},

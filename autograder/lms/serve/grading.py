@@ -15,7 +15,7 @@ from autograder.grade.job import Job
 from autograder.lms.serve import visible
 from autograder.lms.serve.hand_in import HandIn, Mark
 from autograder.lms.serve.queue import ahead_of, next_turn
-from autograder.lms.serve.settings import Settings, Shown
+from autograder.lms.serve.settings import Settings, ShownParts
 from autograder.lms.serve.store import Store
 from autograder.report import feedback
 from autograder.result.model import Result
@@ -29,7 +29,7 @@ Grade = Callable[[Job], Result]
 
 @dataclass(frozen=True)
 class GradingOptions:
-    """How answers are graded: the number of simultaneous jobs, the seed, the isolation level, and the function."""
+    """The number of simultaneous gradings, the seed, the isolation level, and the function that grades an answer."""
 
     jobs: int
     seed: int
@@ -67,7 +67,7 @@ class Grader:
 
     async def _work(self, pool: ThreadPoolExecutor) -> None:
         while True:
-            hand_in = await self._take()
+            hand_in = await self._next_hand_in()
             try:
                 answer = self._store.begin(hand_in.number)
                 out = self._store.folder(hand_in.number)
@@ -80,7 +80,7 @@ class Grader:
                 del self._busy[hand_in.student]
                 await self.notify()  # the student may have another waiting answer
 
-    async def _take(self) -> HandIn:
+    async def _next_hand_in(self) -> HandIn:
         """Wait for an answer to grade, mark its student as busy, and return it."""
         async with self._queue_changed:
             while True:
@@ -91,7 +91,7 @@ class Grader:
                 await self._queue_changed.wait()
 
     def _grade(self, hand_in: HandIn, answer: bytes, out: Path) -> Mark:
-        """Grade an answer, and write its result and feedback page to `out`, which a killed process may have filled."""
+        """Grade an answer, and write its result and feedback page to `out`, replacing those of a killed process."""
         with TemporaryDirectory(prefix="answer-") as scratch:
             path = Path(scratch) / ANSWER
             path.write_bytes(answer)
@@ -99,7 +99,7 @@ class Grader:
             job = Job(path, hand_in.assignment, hand_in.student, options.seed, out, options.isolation)
             result = options.grade(job)
             settings = self._settings.assignments.get(hand_in.assignment)
-            if settings is not None and settings.shown is Shown.VISIBLE:
+            if settings is not None and settings.shown is ShownParts.VISIBLE:
                 visible.write(visible.run_visible(path, hand_in.assignment, options.isolation), out)
         feedback.write(result, out)
         return Mark(result.status, result.score, result.max_score)

@@ -23,7 +23,7 @@ from tornado.web import Application, HTTPError, RequestHandler, stream_request_b
 from autograder.grade.store import RESULT
 from autograder.lms.serve import pages
 from autograder.lms.serve.hand_in import HandIn, counted_hand_in
-from autograder.lms.serve.settings import AssignmentSettings, Shown
+from autograder.lms.serve.settings import AssignmentSettings, ShownParts
 from autograder.lms.serve.shared import Refused, Service
 from autograder.notebook.handing_in import MAX_ANSWER
 
@@ -143,8 +143,9 @@ class FeedbackHandler(HubUserHandler):
             self.finish(pages.state(hand_in, self.queue_position(hand_in)))
             return
         settings = self.service.settings.assignments.get(hand_in.assignment, AssignmentSettings())
-        shown = Shown.EVERYTHING if self.is_instructor else settings.shown_to(self.student, self.service.now())
-        self.finish(pages.feedback(hand_in, self.service.store.folder(hand_in.number), shown))
+        everything = ShownParts.EVERYTHING
+        shown_parts = everything if self.is_instructor else settings.shown_to(self.student, self.service.now())
+        self.finish(pages.feedback(hand_in, self.service.store.folder(hand_in.number), shown_parts))
 
 
 class ClassHandler(HubUserHandler):

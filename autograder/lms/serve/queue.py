@@ -12,10 +12,10 @@ from autograder.lms.serve.hand_in import HandIn
 def in_order(
     waiting: Iterable[HandIn], turns: Mapping[str, int], busy: Collection[str] = frozenset()
 ) -> Iterator[HandIn]:
-    """Yield the waiting answers in the order of their grading, as long as no other one arrives.
+    """Yield the waiting answers in the order in which they are graded if no other answer arrives.
 
     The next turn goes to the first student without a turn so far, or else to the student whose last turn was longest
-    ago. A student's own answers are graded in the order of their arrival. So no student overtakes another one twice.
+    ago. A student's answers are graded in the order of their arrival. So no student overtakes another one twice.
 
     Args:
         waiting: the answers, in any order.

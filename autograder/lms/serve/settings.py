@@ -28,7 +28,7 @@ import yaml
 from autograder.exceptions import UsageError
 from autograder.suite import suites
 from sim.exceptions import WorldError
-from sim.fields import Reader, Units, bad
+from sim.fields import Reader, Units, error_at
 
 TRIES_A_DAY = 5
 MAX_TRIES = 1000
@@ -36,7 +36,7 @@ MAX_INSTRUCTORS = 100_000
 MAX_BYTES = 1024 * 1024
 
 
-class Shown(str, Enum):
+class ShownParts(str, Enum):
     """The parts of a grading that a student sees before the assignment is due. After that, everything is shown."""
 
     EVERYTHING = "everything"  # the feedback page
@@ -51,7 +51,7 @@ class AssignmentSettings:
 
     due: datetime | None = None
     tries_a_day: int = TRIES_A_DAY
-    shown: Shown = Shown.EVERYTHING
+    shown: ShownParts = ShownParts.EVERYTHING
     best_counts: bool = False
     extensions: Mapping[str, datetime] = field(default_factory=dict)
 
@@ -64,9 +64,9 @@ class AssignmentSettings:
         due = self.due_of(student)
         return due is None or now <= due
 
-    def shown_to(self, student: str, now: datetime) -> Shown:
+    def shown_to(self, student: str, now: datetime) -> ShownParts:
         """Return the parts of a grading that the student sees."""
-        return self.shown if self.is_open(student, now) else Shown.EVERYTHING
+        return self.shown if self.is_open(student, now) else ShownParts.EVERYTHING
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ def read_settings(path: Path) -> Settings:
         entries = read.fields(fields["assignments"], "assignments", (), names)
         assignments = {name: _assignment(read, name, node, zone) for name, node in entries.items()}
         if not assignments:
-            raise bad(path, fields["assignments"], "no assignment is configured", f"Name one, such as {names[0]}")
+            raise error_at(path, fields["assignments"], "no assignment is configured", f"Name one, such as {names[0]}")
         return Settings(assignments, instructors, zone, _exchange(read, fields.get("exchange")))
     except WorldError as error:  # from `Reader`, which also reads the simulator's files
         raise UsageError(str(error)) from None
@@ -132,17 +132,21 @@ def _assignment(read: Reader, name: str, node: yaml.Node, zone: tzinfo) -> Assig
     due = _time(read, fields["due"], "due", zone) if "due" in fields else None
     extensions = _extensions(read, fields.get("extensions"), zone)
     if extensions and due is None:
-        raise bad(read.path, fields["extensions"], f"{name} has extensions and is never due", "Add `due`")
-    shown = read.choice(fields.get("shown"), "shown", [each.value for each in Shown], Shown.EVERYTHING.value)
+        raise error_at(read.path, fields["extensions"], f"{name} has extensions and is never due", "Add `due`")
+    shown = read.choice(
+        fields.get("shown"), "shown", [choice.value for choice in ShownParts], ShownParts.EVERYTHING.value
+    )
     counts = read.choice(fields.get("counts"), "counts", ("best", "last"), "last")
-    return AssignmentSettings(due, _tries(read, fields.get("tries_a_day")), Shown(shown), counts == "best", extensions)
+    return AssignmentSettings(
+        due, _tries(read, fields.get("tries_a_day")), ShownParts(shown), counts == "best", extensions
+    )
 
 
 def _extensions(read: Reader, node: yaml.Node | None, zone: tzinfo) -> dict[str, datetime]:
     if node is None:
         return {}
     if not isinstance(node, yaml.MappingNode):
-        raise bad(read.path, node, "extensions are not a mapping", "Give {ada: 2026-10-19 23:59}")
+        raise error_at(read.path, node, "extensions are not a mapping", "Give {ada: 2026-10-19 23:59}")
     names = [_text(read, key, "a student") for key, _ in node.value]
     fields = read.fields(node, "extensions", (), names)
     return {name: _time(read, value, f"the extension of {name}", zone) for name, value in fields.items()}
@@ -153,7 +157,7 @@ def _tries(read: Reader, node: yaml.Node | None) -> int:
         return TRIES_A_DAY
     number = read.number(node, "tries_a_day")
     if number != int(number) or not 1 <= number <= MAX_TRIES:
-        raise bad(read.path, node, f"tries_a_day is {number:g}", f"Give a whole number from 1 to {MAX_TRIES}")
+        raise error_at(read.path, node, f"tries_a_day is {number:g}", f"Give a whole number from 1 to {MAX_TRIES}")
     return int(number)
 
 
@@ -162,9 +166,9 @@ def _time(read: Reader, node: yaml.Node, label: str, zone: tzinfo) -> datetime:
     try:
         time = datetime.fromisoformat(text)
     except ValueError:
-        raise bad(read.path, node, f"{label} is {text!r}", "Give a time such as 2026-10-12 23:59") from None
+        raise error_at(read.path, node, f"{label} is {text!r}", "Give a time such as 2026-10-12 23:59") from None
     if len(text) <= len("2026-10-12"):  # Python reads a date as its start, but people mean its end
-        raise bad(read.path, node, f"{label} has no time of day", f"Write {text} 23:59")
+        raise error_at(read.path, node, f"{label} has no time of day", f"Write {text} 23:59")
     return time if time.tzinfo is not None else time.replace(tzinfo=zone)
 
 
@@ -174,7 +178,8 @@ def _exchange(read: Reader, node: yaml.Node | None) -> Path | None:
     path = Path(_text(read, node, "exchange"))
     if not path.is_absolute() or path.name != "inbound":
         example = "/srv/ros2/exchange/ros2-python/inbound"
-        raise bad(read.path, node, f"exchange is {str(path)!r}", f"Give the course's folder in it, such as {example}")
+        remedy = f"Give the course's folder in it, such as {example}"
+        raise error_at(read.path, node, f"exchange is {str(path)!r}", remedy)
     return path
 
 
@@ -185,11 +190,11 @@ def _zone(read: Reader, node: yaml.Node | None) -> tzinfo:
     try:
         return zoneinfo.ZoneInfo(name)
     except (OSError, ValueError, KeyError):  # a folder, a path outside the database, or an unknown name
-        raise bad(read.path, node, f"unknown time zone {name!r}", "Give one such as Europe/Berlin") from None
+        raise error_at(read.path, node, f"unknown time zone {name!r}", "Give one such as Europe/Berlin") from None
 
 
 def _text(read: Reader, node: yaml.Node, label: str) -> str:
     text = read.text(node, label).strip()
     if not text:
-        raise bad(read.path, node, f"{label} is blank", "Write it, or leave the line out")
+        raise error_at(read.path, node, f"{label} is blank", "Write it, or leave the line out")
     return text

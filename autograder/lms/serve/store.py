@@ -42,7 +42,7 @@ _COLUMNS = "number, student, assignment, at, status, points, max_points"
 
 
 class Store:
-    """The hand-ins in a private folder, which is created if necessary."""
+    """The stored hand-ins, in a private folder that is created if necessary."""
 
     def __init__(self, folder: Path) -> None:
         """Open the store. Raises UsageError if it cannot be opened, or if another process uses it."""

@@ -98,4 +98,4 @@ def _reason(result: Result) -> str:
         return no_mark(result)
     if not page.started:
         return result.diagnosis.sentence
-    return (page.first.message or page.first.title) if page.first else ""
+    return (page.costliest.message or page.costliest.title) if page.costliest else ""

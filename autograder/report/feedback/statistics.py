@@ -11,8 +11,8 @@ from statistics import StatisticsError, correlation, median
 from autograder.result.model import CheckResult, Result
 from autograder.suite import Outcome
 
-BAND_PERCENT = 10  # width of a bar of the distribution
-SHOWN_REASONS = 8
+BAND_PERCENT = 10  # the width of a bar in the distribution
+MAX_REASONS = 8
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ def class_statistics(results: Sequence[Result]) -> ClassStatistics:
     return ClassStatistics(
         tuple(bands[band] for band in range(100 // BAND_PERCENT)),
         tuple(missed),
-        tuple((message, count) for message, count in messages.most_common(SHOWN_REASONS) if count > 1),
+        tuple((message, count) for message, count in messages.most_common(MAX_REASONS) if count > 1),
         median(result.seconds for result in results),
     )
 

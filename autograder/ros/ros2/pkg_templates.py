@@ -1,6 +1,6 @@
-"""The files of a new package, as text; nothing here touches the disk.
+"""Templates for the files of a new package. This module does not write files.
 
-The fields and what they mean are those of Jazzy's `ros2 pkg create`; the wording is our own.
+The fields and their meanings are those of Jazzy's `ros2 pkg create`, but the wording differs.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 LICENCES = Path(__file__).parent / "licences"
 
-# Jazzy's identifiers, in the order in which it lists them. BSD-2.0 is its older name of the three-clause licence.
+# Jazzy's identifiers, in the order in which it lists them. BSD-2.0 is its older name for the three-clause licence.
 LICENCE_TEXTS = {
     "Apache-2.0": "Apache-2.0",
     "BSL-1.0": "BSL-1.0",
@@ -27,17 +27,17 @@ LICENCE_TEXTS = {
 
 @dataclass(frozen=True)
 class PackageSpec:
-    """What the user wants to have in a new package.
+    """The options for a new package.
 
     Attributes:
         name: the package's name.
         build_type: `ament_python` or `ament_cmake`.
-        package_format: of package.xml, 2 or 3.
+        package_format: the format of package.xml, 2 or 3.
         description, licence: for package.xml and setup.py.
-        maintainer_name, maintainer_email: likewise.
+        maintainer_name, maintainer_email: for package.xml and setup.py.
         dependencies: names of packages to depend on.
-        node_name: an executable to begin with, of `ament_python` only, or `None`.
-        library_name: a library to begin with, of `ament_python` only, or `None`.
+        node_name: an executable to create, only for `ament_python`, or `None`.
+        library_name: a library to create, only for `ament_python`, or `None`.
     """
 
     name: str
@@ -53,7 +53,7 @@ class PackageSpec:
 
 
 def licence_text(identifier: str, holder: str, year: int) -> str | None:
-    """Return the text for the LICENSE file, or `None` for a licence that is not known."""
+    """Return the text of the LICENSE file, or `None` for an unknown licence."""
     file = LICENCE_TEXTS.get(identifier)
     if file is None:
         return None
@@ -62,7 +62,7 @@ def licence_text(identifier: str, holder: str, year: int) -> str | None:
 
 
 def package_xml(spec: PackageSpec) -> str:
-    """Return the manifest."""
+    """Return the manifest, package.xml."""
     if spec.build_type == "ament_python":
         tools, tests = [], ["ament_copyright", "ament_flake8", "ament_pep257", "python3-pytest"]
     else:
@@ -118,7 +118,7 @@ setup(
 
 
 def setup_cfg(spec: PackageSpec) -> str:
-    """Return setup.cfg of an ament_python package: executables go where `ros2 run` and launch files look."""
+    """Return setup.cfg of an ament_python package, which installs executables where `ros2 run` looks for them."""
     return f"""[develop]
 script_dir=$base/lib/{spec.name}
 [install]
@@ -196,6 +196,6 @@ def test_pep257():
 
 
 def _quoted(text: str) -> str:
-    """Return a Python literal in single quotes, as ROS's style wants it, whatever the text holds."""
+    """Return a Python string literal in single quotes, as ROS's style requires."""
     literal = repr(text)
     return literal if literal[0] == "'" else "'" + literal[1:-1].replace("'", "\\'") + "'"

@@ -1,4 +1,4 @@
-"""The QoS options of `topic pub`, `topic echo`, and what they amount to."""
+"""The QoS options of `topic pub` and `topic echo`, and the profiles that they select."""
 
 from __future__ import annotations
 
@@ -60,8 +60,8 @@ def chosen_profile(args: argparse.Namespace) -> QoSProfile:
     return profile
 
 
-def profile_to_listen_with(node: Node, topic: str, args: argparse.Namespace) -> QoSProfile:
-    """Return the user's profile, or if no policy was given one that connects to every publisher there is."""
+def subscription_profile(node: Node, topic: str, args: argparse.Namespace) -> QoSProfile:
+    """Return the user's profile, or, if no policy was given, one that is compatible with every publisher."""
     profile = chosen_profile(args)
     names = ("depth", *_POLICIES, "liveliness_lease_duration_seconds")
     publishers = node.get_publishers_info_by_topic(topic)
@@ -72,11 +72,11 @@ def profile_to_listen_with(node: Node, topic: str, args: argparse.Namespace) -> 
     durable = [qos.durability == QoSDurabilityPolicy.TRANSIENT_LOCAL for qos in offered]
     profile.reliability = QoSReliabilityPolicy.RELIABLE if all(reliable) else QoSReliabilityPolicy.BEST_EFFORT
     profile.durability = QoSDurabilityPolicy.TRANSIENT_LOCAL if all(durable) else QoSDurabilityPolicy.VOLATILE
-    for having, best, fallback in (
+    for flags, best, fallback in (
         (reliable, "QoSReliabilityPolicy.RELIABLE", "QoSReliabilityPolicy.BEST_EFFORT"),
         (durable, "QoSDurabilityPolicy.TRANSIENT_LOCAL", "QoSDurabilityPolicy.VOLATILE"),
     ):
-        if any(having) and not all(having):
+        if any(flags) and not all(flags):
             print(
                 f"Some, but not all, publishers are offering {best}. "
                 f"Falling back to {fallback} as it will connect to all publishers"

@@ -1,11 +1,11 @@
-"""Interprets the name of a file: a notebook, an archive, the assignment, its student."""
+"""Recognises notebooks, archives and assignments by the names of files."""
 
 from __future__ import annotations
 
 from pathlib import PurePosixPath
 
 NOTEBOOKS = (".ipynb", ".ipynb.txt", ".ipynb.json")  # browsers add a suffix to files that they show as text
-# Also of archives that the grader does not open: it says so.
+# Including archives that the grader cannot open, so that it can say so.
 ARCHIVES = (
     *(".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tbz2", ".tbz", ".tar.xz", ".txz"),
     *(".gz", ".bz2", ".xz", ".7z", ".rar", ".zst", ".tzst", ".tar.zst"),

@@ -11,7 +11,7 @@ import pytest
 
 from autograder.ros.ros2.exceptions import NotCoveredError
 from autograder.ros.ros2.main import COMMANDS
-from autograder.ros.ros2.main import stand_in as main
+from autograder.ros.ros2.main import run_stand_in as main
 from autograder.ros.ros2.parsing import Verb, parse, positive_float, positive_int, unsigned_int
 
 COVERED = {name: command for name, command in COMMANDS.items() if command.module}
@@ -111,8 +111,8 @@ def test_the_real_ros2cli_takes_over_if_it_is_installed(tmp_path: Path) -> None:
 
 def test_verbs_without_a_graph_do_not_import_rclpy() -> None:
     code = (
-        "import sys; from autograder.ros.ros2.main import stand_in; stand_in(['pkg', 'prefix', 'rclpy']); "
-        "stand_in(['interface', 'show', 'std_msgs/msg/String']); print('rclpy' in sys.modules)"
+        "import sys; from autograder.ros.ros2.main import run_stand_in; run_stand_in(['pkg', 'prefix', 'rclpy']); "
+        "run_stand_in(['interface', 'show', 'std_msgs/msg/String']); print('rclpy' in sys.modules)"
     )
     completed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert completed.stdout.endswith("\nFalse\n"), completed.stderr

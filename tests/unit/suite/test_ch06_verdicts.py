@@ -130,7 +130,7 @@ def examination(tmp_path: Path) -> Examination:
 def test_tests_that_fail_on_all_faults_of_a_line_earn_its_points(examination: Examination) -> None:
     examination.expect_objection("unknown", "the promise.")
     examination.expect_right(LIMITS)
-    assert examination.endless() == []
+    assert examination.endless_files() == []
 
 
 def test_tests_that_fail_on_some_faults_of_a_line_earn_a_part_and_the_line_is_named(examination: Examination) -> None:
@@ -152,7 +152,7 @@ def test_a_test_that_also_fails_on_right_versions_earns_nothing(examination: Exa
 def test_a_stopped_run_counts_as_failed_and_as_endless(examination: Examination) -> None:
     examination.__dict__["runs"][LIMITS, "nan_is_clear"] = report(exit_reason=ExitReason.WALL_TIME)
     examination.expect_objection("unknown", "the promise.")
-    assert examination.endless() == [LIMITS]
+    assert examination.endless_files() == [LIMITS]
 
 
 def test_tests_that_fail_in_reverse_order_are_reported(examination: Examination) -> None:

@@ -1,4 +1,4 @@
-"""What the student's square does: its function alone, and then the robot."""
+"""Checks of the student's square: first the function alone, then the robot."""
 
 from __future__ import annotations
 
@@ -51,20 +51,20 @@ def test_robot(workspace: Workspace) -> None:
     expect(58 <= len(commands) <= 62, f"In 6 s it published {len(commands)} commands.")
     forward = sum(_near(command.linear.x, SPEED) for command in commands) / 10.0
     turning = sum(_near(command.angular.z, RATE) for command in commands) / 10.0
-    right = abs(forward - SIDE) <= 0.2 and abs(turning - TURN) <= 0.2
-    expect(right, f"In 6 s it drove for {forward:.1f} s and turned for {turning:.1f} s, instead of 4 s and 2 s.")
+    is_square = abs(forward - SIDE) <= 0.2 and abs(turning - TURN) <= 0.2
+    expect(is_square, f"In 6 s it drove for {forward:.1f} s and turned for {turning:.1f} s, instead of 4 s and 2 s.")
 
 
 def _expect(workspace: Workspace, seconds: float, linear: float, angular: float) -> None:
-    shown = f"command_at({seconds:g})"
+    call_text = f"command_at({seconds:g})"
     (outcome,) = calls.calls(workspace, MODULE, calls.call("command_at", seconds))
-    got = calls.value(outcome, shown)
-    pair = isinstance(got, list) and len(got) == 2 and all(isinstance(x, int | float) for x in got)
-    expect(pair, f"{shown} returned {got} instead of two numbers.")
-    right = _near(got[0], linear) and _near(got[1], angular)
-    wanted = f"({linear:.3f}, {angular:.3f})"
-    expect(right, f"{shown} returned ({got[0]:.3f}, {got[1]:.3f}) instead of {wanted}.")
+    returned = calls.value(outcome, call_text)
+    is_pair = isinstance(returned, list) and len(returned) == 2 and all(isinstance(x, int | float) for x in returned)
+    expect(is_pair, f"{call_text} returned {returned} instead of two numbers.")
+    is_correct = _near(returned[0], linear) and _near(returned[1], angular)
+    expected = f"({linear:.3f}, {angular:.3f})"
+    expect(is_correct, f"{call_text} returned ({returned[0]:.3f}, {returned[1]:.3f}) instead of {expected}.")
 
 
-def _near(got: float, wanted: float) -> bool:
-    return abs(got - wanted) <= TOLERANCE
+def _near(value: float, expected: float) -> bool:
+    return abs(value - expected) <= TOLERANCE

@@ -1,4 +1,4 @@
-"""The dancer, started as `ros2 run` starts it."""
+"""Checks of the dancer, started like with `ros2 run`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ HINTS = (
 
 @dataclass(frozen=True)
 class RunningDancer:
-    """A dancer in the harness, and how long the side of its square is, in metres."""
+    """A dancer in a harness, and the side length of its square in metres."""
 
     harness: SteppedHarness
     side: float
@@ -30,7 +30,7 @@ class RunningDancer:
 
 @pytest.fixture(scope="module")
 def running_dancer(workspace: Workspace, seed: int) -> Iterator[RunningDancer]:
-    """One dancer for the checks that it starts, and that it dances."""
+    """A dancer that the checks of its start and of its dance share."""
     side = round(random.Random(f"{seed}:side").uniform(0.5, 1.5), 2)
     with robots.dancer(workspace, "-p", f"side:={side}") as harness:
         yield RunningDancer(harness, side)
@@ -59,8 +59,8 @@ def test_configured(workspace: Workspace, installed_dance: installed.Installed) 
     """With the installed configuration it dances a square of the size that is written there."""
     path = installed_dance.prefix / "share" / installed_dance.package / contract.DANCE_CONFIG
     side = _side(installed_dance.read(contract.DANCE_CONFIG) or b"")
-    given = contract.CONFIGURED_SIDE
-    expect(side == given, f"The configuration was given with a side of {given:g} m. Yours says {side:g} m.")
+    expected = contract.CONFIGURED_SIDE
+    expect(side == expected, f"The configuration was given with a side of {expected:g} m. Yours says {side:g} m.")
     with robots.dancer(workspace, "--params-file", str(path)) as harness:
         robots.expect_dance(harness, side)
 

@@ -14,7 +14,7 @@ EMPTY_FILES = (
     "square_dance/nodes/__init__.py",
     "square_dance/utils/__init__.py",
 )
-SIDE, CONFIGURED_SIDE = 1.0, 1.5  # m, the default of the node and what the configuration says
+SIDE, CONFIGURED_SIDE = 1.0, 1.5  # m: the default of the node, and the value in the configuration
 SPEED = 0.25  # m/s
 TURN = math.pi / 8  # rad/s
 

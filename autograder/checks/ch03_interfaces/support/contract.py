@@ -60,8 +60,8 @@ METRES_PER_PERCENT = 5.0  # m
 MAX_DISTANCE = 5.0  # m
 MAX_SPEED = 0.5  # m/s
 PERIOD = 0.1  # s between two commands
-MAX_REASON = 80  # characters that fit into a reason
-PATIENCE = 1.0  # s without progress until a goal is given up
+MAX_REASON = 80  # characters of a reason
+PATIENCE = 1.0  # s without progress until a goal is aborted
 
 DOCS = "https://docs.ros.org/en/jazzy/"
 DEFINE = f"{DOCS}Tutorials/Beginner-Client-Libraries/Custom-ROS2-Interfaces.html"

@@ -1,4 +1,4 @@
-"""Whether a launch starts a program again, as often as it is killed."""
+"""Tests whether a launch restarts a program each time it is killed."""
 
 from __future__ import annotations
 
@@ -6,37 +6,37 @@ import time
 
 from autograder.checking import LaunchHarness, RunningProgram, expect
 
-RESPAWN_SECONDS = 10.0  # real time, generous for a machine that is busy
+RESPAWN_SECONDS = 10.0  # s of real time; the machine may be busy
 DELAY = 0.5  # s
-LATE = 0.95  # s; a machine that is busy adds to the delay, but hardly so much each time
+LATE = 0.95  # s; a busy machine adds to the delay, but hardly so much in each of three trials
 TIMES = ("once", "twice", "three times")
 
 
 def expect_respawn(harness: LaunchHarness) -> None:
-    """Kill the reporter three times and expect another one each time, half a second later.
+    """Kill the reporter three times; fail the check unless a new one starts half a second later each time.
 
     Raises:
-        CheckFailed: it stays away, comes too early, comes late each time, or the launch ends.
+        CheckFailed: no new one starts, one starts too early, all start too late, or the launch ends.
     """
     seconds = [_respawn(harness, times) for times in TIMES]
-    again = f"The reporter was started again {{:.2f}} s after it had been killed, instead of after {DELAY:g} s."
-    expect(min(seconds) >= DELAY - harness.start_resolution, again.format(min(seconds)), fraction=0.5)
-    expect(min(seconds) < LATE, again.format(min(seconds)), fraction=0.5)
+    template = f"The reporter was started again {{:.2f}} s after it had been killed, instead of after {DELAY:g} s."
+    expect(min(seconds) >= DELAY - harness.start_resolution, template.format(min(seconds)), fraction=0.5)
+    expect(min(seconds) < LATE, template.format(min(seconds)), fraction=0.5)
 
 
-def _respawn(harness: LaunchHarness, times: str) -> float:
-    """Kill the reporter, and return after how many seconds the kernel started the next one."""
+def _respawn(harness: LaunchHarness, count_text: str) -> float:
+    """Kill the reporter; return the seconds until the kernel started the next one."""
     before, started = _reporters(harness), list[float]()
-    killed = time.clock_gettime(time.CLOCK_BOOTTIME)
+    kill_time = time.clock_gettime(time.CLOCK_BOOTTIME)
     harness.kill("reporter")
 
-    def back() -> bool:
+    def has_restarted() -> bool:
         started.extend(filter(None, (program.start_seconds for program in _reporters(harness) - before)))
         return bool(started)
 
-    expect(harness.wait_for(back, RESPAWN_SECONDS), f"The reporter was killed {times}, and stayed away.")
+    expect(harness.wait_for(has_restarted, RESPAWN_SECONDS), f"The reporter was killed {count_text}, and stayed away.")
     expect(harness.status is None, "The reporter was killed, and the launch ended with it.")
-    return min(started) - killed
+    return min(started) - kill_time
 
 
 def _reporters(harness: LaunchHarness) -> set[RunningProgram]:

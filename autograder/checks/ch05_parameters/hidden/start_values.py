@@ -1,4 +1,4 @@
-"""The node started with other values than its defaults: it has them, drives by them, or refuses to start."""
+"""The node's behaviour when it is started with values other than its defaults."""
 
 from __future__ import annotations
 
@@ -8,22 +8,35 @@ from random import Random
 
 import pytest
 
-from autograder.checking import Artifacts, CheckFailed, Shared, Workspace, drive, expect, group, hint, temporal
-from autograder.checking.probes import calls, parameters
-from autograder.checks.ch05_parameters.support import contract
-from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, refusal
+from autograder.checking import (
+    Artifacts,
+    CheckFailed,
+    Shared,
+    Workspace,
+    drive,
+    expect,
+    group,
+    hint,
+    temporal,
+)
+from autograder.checking.drawn_cases import expect_each
+from autograder.checking.probes import parameters
+from autograder.checks.ch05_parameters.support import bench, contract
+from autograder.checks.ch05_parameters.support.answers import allowed_start, expect_start, subtlety
+from autograder.checks.ch05_parameters.support.drawn_requests import REFUSED, TAKEN, Request, starts, values_text
+from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, start_error
 from sim import Pose, RobotSpec, Simulation, World, box
 
 check = group("start")
-CONFIGURATION = "my_robot_package.configuration"
+STARTS = {REFUSED: 12, TAKEN: 4}  # numbers of drawn starts, all in one process
 RADIUS = 0.18  # m
-SECONDS = 20.0
-NEAR = 0.02  # m between where it stands and where it should
+SECONDS = 16.0
+STOP_MARGIN = 0.02  # m between where it stands and where it should
 
 
 @dataclass(frozen=True)
 class Configured:
-    """A node that was started with values of its own, and those values."""
+    """A node that was started with drawn values, and these values."""
 
     robot: Robot
     values: dict[str, parameters.Value]
@@ -49,7 +62,7 @@ def start_numbers(seed: int) -> dict[str, float]:
 
 @pytest.fixture(scope="module")
 def configured(workspace: Workspace, shared_robot: Shared[Robot], seed: int) -> Iterator[Configured]:
-    """A node started with drawn values for all six parameters."""
+    """A node that was started with drawn values for all six parameters."""
     present = shared_robot.get()
     numbers = start_numbers(seed)
     drawn = {name: present.allowed(name, number, up=name == "slow_distance") for name, number in numbers.items()}
@@ -98,12 +111,11 @@ def test_start_threshold(configured: Configured) -> None:
     """It stands still with a battery below its threshold, and drives with one above."""
     situation = f"With a threshold of {configured.threshold} percent and a charge of"
     low, high = configured.threshold - 5, configured.threshold + 5
-    configured.robot.charge(low)
+    configured.robot.publish_charge(low)
     expect_speed(configured.robot.speed_at(3.0), 0.0, f"{situation} {low}")
-    configured.robot.charge(high)
-    expect(
-        configured.robot.speed_at(3.0) > 0.0, f"{situation} {high}, it does not drive."
-    )  # how fast is no matter here
+    configured.robot.publish_charge(high)
+    drives = configured.robot.speed_at(3.0) > 0.0  # at any speed
+    expect(drives, f"{situation} {high}, it does not drive.")
 
 
 @check(points=3, covers="safety_distance", needs=("starts",), after=("overrides", "start_speed"))
@@ -111,18 +123,24 @@ def test_start_threshold(configured: Configured) -> None:
 @hint("Drive it yourself: drive(..., parameters={'safety_distance': 0.9, 'slow_distance': 1.4}).")
 def test_stops(configured: Configured, draw: Random, artifacts: Artifacts) -> None:
     """In the simulator, it drives up to a wall and stops at its safety distance."""
-    recording = drive(configured.robot, _towards_a_wall(draw), SECONDS).recording
+    recording = drive(configured.robot, _hall(draw), SECONDS).recording
     ahead = (recording.simulation.world.bounds[2] - recording.poses[:, 0, 0]).tolist()
-    end = ahead[-1]
-    sentence = f"With a safety distance of {configured.safety} m, it stood {end:.2f} m before the wall in the end."
-    verdict = temporal.always(
-        "gap > 0", recording.times.tolist(), {"gap": [x - configured.safety + NEAR for x in ahead]}
+    final_distance = ahead[-1]
+    sentence = (
+        f"With a safety distance of {configured.safety} m, it stood {final_distance:.2f} m before the wall in the end."
     )
-    rules = {f"the distance to the wall, in m, is above {configured.safety - NEAR:.2f}": verdict}
-    artifacts.track("track", recording, sentence, mark=SECONDS, note=f"{end:.2f} m", rules=rules)
+    verdict = temporal.always(
+        "gap > 0", recording.times.tolist(), {"gap": [x - configured.safety + STOP_MARGIN for x in ahead]}
+    )
+    rules = {f"the distance to the wall, in m, is above {configured.safety - STOP_MARGIN:.2f}": verdict}
+    artifacts.track("track", recording, sentence, mark=SECONDS, note=f"{final_distance:.2f} m", rules=rules)
     if verdict.violated_at is not None:
         raise CheckFailed(f"It came nearer than {configured.safety} m at t = {verdict.violated_at:.1f} s. {sentence}")
-    expect(end < configured.safety + NEAR, sentence, fraction=0.5 if ahead[0] - end > NEAR else 0.0)
+    expect(
+        final_distance < configured.safety + STOP_MARGIN,
+        sentence,
+        fraction=0.5 if ahead[0] - final_distance > STOP_MARGIN else 0.0,
+    )
 
 
 @check(points=2, covers=("contradictory-start", "contradiction", "reason", "ranges"), needs=("starts",))
@@ -132,53 +150,30 @@ def test_stops(configured: Configured, draw: Random, artifacts: Artifacts) -> No
 def test_contradictory_start(robot: Robot, workspace: Workspace, draw: Random) -> None:
     """It does not start with a safety distance that is not below the slow distance."""
     distance = robot.allowed("slow_distance", robot.allowed("safety_distance", draw.randrange(40, 90) / 100))
-    for safety, slow in ((robot.allowed("safety_distance", distance + 0.4), distance), (distance, distance)):
-        values = {"safety_distance": safety, "slow_distance": slow}
-        words = refusal(workspace, parameters.as_declared(values, robot.initial))
-        told = f"safety_distance {safety} and slow_distance {slow}"
-        fraction = 0.75 if safety == slow else 0.0
-        expect(words is not None, f"Started with {told}, the node runs.", fraction=fraction)
-        expect(not missing_from(words or "", values), f"It ends, but does not name {told}.", fraction=0.5)
-    frequency = draw.randrange(55, 90) + 0.5  # above the limits
-    fits, equal, start, beyond = _called(workspace, distance, frequency)
-    raised, message, sentence = (
-        start.raised,
-        parameters.shortened(start.message),
-        parameters.shortened(str(equal.value)),
+    values = {"safety_distance": robot.allowed("safety_distance", distance + 0.4), "slow_distance": distance}
+    error = start_error(workspace, parameters.as_declared(values, robot.initial))
+    expect(error is not None, f"Started with {values_text(values)}, the node runs.")
+    expect(not missing_from(error or "", values), f"It ends, but does not name {values_text(values)}.", fraction=0.5)
+    drawn: list[Request] = []
+    for kind, count in STARTS.items():
+        expect_each(starts(kind), drawn.append, draw, count=count)
+    beyond: dict[str, parameters.Value] = {"control_frequency": draw.randrange(55, 90) + 0.5}
+    inside = [allowed_start(robot, start) for start in ((), *drawn)]
+    *outcomes, outcome_beyond = bench.declare(workspace, [*inside, beyond])
+    for start, outcome in sorted(zip(inside, outcomes, strict=True), key=lambda pair: subtlety(pair[0])):
+        expect_start(start, outcome)
+    observation = f"Started with {values_text(beyond)}, declare_configuration raised nothing"
+    expect(
+        bool(outcome_beyond.declared.raised),
+        f"{observation}: ROS refuses what is not in 1.0 to 50.0, and so should it.",
+        fraction=0.75,
     )
-    said = f"contradiction(0.5, 1.0) {f'raised {fits.raised}' if fits.raised else f'returned {fits.value!r}'}"
-    expect(fits.value == "", f"{said}, instead of returning ''.", fraction=0.5)
-    said = f"declare_configuration raised {raised or 'nothing'}, which is no ValueError"
-    expect("ValueError" in start.kinds, f"{said}.", fraction=0.5)
-    said = f"declare_configuration raised ValueError with “{message}”; contradiction says “{sentence}”"
-    expect(sentence[:100] in message, f"{said}.", fraction=0.75)
-    said = f"Started with control_frequency {frequency}, declare_configuration raised nothing"
-    expect(bool(beyond.raised), f"{said}: ROS refuses what is not in 1.0 to 50.0, and so should it.", fraction=0.75)
 
 
-def _called(workspace: Workspace, distance: float, frequency: float) -> tuple[calls.StepResult, ...]:
-    """Ask contradiction about distances that fit and equal ones; declare at equal ones and at a frequency."""
-    equal = parameters.override_arguments({"safety_distance": distance, "slow_distance": distance})
-    beyond = parameters.override_arguments({"control_frequency": frequency})
-    outcomes = calls.calls(
-        workspace,
-        CONFIGURATION,
-        calls.call("contradiction", 0.5, 1.0),
-        calls.call("contradiction", distance, distance),
-        calls.call("init", module="rclpy"),
-        calls.call("Node", "bench", module="rclpy.node", cli_args=["--ros-args", *equal]),
-        calls.call("declare_configuration", calls.made(3)),
-        calls.call("Node", "other_bench", module="rclpy.node", cli_args=["--ros-args", *beyond]),
-        calls.call("declare_configuration", calls.made(5)),
-        network=True,
-    )
-    return outcomes[0], outcomes[1], outcomes[4], outcomes[6]
-
-
-def _towards_a_wall(draw: Random) -> Simulation:
-    """Return a hall whose east wall is straight ahead of the robot, well beyond any slow distance."""
+def _hall(draw: Random) -> Simulation:
+    """Return a hall whose east wall is straight ahead of the robot, far beyond any slow distance."""
     world = World.from_segments(
-        box(draw.uniform(6.5, 7.5), 4.0).tolist(),
+        box(draw.uniform(5.5, 6.5), 4.0).tolist(),
         name="a hall",
         segment_names=["south wall", "east wall", "north wall", "west wall"],
         starts=[Pose(draw.uniform(-0.5, 0.0), draw.uniform(-0.5, 0.5), 0.0)],

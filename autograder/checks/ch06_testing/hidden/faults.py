@@ -1,4 +1,4 @@
-"""The versions of speed_guard that a student's tests meet: right ones in two styles, and faulty ones of each."""
+"""The versions of speed_guard on which a student's tests run: right ones in two styles, and faulty ones of each."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class Fault:
     """One way to break the contract.
 
     Attributes:
-        id: its name.
+        id: its id.
         check: the check that it belongs to.
         file: the file that is changed.
-        edits: by style, what is found and what it becomes.
-        last: styles whose last match is changed; elsewhere there is just one.
+        edits: by style, the text to find and its replacement.
+        last: styles in which only the last match is replaced; in the others there is only one match.
     """
 
     id: str
@@ -57,17 +57,27 @@ def right(name: str, draw: random.Random) -> versions.Version:
     return versions.obfuscate(style(name), draw.getrandbits(32))
 
 
-def reworded(draw: random.Random) -> versions.Version:
-    """Return a right version of the first style in which one thing in each file is said otherwise, obfuscated."""
+def reworded(draw: random.Random, *, bare: bool = False) -> versions.Version:
+    """Return a right version of the first style with one expression of each file reworded, obfuscated.
+
+    Args:
+        draw: chooses the expressions.
+        bare: whether safe_speed also does no more than its contract says. Its computed speeds have a rounding error,
+            and its error has no text.
+    """
     files = dict(style(STYLES[0]).files)
-    for name, edits in yaml.safe_load((FOLDER / "reworded.yaml").read_text()).items():
-        files[name] = _edited(files[name], draw.choice(edits), f"{name} in other words")
+    texts = yaml.safe_load((FOLDER / "reworded.yaml").read_text())
+    for name, edits in texts["bare"].items() if bare else ():
+        for edit in edits:
+            files[name] = _edit(files[name], edit, f"{name} without more than its contract")
+    for name, edits in texts["drawn"].items():
+        files[name] = _edit(files[name], draw.choice(edits), f"{name} in other words")
     return versions.obfuscate(versions.Version(files, SCRIPTS), draw.getrandbits(32))
 
 
-def _edited(text: str, edit: dict[str, str], what: str) -> str:
+def _edit(text: str, edit: dict[str, str], label: str) -> str:
     if text.count(edit["find"]) != 1:
-        raise GraderError(f"{what}: {edit['find']!r} stands {text.count(edit['find'])} times in the file")
+        raise GraderError(f"{label}: {edit['find']!r} stands {text.count(edit['find'])} times in the file")
     return text.replace(edit["find"], edit["replace"])
 
 

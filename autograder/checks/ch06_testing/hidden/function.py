@@ -1,4 +1,4 @@
-"""Tests of the pure function: do they notice when safe_speed breaks its contract?"""
+"""Checks that tests of the pure function fail if safe_speed breaks its contract."""
 
 from __future__ import annotations
 
@@ -128,5 +128,5 @@ LINES = (
 
 @check_each_row(group("function", after=RIGHT), LINES)
 def expect_objection(line: Line, examination: Examination) -> None:
-    """The tests of the file object to every version that breaks the line."""
+    """Fail the check unless the tests of the file fail on every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)

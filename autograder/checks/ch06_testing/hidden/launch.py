@@ -1,4 +1,4 @@
-"""The integration test: does it notice when what is launched is not what was promised?"""
+"""Checks that the integration test fails if the launched system breaks the contract."""
 
 from __future__ import annotations
 
@@ -59,5 +59,5 @@ LINES = (
 
 @check_each_row(group("launch", after=RIGHT), LINES)
 def expect_objection(line: Line, examination: Examination) -> None:
-    """The tests of the file object to every version that breaks the line."""
+    """Fail the check unless the tests of the file fail on every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)

@@ -1,4 +1,4 @@
-"""Tests of the node: do they notice when speed_guard breaks its contract, and do they keep to themselves?"""
+"""Checks that tests of the node fail if speed_guard breaks its contract, and that they are isolated."""
 
 from __future__ import annotations
 
@@ -46,11 +46,11 @@ def test_nothing_left(examination: Examination) -> None:
     """They leave no node and no context behind."""
     examination.expect_usable(GUARD)
     trial = examination.trial[GUARD]
-    said = f"After the last test in {GUARD}, {trial.left} network sockets of ROS contexts were still open."
-    expect(trial.left == 0, said)
-    # The end of a context that was dropped without a shutdown closes its sockets, not what rclpy keeps for it.
-    said = f"After the last test in {GUARD}, ROS's log file was still open: a context was not shut down."
-    expect(not trial.is_logging, said)
+    message = f"After the last test in {GUARD}, {trial.open_sockets} network sockets of ROS contexts were still open."
+    expect(trial.open_sockets == 0, message)
+    # A context that is garbage-collected without a shutdown closes its sockets, but not the log file.
+    message = f"After the last test in {GUARD}, ROS's log file was still open: a context was not shut down."
+    expect(not trial.is_logging, message)
 
 
 LINES = (
@@ -167,5 +167,5 @@ LINES = (
 
 @check_each_row(group("node", after=RIGHT), LINES)
 def expect_objection(line: Line, examination: Examination) -> None:
-    """The tests of the file object to every version that breaks the line."""
+    """Fail the check unless the tests of the file fail on every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)

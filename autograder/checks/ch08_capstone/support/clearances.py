@@ -1,4 +1,4 @@
-"""The right clearance of a scan, by the sentences of step 2: what a controller is told that is judged alone."""
+"""The expected clearance of a scan, by step 2 of the notebook, for a controller that is tested alone."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ MIDDLES = {"front": 0.0, "left": math.pi / 2, "right": -math.pi / 2}  # rad
 HALF_ANGLE = PARAMETERS[PROCESSOR]["half_angle"].default
 
 
-def right_clearance(kind: type, scan: LaserScan) -> Any:
-    """Return the clearance, a message of this type, that belongs to a scan; its header is the scan's own."""
+def expected_clearance(message_type: type, scan: LaserScan) -> Any:
+    """Return the expected clearance of a scan, a message of this type; its header is the scan's header."""
     distances = {name: nearest(scan, middle) for name, middle in MIDDLES.items()}
-    return kind(header=scan.header, valid=not any(map(math.isnan, distances.values())), **distances)
+    return message_type(header=scan.header, valid=not any(map(math.isnan, distances.values())), **distances)
 
 
 def nearest(scan: LaserScan, middle: float, half_angle: float = HALF_ANGLE) -> float:
-    """Return the nearest reading that counts within `half_angle` of `middle`, in metres; nan if none does."""
+    """Return the nearest valid reading within `half_angle` of `middle`, in metres; nan without one."""
     readings = [
         float(reading)
         for index, reading in enumerate(scan.ranges)

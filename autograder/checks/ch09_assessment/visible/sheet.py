@@ -1,4 +1,4 @@
-"""Question 1: is there a letter for every question? Which letter is right, no visible check says."""
+"""Question 1: each question has a letter. No visible check reveals whether it is right."""
 
 from __future__ import annotations
 

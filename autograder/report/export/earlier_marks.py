@@ -1,7 +1,7 @@
-"""Keeps the earlier marks of a class while it is graded again, until the changes have been listed.
+"""Stores the earlier marks of a class while it is graded again, until the changes have been listed.
 
-They are stored in a file beside the results. It is written before the first submission is graded and deleted after the
-changes were listed, so that an interruption does not lose any of them.
+The file is beside the results. It is written before the first submission is graded and deleted after the changes have
+been listed, so that an interrupted grading does not lose any of them.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 from autograder.exceptions import UsageError
 from autograder.report.export.changes import Change, changes
 from autograder.report.export.stored import load
-from autograder.result.class_folder import EARLIER_MARKS, ONE
+from autograder.result.class_folder import EARLIER_MARKS, RESULT
 from autograder.result.model import Result, Status, write_json
 
 
@@ -62,7 +62,7 @@ def _key(result: Result) -> tuple[str, str]:
 def _stored(out: Path, students: Iterable[str]) -> dict[tuple[str, str], Result]:
     """Return the students' stored results that have a mark. Unreadable ones are ignored, as they are graded again."""
     results: list[Result] = []
-    for path in (out / student / ONE for student in students):
+    for path in (out / student / RESULT for student in students):
         with suppress(UsageError):
             results += load(path) if path.is_file() else ()
     return {_key(result): result for result in results if result.status is Status.GRADED}

@@ -1,6 +1,6 @@
-"""Reads a submission before it is graded. For root, another user reads it, in a worker sandbox.
+"""Reads a submission before it is graded. If the grader runs as root, another user reads it, in a worker sandbox.
 
-python -m autograder.grade.apart READER PATH ASSIGNMENT
+python -m autograder.grade.isolated_reader READER PATH ASSIGNMENT
 """
 
 from __future__ import annotations
@@ -33,25 +33,25 @@ MAX_CODE = 200_000  # characters of Python that leave the worker sandbox
 
 @dataclass(frozen=True)
 class Digests:
-    """The digests of a submission, in hexadecimal digits, and the statements about its files for the result."""
+    """The digests of a submission, in hexadecimal digits, and the notices about its files for the result."""
 
-    sha256: str  # of all its files
-    graded_sha256: str  # of what a grading reads of them
-    notices: tuple[str, ...] | None  # about what counts; None if its notebook decides that
-    unused: tuple[str, ...]  # files that play no part
+    sha256: str  # of all files
+    graded_sha256: str  # of the content that a grading reads
+    notices: tuple[str, ...] | None  # about the files that count; None if the notebook has to run first
+    unused: tuple[str, ...]  # files that are not graded
 
 
 @dataclass(frozen=True)
 class Preview:
     """The part of a submission that counts."""
 
-    files: int | None  # of packages, None if its notebook has to run
-    notices: tuple[str, ...]  # about what counts
-    unused: tuple[str, ...]  # files that play no part
+    files: int | None  # the number of files in packages; None if the notebook has to run first
+    notices: tuple[str, ...]  # about the files that count
+    unused: tuple[str, ...]  # files that are not graded
 
 
 def read_digests(path: Path, assignment: str, isolation: Isolation) -> Digests | None:
-    """Return the digests of a submission, None if it cannot be read."""
+    """Return the digests of a submission, or None if it cannot be read."""
     try:
         digests: Digests = structure(Digests, _read("digests", path, assignment, isolation))
     except (OSError, AutograderError):
@@ -60,13 +60,13 @@ def read_digests(path: Path, assignment: str, isolation: Isolation) -> Digests |
 
 
 def read_preview(path: Path, assignment: str, isolation: Isolation) -> Preview:
-    """Return the part of a submission that counts. Raises StudentError if it cannot be read, or is unclear."""
+    """Return the part of a submission that counts. Raise a StudentError if it is unclear or cannot be read."""
     preview: Preview = structure(Preview, _read("preview", path, assignment, isolation))
     return preview
 
 
 def read_code(path: Path, assignment: str, isolation: Isolation) -> str:
-    """Return the Python of a submission, `MAX_CODE` characters at most. Raises StudentError if it cannot be read."""
+    """Return the Python of a submission, at most `MAX_CODE` characters. Raise a StudentError if it cannot be read."""
     return str(_read("code", path, assignment, isolation))
 
 
@@ -74,7 +74,7 @@ def code(submission: Submission) -> str:
     """Return the Python of a submission: its modules and the code cells of its notebook."""
     texts = [f"# {file.path}\n{_text(file.data)}" for file in submission.source if file.path.suffix == ".py"]
     if submission.notebook is not None:
-        with suppress(ValueError):  # the modules are read all the same
+        with suppress(ValueError):  # the modules are returned even if the notebook cannot be read
             texts += [cell["source"] for cell in read_cells(submission.notebook) if cell["cell_type"] == "code"]
     return clean("\n".join(texts))
 
@@ -107,8 +107,8 @@ def _read(reader: str, path: Path, assignment: str, isolation: Isolation) -> Any
 
 
 def _in_worker_sandbox(reader: str, path: Path, assignment: str) -> Any:
-    command = [sys.executable, "-m", "autograder.grade.apart", reader, str(path), assignment]
-    chapter = course_paths.CHAPTERS / assignment  # a course directory of nbgrader may have others
+    command = [sys.executable, "-m", "autograder.grade.isolated_reader", reader, str(path), assignment]
+    chapter = course_paths.CHAPTERS / assignment  # a course directory of nbgrader may have other assignments
     view = View(shown=(chapter,) if chapter.is_dir() else (), submitted=(path,))
     report = run_in_worker_sandbox(lambda scratch: command, Isolation.BUBBLEWRAP, READING_WORKER, view=view)
     try:

@@ -1,9 +1,9 @@
-"""Keeps built interface packages for later gradings, in the process that started the worker.
+"""Serves workers' requests for built interface packages, in the process that started the worker, from a cache.
 
 A worker cannot write to the cache. It sends sources, and the process that started it looks them up by their content. If
 they are new, another worker builds them in its own sandbox, which contains these sources and no other file of any
-submission. So an unmodified worker has built each entry from the content that is its key: a worker that was taken over
-can request builds of its own sources, but cannot change the packages of other submissions.
+submission. So an unmodified worker has built each entry from the content that is its key. A worker that students' code
+has taken over can request builds of its own sources, but cannot change the packages of other submissions.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.ros import find
 from autograder.run.sandbox import Isolation
-from autograder.run.sandbox.limits import BUILD, GRADING_WORKER, KEPT, RESULT_FILES, SOURCES
+from autograder.run.sandbox.limits import BUILD, CACHED, GRADING_WORKER, RESULT_FILES, SOURCES
 from autograder.run.sandbox.messages import (
     MessageError,
     receive_message,
@@ -38,28 +38,28 @@ from autograder.run.sandbox.messages import (
     write_received,
 )
 from autograder.run.sandbox.trees import Entry, read_tree
-from autograder.run.sandbox.worker_sandbox import ended, in_worker_sandbox
+from autograder.run.sandbox.worker_sandbox import in_worker_sandbox, wait_and_report
 
 CACHE = "bundles"
-VERSION = 3  # of the way in which a bundle is built and kept
-_TICK = 0.25  # s between two looks whether a silent worker still runs
+VERSION = 3  # of the format and of the steps of a build
+_POLL_SECONDS = 0.25  # between two checks whether a worker that sends nothing still runs
 _MARGIN = 60.0  # s for the start and the end of a worker that builds
 
 
-def attend(
+def serve_worker(
     line: Connection, isolation: Isolation, is_over: Callable[[], bool]
 ) -> tuple[dict[str, bytes], dict[str, Any]]:
     """Serve a worker until it is done; return the files of its result, and its last message.
 
-    It asks to have interface packages built, leaves its result, and may say that it is done. A worker that ends without
-    a word has an empty last message.
+    The worker requests builds of interface packages, sends its result, and may send that it is done. If it ends without
+    such a message, the last message is empty.
 
     Raises:
         MessageError: the message does not come from an unmodified worker.
     """
     files: dict[str, bytes] = {}
     while True:
-        if not line.poll(_TICK):
+        if not line.poll(_POLL_SECONDS):
             if is_over():
                 return files, {}
             continue
@@ -68,7 +68,7 @@ def attend(
             if message.get("do") == "result":
                 files = {entry.path: data for entry, data in receive_tree(line, RESULT_FILES).items()}
             elif message.get("do") == "build":
-                _answer(line, receive_tree(line, SOURCES), isolation)
+                _serve_build(line, receive_tree(line, SOURCES), isolation)
             elif message.get("do") == "done":
                 return files, message
             else:
@@ -77,29 +77,29 @@ def attend(
             return files, {}
 
 
-def ask(line: Connection, sources: Mapping[Entry, bytes], target: Path) -> None:
-    """Let the process that started this worker build interface packages, and write the installed files to `target`.
+def request_build(line: Connection, sources: Mapping[Entry, bytes], target: Path) -> None:
+    """Request a build of interface packages from the process that started this worker; write the files to `target`.
 
     Raises:
-        StudentError: they do not build; the diagnosis says why.
-        GraderError: they could not be built for another reason.
+        StudentError: the packages do not build.
+        GraderError: the packages could not be built for another reason.
     """
     send_message(line, {"do": "build"})
     send_tree(line, sources)
     reply = receive_message(line)
     if "diagnosis" in reply:
-        raise _refusal(reply)
+        raise _build_error(reply)
     if "failed" in reply:
         raise GraderError(reply["failed"])
-    write_received(receive_tree(line, KEPT), target)
+    write_received(receive_tree(line, CACHED), target)
 
 
-def refused(error: StudentError) -> dict[str, Any]:
-    """Return the message that packages do not build, and whether another try would only take as long."""
+def failure_message(error: StudentError) -> dict[str, Any]:
+    """Return the message about a failed build, which includes whether a limit stopped it."""
     return {"diagnosis": asdict(error.diagnosis), "stopped": isinstance(error, StoppedBuildError)}
 
 
-def _refusal(reply: Mapping[str, Any]) -> StudentError:
+def _build_error(reply: Mapping[str, Any]) -> StudentError:
     diagnosis = Diagnosis(**{**reply["diagnosis"], "kind": Kind(reply["diagnosis"]["kind"])})
     return StoppedBuildError(diagnosis) if reply.get("stopped") else StudentError(diagnosis)
 
@@ -113,12 +113,12 @@ def key(sources: Mapping[Entry, bytes]) -> str:
     return digest.hexdigest()[:40]
 
 
-def _answer(line: Connection, sources: Mapping[Entry, bytes], isolation: Isolation) -> None:
+def _serve_build(line: Connection, sources: Mapping[Entry, bytes], isolation: Isolation) -> None:
     try:
         with Cache.default(CACHE).use(key(sources), partial(_make_once, time.time(), sources, isolation)) as entry:
-            built = read_tree(entry, KEPT)
+            built = read_tree(entry, CACHED)
     except StudentError as error:
-        send_message(line, refused(error))
+        send_message(line, failure_message(error))
     except GraderError as error:
         send_message(line, {"failed": str(error)})
     else:
@@ -126,41 +126,45 @@ def _answer(line: Connection, sources: Mapping[Entry, bytes], isolation: Isolati
         send_tree(line, built)
 
 
-def _make_once(asked: float, sources: Mapping[Entry, bytes], isolation: Isolation, entry: Path) -> None:
-    """Fill a new entry, unless a limit has ended a build of it since `asked`, a time of the system's clock.
+def _make_once(requested: float, sources: Mapping[Entry, bytes], isolation: Isolation, entry: Path) -> None:
+    """Fill a new entry, unless a limit has ended a build of it since the request, at the system time `requested`.
 
-    Other requests for the same sources have waited for that build. Waiting for another one would use up their time.
+    Other requests for the same sources have waited for that build. They would exceed their time in a second one.
     """
-    note = entry.parent / f"{key(sources)}.stopped"
+    record = entry.parent / f"{key(sources)}.stopped"
     with suppress(FileNotFoundError):
-        told = json.loads(note.read_text())
-        if told["ended"] >= asked:
-            raise _refusal(told)
-        note.unlink()
+        failure = json.loads(record.read_text())
+        if failure["ended"] >= requested:
+            raise _build_error(failure)
+        record.unlink()
     try:
         _make(sources, isolation, entry)
     except StoppedBuildError as error:
-        note.write_text(json.dumps({**refused(error), "ended": time.time()}))
+        record.write_text(json.dumps({**failure_message(error), "ended": time.time()}))
         raise
 
 
 def _make(sources: Mapping[Entry, bytes], isolation: Isolation, entry: Path) -> None:
-    """Fill a new entry with the packages that a worker in its own sandbox builds from the sources."""
-    ours, theirs = Pipe()
+    """Fill a new entry with the packages that a worker builds from the sources in a separate sandbox."""
+    own_end, worker_end = Pipe()
 
     def command(scratch: Path) -> list[str]:
-        return [sys.executable, "-m", "autograder.building.bundle_worker", str(scratch), str(theirs.fileno())]
+        return [sys.executable, "-m", "autograder.building.bundle_worker", str(scratch), str(worker_end.fileno())]
 
     limits = replace(GRADING_WORKER, wall_seconds=BUILD.wall_seconds + _MARGIN)
-    with ours, ExitStack() as stack:
-        with theirs:
-            process, _ = stack.enter_context(in_worker_sandbox(command, isolation, limits, pass_fds=(theirs.fileno(),)))
+    with own_end, ExitStack() as stack:
+        with worker_end:
+            process, _ = stack.enter_context(
+                in_worker_sandbox(command, isolation, limits, pass_fds=(worker_end.fileno(),))
+            )
         try:
-            send_tree(ours, sources)
-            reply = receive_message(ours)
+            send_tree(own_end, sources)
+            reply = receive_message(own_end)
             if "diagnosis" in reply:
-                raise _refusal(reply)
-            write_received(receive_tree(ours, KEPT), entry)
+                raise _build_error(reply)
+            write_received(receive_tree(own_end, CACHED), entry)
         except (EOFError, OSError, MessageError, KeyError, ValueError, TypeError) as error:
             process.kill()
-            raise GraderError(f"interface packages could not be built: {error!r}\n{ended(process).output}") from None
+            raise GraderError(
+                f"interface packages could not be built: {error!r}\n{wait_and_report(process).output}"
+            ) from None

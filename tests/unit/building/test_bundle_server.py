@@ -11,7 +11,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from autograder.building import keeper
+from autograder.building import bundle_server
 from autograder.building.colcon import StoppedBuildError
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
@@ -24,9 +24,11 @@ def test_a_build_that_a_limit_ended_is_not_tried_again_for_the_same_request(
 ) -> None:
     ours, theirs = Pipe()
     with ours, theirs:
-        keeper.send_message(theirs, keeper.refused(error(Diagnosis(Kind.BUILD_FAILED, "It was stopped."))))
+        bundle_server.send_message(
+            theirs, bundle_server.failure_message(error(Diagnosis(Kind.BUILD_FAILED, "It was stopped.")))
+        )
         with pytest.raises(StudentError, match="It was stopped") as excinfo:
-            keeper.ask(ours, {}, tmp_path / "made")
+            bundle_server.request_build(ours, {}, tmp_path / "made")
     assert type(excinfo.value) is error
 
 
@@ -47,15 +49,15 @@ def test_submissions_that_wait_for_the_same_build_share_its_failure(
         built.append(entry.name)
         raise StoppedBuildError(Diagnosis(Kind.BUILD_FAILED, "It was stopped."))
 
-    monkeypatch.setattr(keeper, "time", SimpleNamespace(time=now))
-    monkeypatch.setattr(keeper, "_make", build)
+    monkeypatch.setattr(bundle_server, "time", SimpleNamespace(time=now))
+    monkeypatch.setattr(bundle_server, "_make", build)
 
     def ask(_: int) -> str:
         ours, theirs = Pipe()
         with ours, theirs:
-            keeper._answer(ours, {}, Isolation.BUBBLEWRAP)
+            bundle_server._serve_build(ours, {}, Isolation.BUBBLEWRAP)
             with pytest.raises(StoppedBuildError, match="It was stopped") as excinfo:
-                raise keeper._refusal(keeper.receive_message(theirs))
+                raise bundle_server._build_error(bundle_server.receive_message(theirs))
         return str(excinfo.value)
 
     with ThreadPoolExecutor(3) as threads:

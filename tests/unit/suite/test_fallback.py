@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from autograder.checks.ch08_capstone.hidden.judges import judge_driving
+from autograder.checks.ch08_capstone.hidden.fallback import run_with_fallback
 from autograder.suite import CheckFailed
 
 
@@ -31,7 +31,7 @@ def grade_body(fractions: dict[str, float]) -> tuple[Any, Any]:
         if system in fractions:
             raise CheckFailed(system, fraction=fractions[system])
 
-    judge_driving(shared, separate, body)  # type: ignore[arg-type]
+    run_with_fallback(shared, separate, body)  # type: ignore[arg-type]
     return shared, separate
 
 

@@ -1,4 +1,4 @@
-"""A message, request or goal from the YAML text that the user typed."""
+"""Makes a message, request or goal from the YAML text that the user typed."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from rosidl_runtime_py import set_message_fields
 from autograder.ros.ros2.exceptions import Ros2Error
 
 
-def add_values(parser: argparse.ArgumentParser, name: str, text: str) -> None:
+def add_values_argument(parser: argparse.ArgumentParser, name: str, text: str) -> None:
     """Add an argument for values in YAML, {} by default, and `--stdin`; `text` is its help."""
     group = parser.add_mutually_exclusive_group()
     group.add_argument(name, nargs="?", default="{}", help=text)
     group.add_argument("--stdin", action="store_true", help="Read the values from standard input")
 
 
-def given_values(args: argparse.Namespace, name: str) -> str:
+def read_values(args: argparse.Namespace, name: str) -> str:
     """Return the YAML text that the user gave, as the argument `name` or on standard input."""
     return sys.stdin.read() if args.stdin else str(getattr(args, name))
 
 
-def filled(interface: Any, text: str, noun: str, *, stamps: bool = True) -> tuple[Any, list[Any]]:
+def make_message(interface: Any, text: str, noun: str, *, allow_stamps: bool = True) -> tuple[Any, list[Any]]:
     """Make a message from YAML text.
 
     Args:
         interface: the message's class.
         text: a YAML dictionary of its fields.
-        noun: what to call it in an error.
-        stamps: allow `auto` for a header and `now` for a time.
+        noun: the word for the message's content in an error.
+        allow_stamps: whether a header may be `auto` and a time `now`.
 
     Returns:
         The message, and a setter for each of its `auto` and `now` fields.
@@ -43,12 +43,14 @@ def filled(interface: Any, text: str, noun: str, *, stamps: bool = True) -> tupl
         values = yaml.safe_load(text)
     except yaml.YAMLError as error:
         raise Ros2Error(f"The passed value is not valid YAML: {error}") from None
-    if not isinstance(values, dict) and stamps:
+    if not isinstance(values, dict) and allow_stamps:
         raise Ros2Error("The passed value needs to be a dictionary in YAML format")
     message = interface()
     try:
         if not isinstance(values, dict):
             raise TypeError(f"Value '{values}' is expected to be a dictionary but is a {type(values).__name__}")
-        return message, set_message_fields(message, values, expand_header_auto=stamps, expand_time_now=stamps)
+        return message, set_message_fields(
+            message, values, expand_header_auto=allow_stamps, expand_time_now=allow_stamps
+        )
     except (AssertionError, AttributeError, OverflowError, TypeError, ValueError) as error:
         raise Ros2Error(f"Failed to populate {noun}: {error}") from None
