@@ -20,7 +20,7 @@ from autograder import course_paths
 # The version of the grader and the simulator, which the checks of all chapters use. Raise it by one with each change
 # by which a submission can get another mark with the same seed, or another reason for it: see CONTRIBUTING.md. Marks of
 # another version are graded again by `--resume`.
-GRADER_VERSION = 5
+GRADER_VERSION = 6
 
 # Parts of the autograder that no grading reads.
 NOT_READ = frozenset(

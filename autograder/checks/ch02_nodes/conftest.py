@@ -10,6 +10,7 @@ from sensor_msgs.msg import LaserScan
 from autograder.checking import ReceivedMessage, Shared, StudentError, Workspace
 from autograder.checks.ch02_nodes.support.robot import Reactions, Robot, observed_reactions
 from autograder.checks.ch02_nodes.support.scans import JUST_AHEAD, scan
+from autograder.checks.ch02_nodes.support.two_nodes import TwoNodes, call_two_nodes
 
 
 @pytest.fixture(scope="session")
@@ -38,6 +39,12 @@ def fresh_robot(workspace: Workspace) -> Iterator[Robot]:
     """A robot that was started for this check."""
     with Robot(workspace) as robot:
         yield robot
+
+
+@pytest.fixture(scope="session")
+def two_nodes(workspace: Workspace) -> TwoNodes:
+    """Two objects of the node's class in one process, of which one has received a scan."""
+    return call_two_nodes(workspace)
 
 
 def _commands_for(shared: Shared[Robot], message: LaserScan) -> list[ReceivedMessage]:

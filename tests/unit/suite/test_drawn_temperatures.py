@@ -48,7 +48,7 @@ def _smoother(window: int, counts: Callable[[float, list[float]], bool]) -> Call
         if not counts(celsius, [*newest]):
             return None
         newest.append(celsius)
-        return math.fsum(newest) / len(newest)
+        return sum(newest) / len(newest)  # -inf + inf is nan; math.fsum raises
 
     return answer
 

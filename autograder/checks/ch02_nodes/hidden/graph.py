@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from autograder.checking import CheckFailed, Workspace, expect, group, hint
 from autograder.checking.probes import namespaces, qos
 from autograder.checks.ch02_nodes.support import contract
@@ -60,13 +62,13 @@ def test_subscribes_status(robot: Robot) -> None:
 
 @check(
     points=1,
-    covers="relative",
+    covers=("relative", "kwargs"),
     needs=("starts",),
     after=("subscribes_scan", "publishes_cmd_vel", "subscribes_status"),
 )
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'scan' is relative, '/scan' is not.")
-def test_relative(workspace: Workspace, robot: Robot) -> None:
+def test_relative(workspace: Workspace, robot: Robot, request: pytest.FixtureRequest) -> None:
     """All topic names are relative: in the namespace /a, scan is /a/scan."""
     node = robot.node
     topics = [topic for topic in ("scan", "status") if node.get_subscriptions_info_by_topic(f"/{topic}")]
@@ -74,6 +76,8 @@ def test_relative(workspace: Workspace, robot: Robot) -> None:
     expect(bool(topics), "It has none of the topics scan, status and cmd_vel, in no namespace.")
     reason = namespaces.missing_in_namespace(workspace, contract.PACKAGE, contract.EXECUTABLE, tuple(topics))
     expect(not reason, reason)
+    wrong_arguments = request.getfixturevalue("two_nodes").wrong_arguments()
+    expect(not wrong_arguments, wrong_arguments, fraction=0.5)
 
 
 def _expect_endpoint(robot: Robot, kind: str, topic: str, type_name: str) -> None:

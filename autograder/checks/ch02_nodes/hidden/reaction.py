@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from autograder.checking import LOCKSTEP, group, hint
 from autograder.checking.drawn_cases import expect_each
 from autograder.checks.ch02_nodes.support import contract
-from autograder.checks.ch02_nodes.support.drawn_scans import drawn_scans
+from autograder.checks.ch02_nodes.support.drawn_scans import SEVERAL_TURNS, any_lidars, drawn_scans
 from autograder.checks.ch02_nodes.support.robot import SETTLED, Reactions, Robot, cases, expect_forward, expect_turn
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 
@@ -116,5 +116,8 @@ def test_other_lidars(robot: Robot, reactions: Reactions, draw: random.Random) -
         aside = scan(Part(60.0, 85.0, near), beams=beams, first_bearing=first, last_bearing=last)
         reactions.expect_turn(robot.see(ahead), f"With something {near:.2f} m ahead, {name}")
         reactions.expect_forward(robot.see(aside), f"With something {near:.2f} m to the left, {name}", fraction=0.5)
-    tame = drawn_scans(st.sampled_from((near, 2.0)), st.just(3.0))
-    expect_each(tame, lambda case: reactions.expect_for(robot, case, fraction=0.75), draw, count=cases(robot))
+    readings, rest = st.sampled_from((near, 2.0)), st.just(3.0)
+    for lidars, share in ((any_lidars(), 0.7), (SEVERAL_TURNS, 0.3)):
+        tame = drawn_scans(readings, rest, lidars=lidars)
+        count = math.ceil(share * cases(robot))
+        expect_each(tame, lambda case: reactions.expect_for(robot, case, fraction=0.75), draw, count=count)

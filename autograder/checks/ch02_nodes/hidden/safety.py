@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import statistics
 
+import pytest
 from sensor_msgs.msg import LaserScan
 
 from autograder.checking import LOCKSTEP, SCAN_SECONDS, Workspace, expect, group, hint
@@ -35,9 +36,11 @@ SLOW, FAST = 0.25, 8.0
 @check(points=2, covers=("no-scan", "cmd-vel"), needs=("publishes_cmd_vel",))
 @hint("obstacle_detected = False at the start means: drive before anything was seen.")
 @hint("Start with last_scan = None, and let None mean stop.")
-def test_stops_before_first_scan(fresh_robot: Robot) -> None:
+def test_stops_before_first_scan(fresh_robot: Robot, request: pytest.FixtureRequest) -> None:
     """It stands still, and says so on cmd_vel, until the first scan has come."""
     expect_stop(fresh_robot.leave_alone(1.5), "Before the first scan")
+    shared_scan = request.getfixturevalue("two_nodes").shared_scan()
+    expect(not shared_scan, shared_scan, fraction=0.75)
 
 
 @check(points=3, covers=("stale", "ros-time"), needs=TOPIC_CHECKS, after=("forward_when_clear",))

@@ -16,6 +16,10 @@ from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN
 EDGE = (
     0.5  # degrees around the sector's edge, where a beam may count or not; half a radian differs more from 30 degrees
 )
+# Lidars that see a direction more than once: their numbers of beams, bearings of beam 0, and steps in degrees.
+SEVERAL_TURNS = st.tuples(
+    st.sampled_from((720, 721, 1081)), st.sampled_from((0.0, -180.0, 95.0, -620.0)), st.sampled_from((1.0, -1.0))
+)
 PHANTOMS = (0.0, -1.0)  # m: finite readings that no lidar can measure
 
 
@@ -102,7 +106,7 @@ def is_near(distance: float) -> bool:
 
 
 @st.composite
-def lidars(draw: st.DrawFn) -> tuple[int, float, float]:
+def any_lidars(draw: st.DrawFn) -> tuple[int, float, float]:
     """Draw a number of beams, the bearing of beam 0, and the step from one beam to the next, in degrees."""
     beams = draw(st.sampled_from((360, 181, 720)) | st.integers(1, 1500))
     first = draw(st.sampled_from((0.0, -90.0, -135.0, -180.0, 90.0, 180.0)) | st.integers(-1080, 1080).map(float))
@@ -116,7 +120,7 @@ def drawn_scans(
     readings: st.SearchStrategy[float],
     fills: st.SearchStrategy[float],
     *,
-    lidars: st.SearchStrategy[tuple[int, float, float]] = lidars(),  # noqa: B008 - a strategy does not change
+    lidars: st.SearchStrategy[tuple[int, float, float]] = any_lidars(),  # noqa: B008 - a strategy does not change
     limits: tuple[float, float] = (RANGE_MIN, RANGE_MAX),
 ) -> DrawnScan:
     """Draw a scan with up to three arcs of these readings, most of them around a bearing ahead or at its sides."""
@@ -129,7 +133,8 @@ def drawn_scans(
         start = (bearing - first) / step % turn
         starts = [round(start + number * turn) for number in range(3) if start + number * turn < beams]
         width = draw(st.integers(1, max(1, beams // 8)))
-        arcs.append(Arc(draw(st.sampled_from(starts or [beams - 1])), width, reading))
+        last = starts[-1] if starts else beams - 1  # the last turn, where a lidar makes several
+        arcs.append(Arc(draw(st.sampled_from([*starts, last])), width, reading))
     return DrawnScan(beams, first, step, limits, draw(fills), tuple(arcs), draw(st.integers(0, 1)))
 
 

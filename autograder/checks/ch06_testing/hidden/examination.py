@@ -211,7 +211,7 @@ class Examination:
                 (name,), right(STYLES[1], self._draw(name, SECOND, *salt)), exit_first=True
             )
             # As similar to the first version as faulty ones, to expose tests that fail on any change of the text.
-            # The notebook requires approximate comparison of a function's results, but not of a node's answers.
+            # The notebook requires approximate comparison of a function's results, and advises it for a node's answers.
             similar = reworded(self._draw(name, REWORDED, *salt), bare=name == LIMITS)
             runs[REWORDED] = student_test_reports.TestRun((name,), similar, exit_first=True)
             if name in ORDER_INDEPENDENT:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from rclpy.time import Time
 from sensor_msgs.msg import LaserScan
 
-from autograder.checking import LOCKSTEP, expect, group, hint
+from autograder.checking import LOCKSTEP, Workspace, expect, group, hint
 from autograder.checking.drawn_cases import expect_each
 from autograder.checks.ch08_capstone.hidden.drawn_scans import (
     OTHER_LIMITS,
@@ -25,6 +25,7 @@ from autograder.checks.ch08_capstone.hidden.drawn_scans import (
     readings,
 )
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN, expect_sector_edge, newest_clearance
+from autograder.checks.ch08_capstone.hidden.sector_calls import expect_any_sector
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.clearances import MIDDLES
 from autograder.checks.ch08_capstone.support.contract import TOLERANCE
@@ -54,7 +55,7 @@ EMPTY = DrawnScan(0, 0.0, 1.0, USUAL_LIMITS, 3.0, (), "laser", 0.0)
 )
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]; left is positive.")
 @hint("The middles are 0, pi/2 and -pi/2; a beam within half_angle of one belongs to its sector, any other to none.")
-def test_sectors(seeing: System, draw: random.Random) -> None:
+def test_sectors(seeing: System, workspace: Workspace, draw: random.Random) -> None:
     """Each scan becomes one clearance: the nearest thing ahead, on the left and on the right, and the scan's header."""
     things = drawn_scans(distances(), st.just(3.0), ages=st.sampled_from((0.0, LATE)))
     expect_each(things, lambda case: _expect_stamp(seeing, case), draw, count=_cases(seeing, 20))
@@ -62,6 +63,7 @@ def test_sectors(seeing: System, draw: random.Random) -> None:
     seeing.publish_scans(OPEN, 1.0)
     count = len(seeing.messages(start).clearances)
     expect(9 <= count <= 11, f"10 scans became {count} clearances.", fraction=0.5)
+    expect_any_sector(workspace, draw)
 
 
 @check(

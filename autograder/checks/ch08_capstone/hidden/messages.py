@@ -16,7 +16,7 @@ DEPENDENCIES = {
     "buildtool": ("ament_cmake", "rosidl_default_generators"),
     "exec": ("rosidl_default_runtime", "std_msgs"),
 }
-DEFINITION_HINTS = ("Compare with the table of step 3, letter by letter; comments are yours.",)
+DEFINITION_HINTS = ("Compare with the table of step 3, letter by letter; comments are up to you.",)
 
 
 @check(points=2, covers=("definitions", "clearance-header", "valid-field", "front", "left", "right"))
