@@ -27,7 +27,9 @@ Case = TypeVar("Case")
 # Hypothesis would also draw constants of all modules loaded so far. The cases would then depend on these modules, and
 # reading them takes half a second.
 providers._get_local_constants = lambda: providers._local_constants
-SHRINKS = 200  # attempts to draw a simpler case
+# Attempts to draw a simpler case: at most so many, and so many for each case that the check draws. A check that draws
+# few, because each takes long or the program runs in real time, does not spend a submission's time on shrinking.
+SHRINKS, SHRINKS_PER_CASE = 200, 5
 
 
 def expect_each(
@@ -49,7 +51,7 @@ def expect_each(
     Raises:
         CheckFailed: a case failed.
     """
-    run = _Run(judge)
+    run = _Run(judge, min(SHRINKS, SHRINKS_PER_CASE * count))
     decorate = settings(
         max_examples=count,
         database=None,  # a grading leaves nothing for the next one
@@ -84,12 +86,12 @@ class _Run:
         result: the failure of the simplest case so far, or the exception that ended the run.
     """
 
-    def __init__(self, judge: Callable[[Any], None]) -> None:
+    def __init__(self, judge: Callable[[Any], None], shrinks: int) -> None:
         self._judge = judge
         self._failures: dict[str, CheckFailed] = {}
         self._passed: set[str] = set()
         self._before = ""
-        self._budget = SHRINKS
+        self._budget = shrinks
         self.result: BaseException | None = None
 
     def begin(self) -> None:

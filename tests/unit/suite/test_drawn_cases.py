@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.suite import CheckFailed
-from autograder.suite.drawn_cases import SHRINKS, expect_each
+from autograder.suite.drawn_cases import SHRINKS, SHRINKS_PER_CASE, expect_each
 
 NUMBERS = st.integers(0, 10_000)
 
@@ -53,7 +53,8 @@ def test_the_simplest_failing_case_is_reported_with_its_fraction_and_hints() -> 
     assert caught.value.hints == ("look at 1001",)
 
 
-def test_shrinking_judges_a_bounded_number_of_cases() -> None:
+@pytest.mark.parametrize(("count", "shrinks"), [(60, SHRINKS), (2, 2 * SHRINKS_PER_CASE)])
+def test_shrinking_judges_a_bounded_number_of_cases(count: int, shrinks: int) -> None:
     judged: list[int] = []
 
     def judge(case: int) -> None:
@@ -62,9 +63,14 @@ def test_shrinking_judges_a_bounded_number_of_cases() -> None:
             raise CheckFailed(f"wrong for {case}")
 
     with pytest.raises(CheckFailed):
-        expect_each(st.lists(NUMBERS, min_size=8).map(sum), judge, random.Random(5))
+        expect_each(
+            st.lists(NUMBERS, min_size=8).map(lambda numbers: 2 * sum(numbers) + 1),
+            judge,
+            random.Random(5),
+            count=count,
+        )
     first = next(place for place, case in enumerate(judged) if case % 2)
-    assert len(judged) <= first + 2 + SHRINKS
+    assert len(judged) <= first + 2 + shrinks
 
 
 def test_a_failure_that_depends_on_the_case_before_is_told_with_it() -> None:

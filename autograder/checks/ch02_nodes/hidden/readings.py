@@ -12,7 +12,7 @@ from autograder.checking import group, hint
 from autograder.checking.drawn_cases import expect_each
 from autograder.checks.ch02_nodes.hidden.reaction import NEAR, REACTION_CHECKS, TOPIC_CHECKS
 from autograder.checks.ch02_nodes.support import contract
-from autograder.checks.ch02_nodes.support.drawn_scans import drawn_scans
+from autograder.checks.ch02_nodes.support.drawn_scans import drawn_scans, scans_ahead
 from autograder.checks.ch02_nodes.support.robot import Reactions, Robot, cases, expect_stop
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN, Part, scan
 
@@ -35,9 +35,9 @@ def test_nan(robot: Robot, reactions: Reactions, draw: random.Random) -> None:
         robot.see(scan(Part(-10.0, 10.0, near), hole)), f"With something {near:.2f} m ahead and a few nan beams"
     )
     reactions.expect_forward(robot.see(scan(hole)), "With nothing ahead and a few nan beams")
-    holes = drawn_scans(st.sampled_from((math.nan, near)), FAR, lidars=USUAL_LIDAR)
+    holes = scans_ahead(st.sampled_from((math.nan, near)), FAR)
     expect_each(holes, lambda case: reactions.expect_for(robot, case, fraction=0.25), draw, count=cases(robot) // 2)
-    rest = drawn_scans(st.sampled_from((near, 2.0)), st.just(math.nan), lidars=USUAL_LIDAR)
+    rest = scans_ahead(st.sampled_from((near, 2.0)), st.just(math.nan))
     expect_each(rest, lambda case: reactions.expect_for(robot, case, fraction=0.75), draw, count=cases(robot) // 2)
 
 
@@ -53,7 +53,7 @@ def test_plus_inf(robot: Robot, reactions: Reactions) -> None:
 def test_minus_inf(robot: Robot, reactions: Reactions, draw: random.Random) -> None:
     """-inf means that something is too near to measure, and the way is blocked."""
     reactions.expect_turn(robot.see(scan(Part(-3.0, 3.0, -math.inf))), "With -inf straight ahead")
-    both = drawn_scans(st.just(-math.inf), FAR | st.just(math.inf), lidars=USUAL_LIDAR)
+    both = scans_ahead(st.just(-math.inf) | FAR, FAR)
     expect_each(both, lambda case: reactions.expect_for(robot, case, fraction=0.75), draw, count=cases(robot) // 4)
 
 
@@ -66,14 +66,12 @@ def test_phantoms(robot: Robot, reactions: Reactions, draw: random.Random) -> No
     for reading in (0.0, tiny, RANGE_MAX + 1.0):
         message = scan(Part(bearing, bearing + 5.0, reading))
         reactions.expect_forward(robot.see(message), f"With a few readings of {reading:.2f} and nothing ahead")
-    phantoms = drawn_scans(
-        st.sampled_from((0.0, -1.0, tiny, RANGE_MAX + 0.01, draw.uniform(*NEAR))),
-        FAR | st.just(RANGE_MAX),
-        lidars=USUAL_LIDAR,
+    phantoms = scans_ahead(
+        st.sampled_from((0.0, -1.0, tiny, RANGE_MAX + 0.01, draw.uniform(*NEAR))), FAR | st.just(RANGE_MAX)
     )
     expect_each(phantoms, lambda case: reactions.expect_for(robot, case), draw, count=cases(robot) // 2)
     for limits, fill, readings in OTHER_LIMITS:
-        edges = drawn_scans(st.sampled_from(readings), st.just(fill), lidars=USUAL_LIDAR, limits=limits)
+        edges = scans_ahead(st.sampled_from(readings), st.just(fill), limits=limits)
         expect = partial(reactions.expect_for, robot, fraction=0.75 if math.isinf(fill) else 0.0)
         expect_each(edges, expect, draw, count=cases(robot) // 4)
     far = scan(fill=5.0, limits=(RANGE_MIN, 10.0))

@@ -13,9 +13,10 @@ from sensor_msgs.msg import LaserScan
 from autograder.checks.ch02_nodes.support.contract import HALF_SECTOR, SAFETY_DISTANCE
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN
 
-EDGE = (
-    0.5  # degrees around the sector's edge, where a beam may count or not; half a radian differs more from 30 degrees
-)
+# Degrees around the sector's edge, where a beam may count or not: one check tests the width of the sector, with scans
+# that are not drawn.
+EDGE = 3.5
+MIN_WIDTH = 3  # beams of an arc, for a robot that ignores a single beam
 # Lidars that see a direction more than once: their numbers of beams, bearings of beam 0, and steps in degrees.
 SEVERAL_TURNS = st.tuples(
     st.sampled_from((720, 721, 1081)), st.sampled_from((0.0, -180.0, 95.0, -620.0)), st.sampled_from((1.0, -1.0))
@@ -132,10 +133,28 @@ def drawn_scans(
         turn = 360.0 / abs(step)
         start = (bearing - first) / step % turn
         starts = [round(start + number * turn) for number in range(3) if start + number * turn < beams]
-        width = draw(st.integers(1, max(1, beams // 8)))
+        width = draw(st.integers(MIN_WIDTH, max(MIN_WIDTH, beams // 8)))
         last = starts[-1] if starts else beams - 1  # the last turn, where a lidar makes several
         arcs.append(Arc(draw(st.sampled_from([*starts, last])), width, reading))
     return DrawnScan(beams, first, step, limits, draw(fills), tuple(arcs), draw(st.integers(0, 1)))
+
+
+@st.composite
+def scans_ahead(
+    draw: st.DrawFn,
+    readings: st.SearchStrategy[float],
+    fills: st.SearchStrategy[float],
+    *,
+    limits: tuple[float, float] = (RANGE_MIN, RANGE_MAX),
+) -> DrawnScan:
+    """Draw a scan with these readings straight ahead, for checks of readings.
+
+    A robot that errs about bearings, or about the sector's width, reacts to it as one that does not.
+    """
+    arcs = [Arc(0, draw(st.integers(8, 12)), draw(readings))]
+    if draw(st.booleans()):
+        arcs.append(Arc(draw(st.integers(0, 5)), MIN_WIDTH, draw(readings)))
+    return DrawnScan(360, 0.0, 1.0, limits, draw(fills), tuple(arcs))
 
 
 def _smallest(readings: NDArray[np.float64]) -> float | None:
