@@ -14,8 +14,8 @@ A course is a folder with a `course.yaml`. These are its keys with their default
     demo: ID                  the assignment that `autograder demo` shows; the first one by default
 
 A process works on one course. The environment variable AUTOGRADER_COURSE, which `autograder --course FOLDER` sets,
-names its folder. Without this variable, it is the clone that contains the autograder. An autograder that was installed
-as a wheel uses the course that contains the working folder. The file is read when it is first needed, not at import.
+names its folder. Without this variable, the course is the clone that contains the autograder; an autograder that was
+installed as a wheel uses the course that contains the working folder. `course.yaml` is read when it is first needed.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".
 
 @dataclass(frozen=True)
 class Course:
-    """A course, as its `course.yaml` describes it. Paths are below its folder, `root`."""
+    """A course, as its `course.yaml` describes it. Paths are relative to its folder, `root`."""
 
     root: Path
     name: str
@@ -77,7 +77,7 @@ class Course:
     def shows_answers(self, part: str) -> bool:
         """Return whether a path overlaps with files that students must not get.
 
-        A file directly in the folder of chapters, such as its README, does not.
+        A file directly in the folder of chapters, such as a README, does not count as such a file.
         """
         path, chapters = (self.root / part).resolve(), (self.root / self.chapters).resolve()
         secret_paths = (chapters, *((self.root / name).resolve() for name in (self.solutions, self.checks, self.guide)))
@@ -89,8 +89,8 @@ class Course:
     @property
     def parts(self) -> tuple[str, ...]:
         """The paths of all parts of the course, including those that do not exist."""
-        named = (self.chapters, self.solutions, self.checks, self.worlds, self.syllabus, self.guide)
-        return (COURSE_FILE, *named, *self.released)
+        named_parts = (self.chapters, self.solutions, self.checks, self.worlds, self.syllabus, self.guide)
+        return (COURSE_FILE, *named_parts, *self.released)
 
 
 def _course_folder() -> Path:
@@ -101,11 +101,11 @@ def _course_folder() -> Path:
 
 @cache
 def course() -> Course:
-    """Return the course of this process. Raises UsageError if none exists, or its file is invalid."""
-    current = Course.read(_course_folder())
-    if current.root != ROOT:
-        os.environ[COURSE_VARIABLE] = str(current.root)  # child processes may have another working folder
-    return current
+    """Return the course of this process. Raises UsageError if no course exists, or its `course.yaml` is invalid."""
+    current_course = Course.read(_course_folder())
+    if current_course.root != ROOT:
+        os.environ[COURSE_VARIABLE] = str(current_course.root)  # child processes may have another working folder
+    return current_course
 
 
 def _folder(name: str) -> Path:
@@ -127,13 +127,13 @@ def __getattr__(name: str) -> Path:
 
 
 def check_folders() -> tuple[Path, ...]:
-    """Return the folders with checks, which every sandbox hides: those of the course and of the autograder itself."""
-    bundled = ROOT / "autograder" / "checks"
-    return tuple(sorted({*bundled.glob("ch*")} | ({_folder("checks")} - {bundled})))
+    """Return the folders with checks of the course and of the autograder itself, all of which every sandbox hides."""
+    bundled_checks = ROOT / "autograder" / "checks"
+    return tuple(sorted({*bundled_checks.glob("ch*")} | ({_folder("checks")} - {bundled_checks})))
 
 
 def chapter(assignment: str) -> Path:
-    """Return an assignment's source folder. Raises UsageError if it does not exist."""
+    """Return an assignment's source folder. Raises UsageError if the assignment does not exist."""
     folder = _folder("chapters") / assignment
     if "/" in assignment or not (folder / f"{assignment}.ipynb").is_file():
         raise UsageError(f"there is no assignment {assignment!r}; there are: {', '.join(assignments()) or 'none'}")
@@ -141,7 +141,7 @@ def chapter(assignment: str) -> Path:
 
 
 def world_path(name: str) -> Path:
-    """Return the path of a world of the course or the simulator. Raises UsageError if it does not exist."""
+    """Return the path of a world of the course or the simulator. Raises UsageError if the world does not exist."""
     worlds = {
         path.stem: path for folder in (SHARED_WORLDS, _folder("worlds")) for path in sorted(folder.glob("*.yaml"))
     }
@@ -166,5 +166,5 @@ def source_notebook(assignment: str) -> Path:
 
 
 def hidden_titles(assignment: str) -> Path:
-    """Return the file with the titles of an assignment's hidden checks that students may read."""
+    """Return the path of the file with the titles of an assignment's hidden checks, which students may read."""
     return _folder("checks") / f"ch{assignment}" / "visible" / "hidden_titles.json"

@@ -7,8 +7,8 @@ from enum import Enum
 
 from autograder.plain_text import shorten
 
-MAX_SENTENCE = 4_000  # characters of a sentence, which may quote what a program printed
-MAX_DETAIL = 16_000  # characters of the lines of output
+MAX_SENTENCE = 4_000  # characters; a sentence may quote what a program printed
+MAX_DETAIL = 16_000  # characters; longer output is shortened
 
 
 class Kind(str, Enum):
@@ -40,7 +40,7 @@ class Kind(str, Enum):
     NOT_GRADED = "not_graded"
 
 
-# Hints for a program that crashed, independent of the check that ran at that time.
+# Hints for a program that crashed. They do not depend on the check that ran at that time.
 HINTS = {
     kind: ("Read the traceback from its last line upwards. The first line that names a file of yours says where.",)
     for kind in (Kind.SYNTAX_ERROR, Kind.CRASHED_AT_IMPORT, Kind.CRASHED_AT_START, Kind.CRASHED_LATER)

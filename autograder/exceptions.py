@@ -25,7 +25,7 @@ class UsageError(AutograderError):
 
 
 class StudentError(AutograderError):
-    """The submission is wrong. `diagnosis` says how the student can correct it."""
+    """The submission is wrong. `diagnosis` tells the student how to correct it."""
 
     def __init__(self, diagnosis: Diagnosis) -> None:
         super().__init__(diagnosis.sentence)

@@ -1,4 +1,4 @@
-"""Cleans, shortens and compares text of students and programs, which may be very long and contain any character."""
+"""Cleans, shortens and compares texts of students and programs, which may be very long and contain any character."""
 
 from __future__ import annotations
 
@@ -8,24 +8,24 @@ import unicodedata
 from collections.abc import Iterable
 from itertools import islice
 
-MAX_NAMES = 100  # names that are compared with one word
-MAX_NAME = 200  # characters of a name that is compared
+MAX_NAMES = 100  # how many names are compared with one word
+MAX_NAME = 200  # characters; longer names are not compared
 
 # Terminal sequences for colours, cursor moves and window titles (ECMA-48: CSI and OSC).
 _TERMINAL = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)?")
-# Characters that XML 1.0 and HTML forbid, half surrogate pairs, and the bidirectional overrides that reorder a line.
+# Characters that XML 1.0 and HTML forbid, lone surrogates, and the bidirectional overrides that reorder a line.
 _FORBIDDEN = re.compile("[^\t\n\x20-\x7e\xa0-\u2027\u202f-\u2065\u206a-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _LINE_ENDS = dict.fromkeys(map(ord, "\r\x85\u2028\u2029"), "\n")  # other line separators
 
 
 def clean(text: str) -> str:
-    """Return `text` without terminal sequences, and with U+FFFD for each character that a page must not contain."""
+    """Remove terminal sequences from `text`, and replace each character that a page must not contain with U+FFFD."""
     text = _TERMINAL.sub("", text).replace("\r\n", "\n").translate(_LINE_ENDS)
     return _FORBIDDEN.sub("\ufffd", text)
 
 
 def shorten(text: str, limit: int) -> str:
-    """Return `text`, cut to `limit` characters if it is longer, with a remark that gives the full length."""
+    """Return `text`. If it is longer than `limit` characters, cut it, and add a remark that gives the full length."""
     if len(text) <= limit:
         return text
     remark = f"… ({len(text):,} characters in all)"
@@ -45,8 +45,8 @@ def nearest(word: str, names: Iterable[str], cutoff: float = 0.6) -> str:
 
     Args:
         word: a name from the course.
-        names: names from the student, of which only those that `comparable` returns are compared.
-        cutoff: the smallest ratio of `difflib.SequenceMatcher` that is similar enough, in [0, 1].
+        names: names from the student. Only those that `comparable` returns are compared.
+        cutoff: the smallest ratio of `difflib.SequenceMatcher`, in [0, 1], that counts as similar enough.
     """
     return next(iter(difflib.get_close_matches(word, comparable(names), 1, cutoff)), "")
 
@@ -56,15 +56,15 @@ _INVISIBLE = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
 
 
 def visible(text: str, *, line: bool = False) -> str:
-    r"""Return `text` for a terminal, with control and invisible characters as escapes such as `\x1b`.
+    r"""Return `text` for a terminal, with escapes such as `\x1b` for control and invisible characters.
 
-    Newlines and tabs are not escaped, unless `line` says that the text must be a single line, such as a name.
+    Newlines and tabs are escaped only if `line` is set, for example for a name, which must stay on one line.
     """
     if text.isprintable():
         return text
     allowed = "" if line else "\n\t"
-    return "".join(char if char in allowed else _escaped(char) for char in text.replace("\r\n", "\n"))
+    return "".join(char if char in allowed else _escape(char) for char in text.replace("\r\n", "\n"))
 
 
-def _escaped(char: str) -> str:
+def _escape(char: str) -> str:
     return char.encode("unicode_escape").decode() if unicodedata.category(char) in _INVISIBLE else char

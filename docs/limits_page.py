@@ -36,14 +36,16 @@ ANSWER, WORKER_BOUNDS = "test_reply", "test_worker_sandbox_bounds"
 
 
 def current() -> str:
-    """Return the page."""
+    """Return the page as Markdown."""
     return "\n".join([HEAD, *table(("resource", "limit", "enforced by", "test"), list(rows())), FOOT.strip() + "\n"])
 
 
 def rows() -> list[tuple[str, str, str, str]]:
     """Return the rows: the resource, its limit, how it is enforced, and the file that tests it."""
     node, build, worker = limits.NODE, limits.BUILD, limits.GRADING_WORKER
-    forbidden = ", ".join(name for name in seccomp.FORBIDDEN if name in ("memfd_create", "shmget", "msgget", "add_key"))
+    forbidden_calls = ", ".join(
+        name for name in seccomp.FORBIDDEN if name in ("memfd_create", "shmget", "msgget", "add_key")
+    )
     return [
         (
             "wall time of a submission",
@@ -86,7 +88,7 @@ def rows() -> list[tuple[str, str, str, str]]:
             SANDBOX,
         ),
         ("queued signals", f"{limits.SIGNALS}", "the kernel", ARGUMENTS),
-        ("keys, queues, segments, files in memory", "none", f"a system call filter ({forbidden}, …)", SANDBOX),
+        ("keys, queues, segments, files in memory", "none", f"a system call filter ({forbidden_calls}, …)", SANDBOX),
         ("size of a file; new files", f"{_mib(node.file_size)}; {node.files:,}", "the kernel; a watcher", SANDBOX),
         ("/tmp and /dev/shm of a program", _mib(node.scratch), "a file system in memory", SANDBOX),
         ("a worker sandbox's scratch folder", _mib(limits.WORKER_SCRATCH), "a file system in memory", ARGUMENTS),

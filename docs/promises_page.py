@@ -28,7 +28,7 @@ marked as nightly, and `make test` runs all others. The pages about attacks and 
 """
 # Figures that `make bench` measures are not promises.
 COMMAND = r"(?:\.venv/bin/)?(?:autograder|make|nbgrader|dask|pip)\b(?!/| bench\b)|eval \""
-# A sentence or a row of a table needs a test if it has a command, an option or an exit status, or says "never".
+# A sentence or a table row needs a test if it contains a command, an option, an exit status or the word "never".
 PROMISING = re.compile(rf"(?:^|`)(?:{COMMAND})|`--[a-z]|\bexit status\b|\bends with (?:status )?1\b|\bnever\b")
 BLOCK = re.compile(r"^```(?P<kind>\w*).*?\n(?P<text>.*?)^```\n?", re.MULTILINE | re.DOTALL)
 SENTENCE = re.compile(r"(?<!^\d\.)(?<=[.?!])\s+(?=[A-Z`\"\[])")
@@ -39,7 +39,7 @@ MARKUP = re.compile(r"!?\[([^\]]*)\]\([^)]*\)|^(?:-|\d\.) ")
 
 @dataclass(frozen=True)
 class Promise:
-    """Words of a page, and the test that verifies them, as `file::name`."""
+    """Words of a page, and the test (`file::name`) that verifies them."""
 
     words: str
     test: str
@@ -94,8 +94,8 @@ def _promises_of(path: Path, tree: ast.Module) -> Iterator[Promise]:
         for node in tree.body
     )
     for function in (node for node in tree.body if isinstance(node, ast.FunctionDef)):
-        marks = [ast.unparse(decorator) for decorator in function.decorator_list]
-        is_nightly = module_is_nightly or "pytest.mark.nightly" in marks
+        decorators = [ast.unparse(decorator) for decorator in function.decorator_list]
+        is_nightly = module_is_nightly or "pytest.mark.nightly" in decorators
         for decorator in function.decorator_list:
             if isinstance(decorator, ast.Call) and ast.unparse(decorator.func) == "pytest.mark.promise":
                 for words in decorator.args:
@@ -103,7 +103,7 @@ def _promises_of(path: Path, tree: ast.Module) -> Iterator[Promise]:
 
 
 def current() -> str:
-    """Return the page."""
+    """Return the page as Markdown."""
     all_promises = list(promises())
     parts = [HEAD]
     for page, text in texts().items():

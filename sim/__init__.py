@@ -1,4 +1,4 @@
-"""A 2D lidar simulator. Its core consists of pure functions that move robots in a world of walls, with exact results.
+"""A 2D lidar simulator. Pure functions move robots through a world of walls, and compute exact scans.
 
 >>> from sim import Command, Simulation, World, box, observe, start, step
 >>> simulation = Simulation(World.from_segments(box(4.0, 3.0)))

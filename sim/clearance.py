@@ -18,10 +18,11 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Clearance:
-    """The nearest obstacle, and its `distance` in m from the robot's footprint, below 0 if it is inside.
+    """The nearest obstacle, and its `distance` from the robot's footprint in metres, below 0 if the two overlap.
 
-    `x` and `y` are the obstacle's nearest point in the frame `map`. `name` is its name, such as "north wall", "wall 3",
-    "pillar 0", "mover 1" or "robot bob". In an empty world, the distance is infinite and the point is nan.
+    (`x`, `y`) is the point of the obstacle that is nearest to the robot, in the frame `map`. `name` is the obstacle's
+    name, such as "north wall", "wall 3", "pillar 0", "mover 1" or "robot bob". In an empty world, the distance is
+    infinite and the point is nan.
     """
 
     distance: float
@@ -32,7 +33,7 @@ class Clearance:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Obstacles:
-    """The obstacles within some distance of a point: walls (7, K), circles (M, 3), and the names of all."""
+    """The obstacles within some distance of a point: walls (7, K), circles (M, 3), and the names of all of them."""
 
     walls: Floats
     circles: Floats
@@ -55,9 +56,11 @@ def clearance(simulation: Simulation, state: State, robot: str | None = None) ->
     obstacles = obstacles_around(simulation, state.time_ns, poses, index, nearest + 2.0 * body.reach + 1e-9)
     if not obstacles.names:
         return Clearance(math.inf, math.nan, math.nan, "nothing")
-    touch = np.empty(6)
-    gap = simulation.scene.engine.gap(pose.x, pose.y, pose.theta, body.shape, obstacles.walls, obstacles.circles, touch)
-    return Clearance(float(gap), float(touch[1]), float(touch[2]), obstacles.names[int(touch[0])])
+    contact = np.empty(6)
+    gap = simulation.scene.engine.gap(
+        pose.x, pose.y, pose.theta, body.shape, obstacles.walls, obstacles.circles, contact
+    )
+    return Clearance(float(gap), float(contact[1]), float(contact[2]), obstacles.names[int(contact[0])])
 
 
 def distance_to_nearest(simulation: Simulation, time_ns: int, poses: list[Pose], index: int) -> float:
@@ -75,20 +78,22 @@ def distance_to_nearest(simulation: Simulation, time_ns: int, poses: list[Pose],
     return best
 
 
-def obstacles_around(simulation: Simulation, time_ns: int, poses: list[Pose], index: int, within: float) -> Obstacles:
-    """Return all obstacles within `within` metres of the centre of a robot, and some others, at a simulated time."""
+def obstacles_around(
+    simulation: Simulation, time_ns: int, poses: list[Pose], index: int, max_distance: float
+) -> Obstacles:
+    """Return all obstacles within `max_distance` metres of a robot's centre at a simulated time, and maybe others."""
     scene, world = simulation.scene, simulation.world
     centre = poses[index]
     min_x, max_x, min_y, max_y = scene.boxes
-    # Walls are selected by their bounding boxes, because a few additional ones do no harm.
+    # It is enough to select walls by their bounding boxes, because a few additional walls do no harm.
     dx = np.maximum(np.maximum(min_x - centre.x, centre.x - max_x), 0.0)
     dy = np.maximum(np.maximum(min_y - centre.y, centre.y - max_y), 0.0)
-    near = np.flatnonzero(dx * dx + dy * dy <= within * within).tolist()
-    names = [world.segment_names[k] or f"wall {k}" for k in near]
-    walls = scene.walls[:, near]
+    near_walls = np.flatnonzero(dx * dx + dy * dy <= max_distance * max_distance).tolist()
+    names = [world.segment_names[k] or f"wall {k}" for k in near_walls]
+    walls = scene.walls[:, near_walls]
     circles, circle_names = [], []
     for k, (x, y, radius) in enumerate(scene.circles.tolist()):
-        if math.hypot(x - centre.x, y - centre.y) - radius <= within:
+        if math.hypot(x - centre.x, y - centre.y) - radius <= max_distance:
             circles.append((x, y, radius))
             circle_names.append(world.circle_names[k] or f"pillar {k}")
     for mover, circle in zip(world.movers, scene.movers_at(time_ns), strict=True):

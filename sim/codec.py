@@ -1,4 +1,4 @@
-"""Converts a simulation to JSON and back without loss: floats have the same bits afterwards."""
+"""Converts a simulation to JSON and back without loss: floats keep their bits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Faults of a lidar, each for a window of simulated time."""
+"""Faults of a lidar, each of which lasts for a window of simulated time."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ class DeadSector:
 class Faults:
     """The faults of one robot's lidar.
 
-    In a `dead` window, the lidar sends nothing. In a `frozen` one, it repeats the scan of the window's start, each time
-    with a new stamp. In a `DeadSector`, it measures nothing.
+    In a `dead` window, the lidar sends nothing. In a `frozen` one, it repeats the scan from the start of the
+    window, each time with a new stamp. In a `DeadSector`, it measures nothing.
     """
 
     dead: tuple[Window, ...] = ()

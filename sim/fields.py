@@ -16,7 +16,7 @@ from sim.exceptions import WorldError
 from sim.world import MAX_METRES
 
 MAX_BYTES = 20_000_000
-MAX_NAME = 200
+MAX_NAME = 200  # characters
 
 LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 ANGLES = {"rad": 1.0, "deg": math.pi / 180.0}
@@ -25,19 +25,19 @@ NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([a-zA-Z]
 
 @dataclass(frozen=True, slots=True)
 class Units:
-    """The units of numbers without a unit in a file."""
+    """The default units of a file, for numbers that are written without a unit."""
 
     length: str = "m"
     angle: str = "rad"
 
 
 def error_at(path: Path, node: yaml.Node, problem: str, remedy: str) -> WorldError:
-    """Return the error about a node of a file."""
+    """Return an error that names the file and the line of a node."""
     return WorldError(problem, remedy, path=str(path), line=node.start_mark.line + 1)
 
 
 def compose_file(path: Path) -> yaml.MappingNode:
-    """Return the nodes of a YAML file that consists of a mapping. Raise a WorldError for any other file."""
+    """Return the top-level mapping of a YAML file. Raise a WorldError if the file does not contain one."""
     name = str(path)
     try:
         data = path.read_bytes() if path.stat().st_size <= MAX_BYTES else None
@@ -93,36 +93,38 @@ class Reader:
     def fields(
         self, node: yaml.Node, label: str, required: Sequence[str] = (), optional: Sequence[str] = ()
     ) -> dict[str, yaml.Node]:
-        """Return the fields of a mapping: all the required ones, and no other than these and the optional ones."""
-        known = (*required, *optional)
+        """Return the fields of a mapping, which must have all required fields and may have the optional ones."""
+        known_names = (*required, *optional)
         if not isinstance(node, yaml.MappingNode):
-            raise error_at(self.path, node, f"{label} is {describe(node)}", f"Give a mapping with {_list(known)}")
+            raise error_at(
+                self.path, node, f"{label} is {describe(node)}", f"Give a mapping with {_join_quoted(known_names)}"
+            )
         fields_by_name: dict[str, yaml.Node] = {}
         for key, value in node.value:
             name = key.value if isinstance(key, yaml.ScalarNode) else describe(key)
-            if name not in known:
-                matches = difflib.get_close_matches(str(name), known, n=1)
-                hint = f"Did you mean {matches[0]!r}?" if matches else f"It can have {_list(known)}"
+            if name not in known_names:
+                matches = difflib.get_close_matches(str(name), known_names, n=1)
+                hint = f"Did you mean {matches[0]!r}?" if matches else f"It can have {_join_quoted(known_names)}"
                 raise error_at(self.path, key, f"{label} has no field {str(name)[:40]!r}", hint)
             if name in fields_by_name:
                 raise error_at(self.path, key, f"{label} has the field {name!r} twice", "Keep one of them")
             fields_by_name[name] = value
-        missing = [name for name in required if name not in fields_by_name]
-        if missing:
-            raise error_at(self.path, node, f"{label} lacks {_list(missing)}", "Add it")
+        missing_names = [name for name in required if name not in fields_by_name]
+        if missing_names:
+            raise error_at(self.path, node, f"{label} lacks {_join_quoted(missing_names)}", "Add it")
         return fields_by_name
 
     def items(self, node: yaml.Node | None, label: str, maximum: int, minimum: int = 0) -> list[yaml.Node]:
-        """Return the items of a list with `minimum` to `maximum` items; none for a missing or empty section."""
+        """Return the `minimum` to `maximum` items of a list. A missing or empty section has no items."""
         if node is None or (minimum == 0 and _is_blank(node)):
             return []
         if not isinstance(node, yaml.SequenceNode):
             raise error_at(self.path, node, f"{label} is {describe(node)}", "Give a list")
         count = len(node.value)
         if not minimum <= count <= maximum:
-            expected = f"{minimum} to {maximum}" if count > maximum else f"{minimum} or more"
-            expected = f"{minimum}" if minimum == maximum else expected
-            raise error_at(self.path, node, f"{label} is a list of {count}", f"Give {expected}")
+            expected_text = f"{minimum} to {maximum}" if count > maximum else f"{minimum} or more"
+            expected_text = f"{minimum}" if minimum == maximum else expected_text
+            raise error_at(self.path, node, f"{label} is a list of {count}", f"Give {expected_text}")
         return list(node.value)
 
     def lengths(self, node: yaml.Node, label: str, count: int) -> tuple[float, ...]:
@@ -144,7 +146,7 @@ class Reader:
         return value
 
     def angle(self, node: yaml.Node, label: str) -> float:
-        """Return an angle in radians, of at most some turns."""
+        """Return an angle in radians, whose size may be at most 100."""
         value = self._quantity(node, label, ANGLES, self.units.angle)
         if abs(value) > 100.0:
             raise error_at(self.path, node, f"{label} is {value:g} rad", "Give an angle within a turn; mind the units")
@@ -155,7 +157,7 @@ class Reader:
         return self._quantity(node, label, {}, "")
 
     def text(self, node: yaml.Node | None, label: str) -> str:
-        """Return a text of one line, or an empty one for a missing field."""
+        """Return a text of one line, or an empty text if the field is missing."""
         if node is None:
             return ""
         if not isinstance(node, yaml.ScalarNode):
@@ -168,13 +170,13 @@ class Reader:
         return text
 
     def boolean(self, node: yaml.Node | None, label: str) -> bool:
-        """Return true or false, false for a missing field."""
+        """Return a boolean, False if the field is missing."""
         return self.choice(node, label, ("true", "false"), "false", ignore_case=True) == "true"
 
     def choice(
         self, node: yaml.Node | None, label: str, choices: Sequence[str], default: str, *, ignore_case: bool = False
     ) -> str:
-        """Return one of several words, or the default for a missing field."""
+        """Return one of several words, or the default if the field is missing."""
         if node is None:
             return default
         value = node.value if isinstance(node, yaml.ScalarNode) else None
@@ -187,8 +189,8 @@ class Reader:
         match = NUMBER.fullmatch(str(node.value)) if isinstance(node, yaml.ScalarNode) else None
         number, actual_unit = (float(match[1]), match[2] or unit) if match else (math.nan, unit)
         if not math.isfinite(number) or (actual_unit not in units and actual_unit != ""):
-            expected = f"a number, in {' or '.join(units)}" if units else "a number"
-            raise error_at(self.path, node, f"{label} is {describe(node)}", f"Give {expected}")
+            expected_text = f"a number, in {' or '.join(units)}" if units else "a number"
+            raise error_at(self.path, node, f"{label} is {describe(node)}", f"Give {expected_text}")
         return number * units.get(actual_unit, 1.0)
 
 
@@ -196,6 +198,6 @@ def _is_blank(node: yaml.Node) -> bool:
     return isinstance(node, yaml.ScalarNode) and node.tag == "tag:yaml.org,2002:null"
 
 
-def _list(names: Sequence[Any]) -> str:
-    quoted = [f"{name!r}" for name in names]
-    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
+def _join_quoted(names: Sequence[Any]) -> str:
+    quoted_names = [f"{name!r}" for name in names]
+    return quoted_names[0] if len(quoted_names) == 1 else f"{', '.join(quoted_names[:-1])} and {quoted_names[-1]}"

@@ -1,4 +1,4 @@
-"""Tests whether a notebook runs under the grader, which shows nothing and reads only the notebook's files."""
+"""Detects whether a notebook runs under the grader, which displays nothing and reads only the notebook's files."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ MAX_RANGE = 10_000.0
 
 @dataclass(frozen=True, slots=True)
 class LidarSpec:
-    """A planar lidar with `beams` beams from `angle_min` on, `angle_increment` apart, in radians, frame `laser`.
+    """A planar lidar: `beams` beams from `angle_min` on, at steps of `angle_increment` (radians, in frame `laser`).
 
     Ranges are in metres, and `rate` is in scans a second. `noise` is the standard deviation of a range in metres, and
     `dropout` the probability that a beam is lost. `mount` is the pose of `laser` in `base_link`. With `skew`, the beams
@@ -94,10 +94,11 @@ UTM_30LX = LidarSpec(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scan:
-    """One scan: the fields of sensor_msgs/LaserScan with their names, and `stamp_ns` and `frame_id` of its header.
+    """One scan: the fields of sensor_msgs/LaserScan under their own names, and `stamp_ns` and `frame_id` of its header.
 
-    `ranges` and `intensities` are float32 of shape (beams,), read-only. By REP 117, `+inf` is no return, `-inf` is too
-    close to measure, and `nan` is an invalid measurement. `intensities` is empty if the lidar does not measure them.
+    `ranges` and `intensities` are float32 of shape (beams,), read-only. By REP 117, `+inf` means that nothing
+    was hit, `-inf` that an object is too close to measure, and `nan` that the measurement is invalid. `intensities` is
+    empty if the lidar does not measure them.
     `stamp_ns` is the simulated time of the first beam in nanoseconds.
     """
 

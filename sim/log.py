@@ -7,8 +7,8 @@ from collections import deque
 Line = tuple[float, str]
 """The time in seconds since the start of the run, and the text."""
 
-MAX_LINES = 1000  # at the start of a run, and as many at its end
-MAX_CHARACTERS = 300  # in a line
+MAX_LINES = 1000  # kept from the start of a run, and as many from its end
+MAX_CHARACTERS = 300  # in a line; longer ones are truncated
 OMISSION = "(lines are left out here)"
 
 

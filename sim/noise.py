@@ -1,9 +1,9 @@
 """Random numbers that depend on their purpose, and not on the order of the calls.
 
-A stream has a key of (seed, robot, sensor), and its blocks are numbered by the tick. numpy's Philox is a counter-based
-generator, and numpy guarantees that its raw words do not change. They are converted to normal numbers by Wichura's
-rational approximation of the inverse of the normal distribution (algorithm AS 241, 1988). It uses only square roots,
-products, sums and a logarithm computed from these, so that every machine draws the same bits.
+A stream has a key, made from (seed, robot, sensor), and its blocks are numbered by the tick. numpy's Philox is a
+counter-based generator, and numpy guarantees that its raw words do not change. They are converted to normal numbers by
+Wichura's rational approximation of the inverse of the normal distribution (algorithm AS 241, 1988). It uses only square
+roots, products, sums, and a logarithm that is computed from them, so that every machine draws the same bits.
 """
 
 from __future__ import annotations
@@ -58,13 +58,13 @@ def words(key: Words, tick: int, count: int) -> Words:
 
 
 def words_at(key: Words, counter: list[int], count: int) -> Words:
-    """Return `count` random words of the stream with this key, from a position on."""
+    """Return `count` random words of the stream with this key, starting at the position `counter`."""
     raw: Words = np.random.Philox(key=key, counter=counter).random_raw(count)
     return raw
 
 
 def words_of_ticks(key: Words, tick: int, ticks: int) -> Words:
-    """Return (ticks, 4) random words: a block for each tick from `tick` on, the same in one call or in several."""
+    """Return (ticks, 4) random words: a block for each tick from `tick` on, the same in one call as in several."""
     raw = words_at(key, [tick, 0, 0, 0], WORDS_PER_BLOCK * ticks)
     return raw.reshape(ticks, WORDS_PER_BLOCK)
 

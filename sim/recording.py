@@ -105,7 +105,7 @@ class Recording:
         return arrays
 
 
-# Exceptions of numpy, zipfile, zlib and json for a file that is damaged or not a recording.
+# The exceptions that numpy, zipfile, zlib and json raise for a file that is damaged or not a recording.
 _READ_ERRORS = (
     OSError,
     LookupError,
@@ -142,18 +142,20 @@ class Recorder:
 
     def append(self, state: State, commands: Commands = None) -> None:
         """Add a state, and the commands of the step that led to it."""
-        by_robot = {self._names[0]: commands} if isinstance(commands, Command) else commands or {}
+        commands_by_robot = {self._names[0]: commands} if isinstance(commands, Command) else commands or {}
         self._states.append(state)
         self._commands.append(
             [
-                (by_robot[name].linear, by_robot[name].angular) if name in by_robot else (np.nan, np.nan)
+                (commands_by_robot[name].linear, commands_by_robot[name].angular)
+                if name in commands_by_robot
+                else (np.nan, np.nan)
                 for name in self._names
             ]
         )
         self._clearances.append([clearance(self._simulation, state, name).distance for name in self._names])
 
     def scan(self, scan: Scan | None, robot: str | None = None) -> None:
-        """Add a scan of the state that was added last. None, from a dead lidar, is ignored."""
+        """Add a scan measured in the last state that was added. None, from a dead lidar, is ignored."""
         if scan is not None:
             self._scans[0 if robot is None else self._names.index(robot)].append((len(self._states) - 1, scan))
 
@@ -240,7 +242,7 @@ def load_recording(path: str | Path) -> Recording:
             logs = [
                 {name: file[f"scan{index}_{name}"] for name in _SCAN_COLUMNS} for index in range(len(simulation.robots))
             ]
-        _check(columns, logs)
+        _check_columns(columns, logs)
         events = tuple(Event(**event) for event in header["events"])
         log_lines = tuple((float(seconds), str(text)) for seconds, text in header.get("said", ()))
         scans = tuple(ScanLog(**log) for log in logs)
@@ -253,23 +255,23 @@ def load_recording(path: str | Path) -> Recording:
         raise RecordingError(f"{path}: not a recording, or a damaged one ({error}); record the run again") from None
 
 
-def _check(columns: dict[str, NDArray[Any]], logs: list[dict[str, NDArray[Any]]]) -> None:
+def _check_columns(columns: dict[str, NDArray[Any]], logs: list[dict[str, NDArray[Any]]]) -> None:
     """Raise a RecordingError unless the columns can belong to one run."""
     rows, robots = len(columns["times_ns"]), len(logs)
-    expected: dict[str, tuple[NDArray[Any], str, tuple[int, ...]]] = {
+    expected_columns: dict[str, tuple[NDArray[Any], str, tuple[int, ...]]] = {
         "times_ns": (columns["times_ns"], "i8", (rows,)),
         "collided": (columns["collided"], "b1", (rows, robots)),
         "clearances": (columns["clearances"], "f8", (rows, robots)),
     }
     for name, width in (("poses", 3), ("velocities", 2), ("commands", 2), ("odometry", 3), ("covariances", 9)):
-        expected[name] = (columns[name], "f8", (rows, robots, width))
+        expected_columns[name] = (columns[name], "f8", (rows, robots, width))
     for index, log in enumerate(logs):
         count = len(log["rows"])
-        expected[f"scan{index}_rows"] = (log["rows"], "i8", (count,))
-        expected[f"scan{index}_stamps_ns"] = (log["stamps_ns"], "i8", (count,))
+        expected_columns[f"scan{index}_rows"] = (log["rows"], "i8", (count,))
+        expected_columns[f"scan{index}_stamps_ns"] = (log["stamps_ns"], "i8", (count,))
         for name in ("ranges", "intensities"):
-            expected[f"scan{index}_{name}"] = (log[name], "f4", (count, *log[name].shape[1:2]))
-    for name, (array, kind, shape) in expected.items():
+            expected_columns[f"scan{index}_{name}"] = (log[name], "f4", (count, *log[name].shape[1:2]))
+    for name, (array, kind, shape) in expected_columns.items():
         if array.dtype != np.dtype(kind) or array.shape != shape or array.ndim != len(shape):
             raise RecordingError(
                 f"the column {name} has the shape {array.shape} of {array.dtype}, not {shape} of {np.dtype(kind)}; "

@@ -17,7 +17,7 @@ CONVEX = "three points or more of a convex polygon round (0, 0), anticlockwise, 
 
 @dataclass(frozen=True, slots=True)
 class OdometryDrift:
-    """The errors of wheel odometry. It is perfect if all are zero.
+    """The errors of wheel odometry, which is perfect if all of them are zero.
 
     The variance of the motion measured in a tick grows with the motion. The standard deviation is `linear` in m for a
     metre driven, `angular` in rad for a radian turned, and `veer` in rad for a metre driven.
@@ -41,7 +41,7 @@ class RobotSpec:
     """A robot: its footprint, limits, watchdog and lidar.
 
     `radius` is the radius of a round footprint in metres. `footprint`, if given, is a convex polygon of points in
-    `base_link`, which replaces it. Limits are in m/s, rad/s, m/s² and rad/s². `watchdog` is the simulated time in
+    `base_link` that replaces the circle. Limits are in m/s, rad/s, m/s² and rad/s². `watchdog` is the simulated time in
     seconds after which a robot without a new command stops. `start` is its start pose; if it is None, the world's start
     pose with the robot's index is used. `on_collision` is the effect of a contact on the motion.
     """
@@ -83,7 +83,7 @@ def _finite(pose: Pose) -> bool:
 
 
 def _convex(points: tuple[tuple[float, float], ...]) -> bool:
-    """Return whether each side turns left from the previous one, with the origin on its left, once around."""
+    """Return whether the polygon turns left at each corner and goes round the origin once."""
     if len(points) < 3 or not all(math.isfinite(x) and math.isfinite(y) for x, y in points):
         return False
     sides = list(pairwise([*points, points[0]]))

@@ -77,7 +77,7 @@ def newest_scan(recording: Recording, index: int, row: int) -> tuple[Scan, Pose]
     Args:
         recording: the run.
         index: the index of the robot in the simulation.
-        row: the last row that counts.
+        row: the last row to consider.
     """
     log = recording.scans[index]
     number = int(np.searchsorted(log.rows, row, side="right")) - 1

@@ -1,4 +1,4 @@
-"""A world and its robots in the form that an engine needs: columns of numbers, tables of beams, keys of noise."""
+"""A world and its robots in the form that an engine needs: columns of numbers, tables of beams and keys of noise."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Beams:
-    """A lidar's beams: their directions (2, beams) in its frame, their number in a radian, and their length."""
+    """A lidar's beams: their directions (2, beams) in its frame, the number of beams per radian, and their length."""
 
     table: Floats
     per_radian: float
@@ -34,7 +34,7 @@ class Beams:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Body:
-    """A robot for the engine: its shape (see `engine.shapes`), its limits, its drift and its streams of noise."""
+    """A robot for the engine: its shape (see `engine.shapes`), its limits, its drift and the keys of its noise."""
 
     shape: Floats
     reach: float
@@ -42,7 +42,7 @@ class Body:
     drift: Floats
     watchdog_ns: int
     max_linear: float
-    drifts: bool
+    has_drift: bool
     beams: Beams | None
     range_key: Words
     dropout_key: Words
@@ -64,18 +64,18 @@ class Track:
             return self.legs[0][1], self.legs[0][2]
         t = time_ns / 1e9 + self.offset
         t -= self.period * math.floor(t / self.period)
-        leg_start, x, y, vx, vy, moving = self.legs[0]
+        leg_start, x, y, vx, vy, travel_time = self.legs[0]
         for leg in self.legs:
             if leg[0] > t:
                 break
-            leg_start, x, y, vx, vy, moving = leg
-        elapsed = min(t - leg_start, moving)
+            leg_start, x, y, vx, vy, travel_time = leg
+        elapsed = min(t - leg_start, travel_time)
         return x + vx * elapsed, y + vy * elapsed
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
-    """The data of a run for an engine. `boxes` (4, K) contains the smallest and largest x, then y, of each wall."""
+    """The data of a run for an engine. `boxes` (4, K) contains the minimum and maximum of x, then y, for each wall."""
 
     engine: Any
     walls: Floats
@@ -92,17 +92,19 @@ class Scene:
         return [(*track.at(time_ns), track.radius) for track in self.tracks]
 
 
-def build(world: World, robots: tuple[RobotSpec, ...], seed: int, name: EngineName) -> Scene:
-    """Return the scene of a run for the engine with this name."""
+def build(world: World, robots: tuple[RobotSpec, ...], seed: int, engine_name: EngineName) -> Scene:
+    """Return the scene of a run for the engine called `engine_name`."""
     walls = layout(world.segments)
-    selected = engine(name)
+    selected_engine = engine(engine_name)
     x1, x2, y1, y2 = walls[:4]
     return Scene(
-        engine=selected,
+        engine=selected_engine,
         walls=walls,
         boxes=np.array((np.minimum(x1, x2), np.maximum(x1, x2), np.minimum(y1, y2), np.maximum(y1, y2))),
         circles=world.circles.copy(),
-        grid=grid_of(walls) if walls.shape[1] > MAX_WALLS_WITHOUT_GRID and hasattr(selected, "fan_in_grid") else None,
+        grid=grid_of(walls)
+        if walls.shape[1] > MAX_WALLS_WITHOUT_GRID and hasattr(selected_engine, "fan_in_grid")
+        else None,
         tracks=tuple(_track(mover, number, seed) for number, mover in enumerate(world.movers)),
         bodies=tuple(_body(robot, seed) for robot in robots),
         mover_speed=max((mover.speed for mover in world.movers), default=0.0),
@@ -131,7 +133,7 @@ def _body(robot: RobotSpec, seed: int) -> Body:
         drift=np.array((drift.linear**2, drift.angular**2, drift.veer**2)),
         watchdog_ns=round(min(robot.watchdog, 1e9) * 1e9),
         max_linear=robot.max_linear,
-        drifts=drift != NO_DRIFT,
+        has_drift=drift != NO_DRIFT,
         beams=None if robot.lidar is None else beams_of(robot.lidar),
         range_key=key_of(seed, robot.name, "range"),
         dropout_key=key_of(seed, robot.name, "dropout"),
@@ -145,14 +147,14 @@ def _track(mover: Mover, number: int, seed: int) -> Track:
     leg_start = 0.0
     for (x1, y1), (x2, y2) in pairwise(points):
         length = distance(x1, y1, x2, y2)
-        moving = length / mover.speed
+        travel_time = length / mover.speed
         speed = mover.speed / length if length > 0.0 else 0.0
-        legs.append((leg_start, x1, y1, (x2 - x1) * speed, (y2 - y1) * speed, moving))
-        leg_start += moving + mover.pause
-    share = mover.phase
-    if share is None:
-        share = float(uniform(words(key_of(seed, f"{number}/{mover.name}", "phase"), 0, 1))[0])
-    return Track(tuple(legs) or ((0.0, *mover.path[0], 0.0, 0.0, 0.0),), leg_start, share * leg_start, mover.radius)
+        legs.append((leg_start, x1, y1, (x2 - x1) * speed, (y2 - y1) * speed, travel_time))
+        leg_start += travel_time + mover.pause
+    phase = mover.phase
+    if phase is None:
+        phase = float(uniform(words(key_of(seed, f"{number}/{mover.name}", "phase"), 0, 1))[0])
+    return Track(tuple(legs) or ((0.0, *mover.path[0], 0.0, 0.0, 0.0),), leg_start, phase * leg_start, mover.radius)
 
 
 def outline(pose: Pose, robot: RobotSpec) -> list[tuple[float, float, float, float]]:

@@ -1,4 +1,4 @@
-"""Simulates lidars: the engine's ranges for a state, with noise, drop-outs and faults, as a scan."""
+"""Simulates lidars: makes scans from the engine's ranges, with noise, drop-outs and faults."""
 
 from __future__ import annotations
 
@@ -47,18 +47,18 @@ def observe(simulation: Simulation, state: State, robot: str | None = None) -> S
     time_ns = state.time_ns
     if faults.dead and any(window.holds(time_ns) for window in faults.dead):
         return None
-    source = state.robots[index].held or state
+    measured_state = state.robots[index].held or state
     body = simulation.scene.bodies[index]
-    distances = _ranges(simulation, source, index, lidar, body)
-    noise = normal(words(body.range_key, source.tick, lidar.beams)) if lidar.noise > 0.0 else NO_NOISE
+    distances = _ranges(simulation, measured_state, index, lidar, body)
+    noise = normal(words(body.range_key, measured_state.tick, lidar.beams)) if lidar.noise > 0.0 else NO_NOISE
     ranges, intensities = simulation.scene.engine.to_readings(
         distances, noise, lidar.noise, lidar.range_min, lidar.range_max, lidar.intensities
     )
     if lidar.dropout > 0.0 or faults.sectors:
-        lost = _lost_beams(lidar, body, source.tick, time_ns, faults.sectors)
-        ranges[lost] = np.nan
+        is_lost = _lost_beams(lidar, body, measured_state.tick, time_ns, faults.sectors)
+        ranges[is_lost] = np.nan
         if lidar.intensities:
-            intensities[lost] = 0.0
+            intensities[is_lost] = 0.0
     ranges.flags.writeable = False
     intensities.flags.writeable = False
     sweep_ns = 0
@@ -88,9 +88,9 @@ def cast(simulation: Simulation, pose: Pose, lidar: LidarSpec) -> Floats:
         pose: the pose of the lidar, in the frame `map`.
         lidar: the lidar's beams and range.
 
-    The distances are those of the world's walls and circles, with movers at their positions at time 0, and `inf` beyond
-    `range_max`. A beam starts at the pose, in its direction of `directions(pose, lidar)`. A wall is a closed segment,
-    and a circle a solid disc. Numbers below 1e-60 are treated as zero.
+    Movers are at their positions at time 0. A distance beyond `range_max` is `inf`. A beam starts at the pose, and its
+    direction is the one in `directions(pose, lidar)`. A wall is a closed segment, and a circle a solid disc. Numbers
+    below 1e-60 are treated as zero.
     """
     scene = simulation.scene
     ranges = _fan_ranges(scene, scene.walls, _circles(scene, scene.movers_at(0)), pose, lidar)
@@ -99,21 +99,21 @@ def cast(simulation: Simulation, pose: Pose, lidar: LidarSpec) -> Floats:
 
 
 def directions(pose: Pose, lidar: LidarSpec) -> Floats:
-    """Return the beams' directions (beams, 2) in the frame `map`, the same doubles that the engines use."""
-    s, c = sincos(clean(pose.theta))
+    """Return the directions (beams, 2) of the beams in the frame `map`: the same doubles that the engines use."""
+    s, c = sincos(zero_if_tiny(pose.theta))
     x, y = beams_of(lidar).table
     return np.stack((c * x - s * y, s * x + c * y), axis=1)
 
 
-def mounted(pose: Pose, mount: Pose) -> Pose:
+def sensor_pose(pose: Pose, mount: Pose) -> Pose:
     """Return the pose in `map` of a sensor with the pose `mount` in `base_link`, for a robot at `pose`."""
-    if mount is ORIGIN:  # the usual case, for which the sums below have the same result
+    if mount is ORIGIN:  # the usual case, in which the sums below would give the same result
         return pose
     s, c = sincos(pose.theta)
     return Pose(pose.x + (c * mount.x - s * mount.y), pose.y + (s * mount.x + c * mount.y), pose.theta + mount.theta)
 
 
-def clean(value: float) -> float:
+def zero_if_tiny(value: float) -> float:
     """Return the value, or 0 if it is so small that products would underflow."""
     return value if abs(value) >= MIN_METRES else 0.0
 
@@ -122,39 +122,39 @@ def _ranges(simulation: Simulation, state: State, index: int, lidar: LidarSpec, 
     scene = simulation.scene
     robot = state.robots[index]
     walls, circles = scene.walls, scene.circles
-    extra: list[tuple[float, float, float]] = scene.movers_at(state.time_ns) if scene.tracks else []
+    extra_circles: list[tuple[float, float, float]] = scene.movers_at(state.time_ns) if scene.tracks else []
     if len(simulation.robots) > 1:
         sides = []
         for number, (spec, other) in enumerate(zip(simulation.robots, state.robots, strict=True)):
             if number != index:
                 sides += outline(other.pose, spec)
-                extra += _disc(other.pose, spec)
+                extra_circles += _disc(other.pose, spec)
         if sides:
             walls = np.concatenate((walls, layout(np.array(sides))), axis=1)
-    if extra:
-        circles = _circles(scene, extra)
+    if extra_circles:
+        circles = _circles(scene, extra_circles)
     if lidar.skew:
         return _skewed_ranges(
             scene, walls, circles, robot.pose, robot.velocity.linear, robot.velocity.angular, lidar, body
         )
-    return _fan_ranges(scene, walls, circles, mounted(robot.pose, lidar.mount), lidar, body)
+    return _fan_ranges(scene, walls, circles, sensor_pose(robot.pose, lidar.mount), lidar, body)
 
 
 def _disc(pose: Pose, spec: RobotSpec) -> list[tuple[float, float, float]]:
     return [(pose.x, pose.y, spec.radius)] if spec.footprint is None else []
 
 
-def _circles(scene: Scene, extra: Sequence[tuple[float, float, float]]) -> Floats:
-    return np.concatenate((scene.circles, np.array(extra))) if extra else scene.circles
+def _circles(scene: Scene, extra_circles: Sequence[tuple[float, float, float]]) -> Floats:
+    return np.concatenate((scene.circles, np.array(extra_circles))) if extra_circles else scene.circles
 
 
 def _fan_ranges(
-    scene: Scene, walls: Floats, circles: Floats, at: Pose, lidar: LidarSpec, body: Body | None = None
+    scene: Scene, walls: Floats, circles: Floats, lidar_pose: Pose, lidar: LidarSpec, body: Body | None = None
 ) -> Floats:
     beams = beams_of(lidar) if body is None or body.beams is None else body.beams
     grid = scene.grid
-    pose = (clean(at.x), clean(at.y), clean(at.theta))
-    arguments = (circles, beams.table, *pose, lidar.angle_min, beams.per_radian, beams.reach)
+    origin = (zero_if_tiny(lidar_pose.x), zero_if_tiny(lidar_pose.y), zero_if_tiny(lidar_pose.theta))
+    arguments = (circles, beams.table, *origin, lidar.angle_min, beams.per_radian, beams.reach)
     ranges: Floats
     if grid is None or walls is not scene.walls:
         ranges = scene.engine.fan(walls, *arguments)
@@ -168,15 +168,15 @@ def _fan_ranges(
 def _skewed_ranges(
     scene: Scene, walls: Floats, circles: Floats, pose: Pose, v: float, w: float, lidar: LidarSpec, body: Body
 ) -> Floats:
-    """Return the ranges of beams measured one after the other, the last at this instant, at constant velocity."""
+    """Return the ranges of beams measured one after the other at constant velocity, the last one at this instant."""
     beams = body.beams or beams_of(lidar)
     origins = np.empty((lidar.beams, 2))
     ray_directions = np.empty((lidar.beams, 2))
     for beam, (bx, by) in enumerate(beams.table.T.tolist()):
-        before = (lidar.beams - 1 - beam) * lidar.time_increment
-        at = mounted(Pose(*along_arc(pose.x, pose.y, pose.theta, v, w, -before)), lidar.mount)
+        seconds_before = (lidar.beams - 1 - beam) * lidar.time_increment
+        at = sensor_pose(Pose(*along_arc(pose.x, pose.y, pose.theta, v, w, -seconds_before)), lidar.mount)
         s, c = sincos(at.theta)
-        origins[beam] = clean(at.x), clean(at.y)
+        origins[beam] = zero_if_tiny(at.x), zero_if_tiny(at.y)
         ray_directions[beam] = c * bx - s * by, s * bx + c * by
     ranges: Floats = scene.engine.rays(walls, circles, origins, ray_directions)
     return ranges
@@ -186,18 +186,18 @@ def _lost_beams(
     lidar: LidarSpec, body: Body, tick: int, time_ns: int, sectors: Sequence[DeadSector]
 ) -> NDArray[np.bool_]:
     """Return which beams are lost, by chance or in a dead sector."""
-    lost = np.zeros(lidar.beams, dtype=np.bool_)
+    is_lost = np.zeros(lidar.beams, dtype=np.bool_)
     if lidar.dropout > 0.0:
-        lost |= uniform(words(body.dropout_key, tick, lidar.beams)) < lidar.dropout
+        is_lost |= uniform(words(body.dropout_key, tick, lidar.beams)) < lidar.dropout
     for sector in sectors:
         if sector.window.holds(time_ns):
             angles = lidar.angle_min + np.arange(lidar.beams) * lidar.angle_increment - sector.first
-            lost |= angles - TAU * np.floor(angles / TAU) <= sector.width
-    return lost
+            is_lost |= angles - TAU * np.floor(angles / TAU) <= sector.width
+    return is_lost
 
 
 def scan_angles(scan: Scan) -> Floats:
     """Return the angle of each beam of a scan in radians, frame `laser`, in [-pi, pi): 0 is straight ahead."""
     angles = scan.angle_min + np.arange(len(scan.ranges)) * scan.angle_increment
-    wrapped: Floats = angles - TAU * np.floor((angles + math.pi) / TAU)
-    return wrapped
+    wrapped_angles: Floats = angles - TAU * np.floor((angles + math.pi) / TAU)
+    return wrapped_angles

@@ -27,11 +27,11 @@ TimedCommand = tuple[Command, int]
 
 @dataclass(slots=True)
 class Run:
-    """The data of one robot during a step: first the constant values, then those that change."""
+    """The data of one robot during a step: first the values that stay the same, then those that change."""
 
     spec: RobotSpec
     body: Body
-    order: TimedCommand
+    timed_command: TimedCommand
     vector: Floats
     noise: Floats
     collided: bool
@@ -40,7 +40,7 @@ class Run:
 
 
 def start(simulation: Simulation) -> State:
-    """Return the state at time 0, every robot at rest on its start pose and its odometry at zero."""
+    """Return the state at time 0, with every robot at rest at its start pose and its odometry at zero."""
     start_poses = simulation.world.starts
     robots = []
     for index, spec in enumerate(simulation.robots):
@@ -55,7 +55,7 @@ def step(simulation: Simulation, state: State, commands: Commands = None, dt: fl
     Args:
         simulation: the world and its robots.
         state: the current state.
-        commands: the commands by the robots' names, or the command of a single robot. A robot without a new one
+        commands: the commands by robot name, or the command of a single robot. A robot without a new one
             continues with its last command until its watchdog stops it.
         dt: the time in seconds; one physics tick if None. It is divided into ticks of the physics period, the last of
             which may be shorter. One step of five ticks and five steps of one tick have the same result.
@@ -69,17 +69,17 @@ def step(simulation: Simulation, state: State, commands: Commands = None, dt: fl
         dt_ns = round(dt * 1e9)
     else:
         raise SpecError(f"dt is {dt!r}; give a step in seconds, above 0 and at most {MAX_STEP:.0f}")
-    orders = _timed_commands(simulation, state, commands)
-    ticks, rest_ns = divmod(dt_ns, simulation.tick_ns)
+    timed_commands = _timed_commands(simulation, state, commands)
+    ticks, remainder_ns = divmod(dt_ns, simulation.tick_ns)
     events: list[Event] = []
     robots = state.robots
     time_ns = state.time_ns
     if ticks:
-        robots = _advance(simulation, robots, orders, state.tick, time_ns, ticks, simulation.tick_ns, events)
+        robots = _advance(simulation, robots, timed_commands, state.tick, time_ns, ticks, simulation.tick_ns, events)
         time_ns += ticks * simulation.tick_ns
-    if rest_ns:
-        robots = _advance(simulation, robots, orders, state.tick + ticks, time_ns, 1, rest_ns, events)
-        time_ns += rest_ns
+    if remainder_ns:
+        robots = _advance(simulation, robots, timed_commands, state.tick + ticks, time_ns, 1, remainder_ns, events)
+        time_ns += remainder_ns
         ticks += 1
     new_state = State(state.tick + ticks, time_ns, robots, tuple(events))
     return _with_frozen_lidars(simulation, new_state) if simulation.scene.may_freeze else new_state
@@ -87,24 +87,24 @@ def step(simulation: Simulation, state: State, commands: Commands = None, dt: fl
 
 def _timed_commands(simulation: Simulation, state: State, commands: Commands) -> list[TimedCommand]:
     """Return each robot's command and its time, in the robots' order."""
-    orders = [(robot.command, robot.command_ns) for robot in state.robots]
+    timed_commands = [(robot.command, robot.command_ns) for robot in state.robots]
     if commands is None:
-        return orders
+        return timed_commands
     if isinstance(commands, Command):
-        if len(orders) > 1:
+        if len(timed_commands) > 1:
             raise SpecError("one command for several robots; give a mapping from robot names to commands")
         commands = {simulation.robots[0].name: commands}
     for name, command in commands.items():
         if not (math.isfinite(command.linear) and math.isfinite(command.angular)):
             raise SpecError(f"the command for robot {name!r} is not finite: {command}; give m/s and rad/s")
-        orders[simulation.number_of(name)] = (command, state.time_ns)
-    return orders
+        timed_commands[simulation.number_of(name)] = (command, state.time_ns)
+    return timed_commands
 
 
 def _advance(
     simulation: Simulation,
     robots: tuple[RobotState, ...],
-    orders: list[TimedCommand],
+    timed_commands: list[TimedCommand],
     tick: int,
     time_ns: int,
     ticks: int,
@@ -116,8 +116,19 @@ def _advance(
     seconds = ticks * tick_ns / 1e9
     poses = [robot.pose for robot in robots]
     runs = [
-        Run(spec, body, order, _vector(robot), _noise(body, tick, ticks), robot.collided, robot.collisions, robot.name)
-        for spec, body, order, robot in zip(simulation.robots, scene.bodies, orders, robots, strict=True)
+        Run(
+            spec,
+            body,
+            timed_command,
+            _vector(robot),
+            _noise(body, tick, ticks),
+            robot.collided,
+            robot.collisions,
+            robot.name,
+        )
+        for spec, body, timed_command, robot in zip(
+            simulation.robots, scene.bodies, timed_commands, robots, strict=True
+        )
     ]
     # The longest distances that robots and movers can cover in these ticks.
     strides = [
@@ -140,8 +151,8 @@ def _advance(
                 noise = run.noise[number : number + 1]
                 if is_near[index]:
                     other_poses = [Pose(*other.vector[:3].tolist()) for other in runs]
-                    within = run.body.reach + 2.0 * strides[index] + 1e-3
-                    obstacles = obstacles_around(simulation, now_ns + tick_ns, other_poses, index, within)
+                    max_distance = run.body.reach + 2.0 * strides[index] + 1e-3
+                    obstacles = obstacles_around(simulation, now_ns + tick_ns, other_poses, index, max_distance)
                     _advance_near(simulation, run, now_ns, tick_ns, noise[0], obstacles, events)
                 else:
                     _advance_free(simulation, run, now_ns, 1, tick_ns, noise, events)
@@ -152,7 +163,7 @@ def _advance_free(
     simulation: Simulation, run: Run, time_ns: int, ticks: int, tick_ns: int, noise: Floats, events: list[Event]
 ) -> None:
     body, vector = run.body, run.vector
-    command, command_ns = run.order
+    command, command_ns = run.timed_command
     advance_free = simulation.scene.engine.advance_free
     dt = tick_ns / 1e9
     active_ticks = min(max(-((time_ns - command_ns - body.watchdog_ns) // tick_ns), 0), ticks)
@@ -174,12 +185,12 @@ def _advance_near(
     events: list[Event],
 ) -> None:
     body = run.body
-    command, command_ns = run.order
+    command, command_ns = run.timed_command
     if time_ns - command_ns >= body.watchdog_ns:
         _add_watchdog_event(run, time_ns, tick_ns, events)
         command = REST
-    touch = np.zeros(6)
-    hit = simulation.scene.engine.advance_near(
+    contact = np.zeros(6)
+    is_hit = simulation.scene.engine.advance_near(
         run.vector,
         command.linear,
         command.angular,
@@ -191,19 +202,19 @@ def _advance_near(
         obstacles.walls,
         obstacles.circles,
         run.spec.on_collision == "slide",
-        touch,
+        contact,
     )
-    if hit and not run.collided:
-        number, x, y, _, _, speed = touch.tolist()
+    if is_hit and not run.collided:
+        number, x, y, _, _, speed = contact.tolist()
         description = f"{run.name} met {obstacles.names[int(number)]} at {speed:.2f} m/s"
         events.append(Event(time_ns + tick_ns, run.name, "collision", description, x, y, speed))
         run.collisions += 1
-    run.collided = bool(hit)
+    run.collided = bool(is_hit)
 
 
 def _add_watchdog_event(run: Run, time_ns: int, tick_ns: int, events: list[Event]) -> None:
-    """Add an event at the first tick at which a command with a motion has expired."""
-    command, command_ns = run.order
+    """Add an event at the first tick at which a command to move has expired."""
+    command, command_ns = run.timed_command
     was_active = time_ns - tick_ns - command_ns < run.body.watchdog_ns
     if was_active and (command.linear != 0.0 or command.angular != 0.0):
         x, y, _, v = run.vector[:4].tolist()
@@ -212,7 +223,7 @@ def _add_watchdog_event(run: Run, time_ns: int, tick_ns: int, events: list[Event
 
 
 def _noise(body: Body, tick: int, ticks: int) -> Floats:
-    if body.drifts:
+    if body.has_drift:
         return normal(words_of_ticks(body.odometry_key, tick, ticks)[:, :2])
     return np.zeros((ticks, 2))
 
@@ -234,8 +245,8 @@ def _robot_state(robot: RobotState, run: Run) -> RobotState:
         run.name,
         Pose(x, y, theta),
         Command(v, w),
-        run.order[0],
-        run.order[1],
+        run.timed_command[0],
+        run.timed_command[1],
         Pose(ox, oy, ot),
         (xx, xy, xt, xy, yy, yt, xt, yt, tt),
         run.collided,
@@ -253,8 +264,8 @@ def _with_frozen_lidars(simulation: Simulation, state: State) -> State:
 
 
 def _with_frozen_lidar(spec: RobotSpec, robot: RobotState, state: State) -> RobotState:
-    frozen = any(window.holds(state.time_ns) for window in spec.faults.frozen)
-    if not frozen:
+    is_frozen = any(window.holds(state.time_ns) for window in spec.faults.frozen)
+    if not is_frozen:
         return robot if robot.held is None else replace(robot, held=None)
     if robot.held is not None:
         return robot

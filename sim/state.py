@@ -65,7 +65,7 @@ class Simulation:
             engine(self.engine)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Leave out the cached scene, which a copy, in this or another process, builds again."""
+        """Leave out the cached scene. A copy, in this or another process, builds its own."""
         return {item.name: getattr(self, item.name) for item in fields(self)}
 
     @cached_property
@@ -79,7 +79,7 @@ class Simulation:
         return build(self.world, self.robots, self.seed, self.engine)
 
     def movers_at(self, time_ns: int) -> list[tuple[float, float, float]]:
-        """Return the positions of the world's movers at a simulated time: `(x, y, radius)` each, in metres."""
+        """Return the world's movers at a simulated time, each as `(x, y, radius)` in metres."""
         return self.scene.movers_at(time_ns)
 
     @cached_property
@@ -87,7 +87,7 @@ class Simulation:
         return {None: 0, **{robot.name: number for number, robot in enumerate(self.robots)}}
 
     def number_of(self, robot: str | None) -> int:
-        """Return the index of a robot, of the first if None. Raise a SpecError if no robot has the name."""
+        """Return the index of a robot, 0 if `robot` is None. Raise a SpecError if no robot has this name."""
         try:
             return self._numbers[robot]
         except KeyError:
@@ -99,11 +99,11 @@ class Simulation:
 class RobotState:
     """One robot at one instant.
 
-    `pose` is the true pose in the frame `map`. `velocity` is that of its wheels, in m/s and rad/s, which continue to
-    turn while it slides along an obstacle. `command` is the last one received, at `command_ns`. `odometry` is the pose
-    measured by its wheels in the frame `odom`, which begins at the start pose, and `covariance` the covariance of
-    (x, y, theta), 3 x 3 row by row in m², m rad and rad². `collided` is true while an obstacle blocks it, and
-    `collisions` counts its contacts. `held` is the state in which a frozen lidar froze.
+    `pose` is the true pose in the frame `map`. `velocity`, in m/s and rad/s, is that of its wheels. They continue to
+    turn while the robot slides along an obstacle. `command` is the last one received, at `command_ns`. `odometry` is
+    the pose measured by its wheels in the frame `odom`, which begins at the start pose, and `covariance` the covariance
+    of (x, y, theta), 3 x 3 row by row in m², m rad and rad². `collided` is true while an obstacle blocks it, and
+    `collisions` counts its contacts. While its lidar is frozen, `held` is the state in which it froze.
     """
 
     name: str

@@ -40,8 +40,8 @@ class Goal:
 class Mover:
     """A disc that moves along `path` (points in metres) for ever, back and forth or in a loop.
 
-    `speed` is in m/s and `pause` in seconds at each point. `phase` is the share of a cycle that is over at time 0. If
-    it is None, it is drawn from the run's seed, so that each seed has another schedule.
+    `speed` is in m/s, and `pause` is the waiting time at each point in seconds. `phase` is the share of the cycle that
+    has passed at time 0. If it is None, it is drawn from the run's seed, so that each seed has its own schedule.
     """
 
     path: tuple[tuple[float, float], ...]
@@ -77,7 +77,7 @@ class World:
 
     `segments` is (N, 4) float64, one `[x1, y1, x2, y2]` for each wall, and `circles` (M, 3) float64, one `[x, y, r]`
     for each pillar, all in metres and read-only. `segment_names` and `circle_names` contain a possibly empty name for
-    each. `bounds` is `(xmin, ymin, xmax, ymax)`, by default of everything in the world.
+    each. `bounds` is `(xmin, ymin, xmax, ymax)`, by default those of everything in the world.
     """
 
     name: str = "world"
@@ -134,7 +134,7 @@ class World:
             goals: places to reach.
             movers: moving obstacles.
             segment_names: the names of the walls, in order. Walls without a name are numbered.
-            circle_names: the names of the circles, likewise.
+            circle_names: the names of the circles, in order. Circles without a name are numbered.
         """
         return cls(
             name=name,
@@ -149,11 +149,11 @@ class World:
 
 
 def box(width: float, height: float, *, x: float = 0.0, y: float = 0.0) -> Floats:
-    """Return the four walls (4, 4) of a room, in the order south, east, north, west: the names in `BOX_NAMES`.
+    """Return the four walls (4, 4) of a room, in the order of `BOX_NAMES`: south, east, north, west.
 
     Args:
-        width: the size in metres, along x.
-        height: the size in metres, along y.
+        width: the size along x, in metres.
+        height: the size along y, in metres.
         x: the x of the room's centre, in metres.
         y: the y of the room's centre, in metres.
     """

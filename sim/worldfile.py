@@ -1,7 +1,7 @@
 """Reads a world from a YAML file, with errors that name the file, the line, the problem and a remedy.
 
     name: the room
-    units: {length: m, angle: deg}          # or cm, mm; rad. One number may carry its own: "30 cm"
+    units: {length: m, angle: deg}          # or cm, mm; rad. A number can have its own: "30 cm"
     walls:
       - {name: shelf, from: [0, 0], to: [1.5, 0]}
       - [0, 0, 1.5, 0]                      # the same wall without a name
@@ -33,7 +33,7 @@ from sim.fields import Reader, Units, compose_file, error_at
 from sim.pose import Pose
 from sim.world import BOX_NAMES, Goal, Mover, World, box
 
-MAX_THINGS = 200_000
+MAX_THINGS = 200_000  # in a section
 MAX_MOVERS = 1000
 
 
@@ -106,17 +106,17 @@ def load_world(path: str | Path) -> World:
 def _units(read: Reader, node: yaml.Node | None) -> Units:
     if node is None:
         return Units()
-    set_fields = read.fields(node, "units", optional=("length", "angle"))
+    given_fields = read.fields(node, "units", optional=("length", "angle"))
     return Units(
-        length=read.choice(set_fields.get("length"), "length", ("m", "cm", "mm"), "m"),
-        angle=read.choice(set_fields.get("angle"), "angle", ("rad", "deg"), "rad"),
+        length=read.choice(given_fields.get("length"), "length", ("m", "cm", "mm"), "m"),
+        angle=read.choice(given_fields.get("angle"), "angle", ("rad", "deg"), "rad"),
     )
 
 
 def _sides(read: Reader, node: yaml.Node) -> list[tuple[float, float, float, float]]:
     nodes = read.items(node, "points", MAX_THINGS, 3)
     points = [read.lengths(point, "a point", 2) for point in nodes]
-    if points[0] == points[-1]:  # closed by hand
+    if points[0] == points[-1]:  # the file repeats the first point at the end
         points.pop()
     for point, first, second in zip(nodes[1:], points, points[1:], strict=False):
         if first == second:
@@ -155,7 +155,7 @@ def _mover(read: Reader, node: yaml.Node) -> Mover:
         optional=("radius", "speed", "pause", "loop", "phase", "name"),
     )
     points = read.items(mover["path"], "path", 10_000, 1)
-    set_fields = {
+    given_fields = {
         "radius": read.length(mover["radius"], "radius") if "radius" in mover else 0.2,
         "speed": read.length(mover["speed"], "speed") if "speed" in mover else 0.3,
         "pause": read.number(mover["pause"], "pause") if "pause" in mover else 0.0,
@@ -166,7 +166,7 @@ def _mover(read: Reader, node: yaml.Node) -> Mover:
             path=tuple(read.lengths(point, "a point of the path", 2) for point in points),  # type: ignore[misc]
             loop=read.boolean(mover.get("loop"), "loop"),
             name=read.text(mover.get("name"), "name") or "mover",
-            **set_fields,  # type: ignore[arg-type]
+            **given_fields,  # type: ignore[arg-type]
         )
     except WorldError as error:
         if error.line is not None:

@@ -1,8 +1,8 @@
-"""Answers that people wrote who had read only the notebooks, from `written_from_the_notebooks/`.
+"""Reads the answers in `written_from_the_notebooks/`, by people who had read only the notebooks.
 
-For each chapter, a YAML file lists the answers. A right answer replaces files of the reference by those in its folder,
-and removes some. A wrong answer is the reference with one mistake against one sentence of the notebook. `keeps_marks`
-says why a wrong answer loses no points.
+For each chapter, a YAML file lists the answers. A right answer replaces files of the reference with those in its
+folder, and removes others. A wrong answer is the reference with one mistake that violates one sentence of the notebook.
+`keeps_marks` says why a wrong answer loses no points.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class RightAnswer:
 
 @dataclass(frozen=True)
 class WrongAnswer:
-    """A wrong answer: texts of the reference's files to replace, and the sentence that the answer then breaks."""
+    """A wrong answer: texts to replace in the reference's files, and the sentence that the answer then violates."""
 
     assignment: str
     name: str
@@ -53,7 +53,7 @@ class WrongAnswer:
     keeps_marks: str
 
     def write(self, target: Path) -> None:
-        """Write the workspace to a folder; each text to replace occurs once."""
+        """Write the workspace to a folder. Each text to replace has to occur once."""
         write_reference(suites.hidden(self.assignment).sources, target)
         for edit in self.edits:
             file = target / edit["file"]

@@ -1,4 +1,4 @@
-"""Builds the packages of a suite. A failed build ends the grading, unless the suite's checks test the build."""
+"""Builds the packages that a suite requires. A failed build ends the grading, unless the suite allows one."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ class BuildOutcome:
 def require_packages(source: Path, required: tuple[str, ...], *, complete: bool = True) -> dict[str, Package]:
     """Return the packages in `source`; raise a StudentError if a required one is missing or incomplete.
 
-    If `complete` is set, each required package needs the files that every Python package of ROS 2 has. Otherwise colcon
-    decides whether it is complete.
+    If `complete` is set, each required package needs the files that every Python package of ROS 2 has. Otherwise,
+    colcon decides whether a package is complete.
     """
     packages, broken = read_packages(source)
     for name in required:
@@ -59,7 +59,7 @@ def require_packages(source: Path, required: tuple[str, ...], *, complete: bool 
 def build(workspace: Workspace, required: tuple[str, ...], *, complete: bool = False) -> Build:
     """Build the required packages of a workspace, and those that they depend on, with colcon.
 
-    Interface packages are taken from the cache of builds if the same ones were built before. If a build fails, the
+    Interface packages are taken from the cache of builds if identical ones were built before. If a build fails, the
     detail of the StudentError contains the end of colcon's output. `require_packages` explains `complete`.
     """
     start = time.monotonic()
@@ -68,17 +68,17 @@ def build(workspace: Workspace, required: tuple[str, ...], *, complete: bool = F
     if bundle:
         install_bundle(bundle, workspace)
     if set(required) - set(bundle):
-        skipped = ["--packages-skip", *bundle] if bundle else []
+        skip_options = ["--packages-skip", *bundle] if bundle else []
         folders = [package.folder for package in packages.values()]
-        colcon_build(workspace, folders, "--packages-up-to", *required, *skipped)
+        colcon_build(workspace, folders, "--packages-up-to", *required, *skip_options)
     return Build(True, round(time.monotonic() - start, 2), tuple(sorted(packages)))
 
 
 def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail: bool = False) -> BuildOutcome:
     """Build packages of a workspace.
 
-    If the build fails and may do so, each package is built separately, so that an error in one does not affect another.
-    In this case colcon decides whether a package is complete.
+    If the build fails and `may_fail` is set, each package is built separately, so that an error in one does not affect
+    another. In this case, colcon decides whether a package is complete.
 
     Raises:
         StudentError: a required package is missing or does not build, a limit ended a build, or the build created files
@@ -102,7 +102,7 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
         except StudentError as error:
             builds.append(Build(False, 0.0, log=error.diagnosis.detail))
             diagnoses[name] = explain(error.diagnosis, source, name)
-    require_contained(workspace.install)  # a failed build has not been checked yet
+    require_contained(workspace.install)  # not yet done after a failed build
     names = tuple(sorted({name for single in builds for name in single.packages}))
     log = "\n".join(filter(None, (single.log for single in builds)))
     seconds = round(math.fsum(single.seconds for single in builds), 2)

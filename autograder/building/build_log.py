@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 from autograder.run.lockstep.tracebacks import with_source_paths
 
-MAX_END, MAX_LINE = 50_000, 1_000  # characters
+MAX_END, MAX_LINE = 50_000, 1_000  # characters of each end of a log, and of each line, that are kept
 _BEGIN = "Traceback (most recent call last):"
 _FRAME = re.compile(r'  File "(?P<file>[^"]+)", line \d+')
 _IN_SETUP = re.compile(r'  File "setup.py", line (?P<line>\d+)')
@@ -26,7 +26,7 @@ _DEFINITION = re.compile(
 _DEPENDENCY = re.compile(
     r"/rosidl_generator_type_description/__init__\.py\"(?s:.{1,2000}?)\nKeyError: '(?P<package>\w{1,100})'\n"
 )
-# CMake wraps its own messages, too. They name a file of ROS, and the student's line is at the end of the call stack.
+# CMake also wraps its own messages. They name a file of ROS, and the student's line is at the end of the call stack.
 _CMAKE_ERROR = re.compile(
     r"^CMake Error at (?P<place>\S{1,300}?)(?: \(\w{1,80}\))?:\n(?P<text>(?:  .*\n){1,12})(?P<stack>(?s:.{0,3000}))",
     re.MULTILINE,
@@ -35,7 +35,7 @@ _CMAKE_LINE = re.compile(r"^  (CMakeLists\.txt:\d+) \(", re.MULTILINE)
 _CMAKE_TRACEBACK = re.compile(r"^  Traceback \(most recent call last\):\n(?:[ ]*\n|    .*\n)*", re.MULTILINE)
 _RUNS_SETUP = "in run_setup"  # in setuptools; the frames below it that are called "<string>" are those of setup.py
 _EMPTY_BLOCK = re.compile(r"^--- (?:stderr|output): .*\n(?:[ \t]*\n)*---\n", re.MULTILINE)
-# A repetition of colcon's error, and a warning about this machine's ROS.
+# colcon's repetition of an error, and a warning about this machine's ROS.
 _COLCON_LINES = re.compile(r"^(?:Command '\[|\[[\d.]+s\] WARNING:colcon\.colcon_ros\.prefix_path\.).*\n?", re.MULTILINE)
 _DURATION = r"(?:\d+h )?(?:\d+min )?[\d.]+s"
 _TIME = re.compile(rf"^\[{_DURATION}\] | \[{_DURATION}\]$|(?<= \[){_DURATION}, (?=[^\[\]\n]+\]$)", re.MULTILINE)
@@ -55,7 +55,7 @@ def readable_log(log: str) -> str:
 
 
 def first_error(log: str) -> str:
-    """Return one line with the first error of a failed build, and the student's file if the log names it; or ""."""
+    """Return the first error of a failed build as one line, with the student's file if the log names it; or ""."""
     bounded = _bounded(log)
     if match := _DEFINITION.search(bounded):
         return f"{match['file']}, {' '.join(match['text'].split())}: {' '.join(match['reason'].split())}"

@@ -1,9 +1,9 @@
-"""Serves workers' requests for built interface packages, in the process that started the worker, from a cache.
+"""Serves workers' requests for built interface packages from a cache, in the process that started the workers.
 
 A worker cannot write to the cache. It sends sources, and the process that started it looks them up by their content. If
 they are new, another worker builds them in its own sandbox, which contains these sources and no other file of any
-submission. So an unmodified worker has built each entry from the content that is its key. A worker that students' code
-has taken over can request builds of its own sources, but cannot change the packages of other submissions.
+submission. So each entry was built by an unmodified worker, from the content that is its key. A worker that students'
+code has taken over can request builds of its own sources, but cannot change the packages of other submissions.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ from autograder.run.sandbox.trees import Entry, read_tree
 from autograder.run.sandbox.worker_sandbox import in_worker_sandbox, wait_and_report
 
 CACHE = "bundles"
-VERSION = 3  # of the format and of the steps of a build
-_POLL_SECONDS = 0.25  # between two checks whether a worker that sends nothing still runs
-_MARGIN = 60.0  # s for the start and the end of a worker that builds
+VERSION = 3  # of an entry's format and of the build steps; part of each key
+_POLL_SECONDS = 0.25  # between two checks of whether a silent worker is still running
+_MARGIN = 60.0  # s that a worker gets for its start and its end, in addition to the build
 
 
 def serve_worker(
@@ -51,11 +51,11 @@ def serve_worker(
 ) -> tuple[dict[str, bytes], dict[str, Any]]:
     """Serve a worker until it is done; return the files of its result, and its last message.
 
-    The worker requests builds of interface packages, sends its result, and may send that it is done. If it ends without
-    such a message, the last message is empty.
+    The worker requests builds of interface packages, sends its result, and may report that it is done. If it ends
+    without such a report, the last message is empty.
 
     Raises:
-        MessageError: the message does not come from an unmodified worker.
+        MessageError: a message does not come from an unmodified worker.
     """
     files: dict[str, bytes] = {}
     while True:
@@ -95,7 +95,7 @@ def request_build(line: Connection, sources: Mapping[Entry, bytes], target: Path
 
 
 def failure_message(error: StudentError) -> dict[str, Any]:
-    """Return the message about a failed build, which includes whether a limit stopped it."""
+    """Return the message about a failed build. It tells whether a limit stopped the build."""
     return {"diagnosis": asdict(error.diagnosis), "stopped": isinstance(error, StoppedBuildError)}
 
 
@@ -126,15 +126,15 @@ def _serve_build(line: Connection, sources: Mapping[Entry, bytes], isolation: Is
         send_tree(line, built)
 
 
-def _make_once(requested: float, sources: Mapping[Entry, bytes], isolation: Isolation, entry: Path) -> None:
-    """Fill a new entry, unless a limit has ended a build of it since the request, at the system time `requested`.
+def _make_once(request_time: float, sources: Mapping[Entry, bytes], isolation: Isolation, entry: Path) -> None:
+    """Fill a new entry, unless a limit has stopped a build of the same sources after `request_time`.
 
-    Other requests for the same sources have waited for that build. They would exceed their time in a second one.
+    A request that has waited for such a build has no time left for a second one.
     """
     record = entry.parent / f"{key(sources)}.stopped"
     with suppress(FileNotFoundError):
         failure = json.loads(record.read_text())
-        if failure["ended"] >= requested:
+        if failure["ended"] >= request_time:
             raise _build_error(failure)
         record.unlink()
     try:

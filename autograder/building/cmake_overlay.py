@@ -1,7 +1,7 @@
 """A CMake overlay that halves the build time of interface packages without changes to their CMakeLists.txt.
 
-It precedes ROS in CMAKE_PREFIX_PATH, and contains a Config file for each generator of rosidl, which includes the real
-one. It changes the steps of the build, but not its messages or the files that it installs for Python nodes:
+It precedes ROS in CMAKE_PREFIX_PATH. For each of rosidl's generators, it contains a Config file that includes the real
+one. It changes the steps of a build, but not its messages or the files that are installed for Python nodes:
 
 - `rosidl_generate_interfaces` does not run the C++ generators, which Python nodes do not need.
 - Each library of the other generators is compiled as one unit, because common headers take nearly all of the time.

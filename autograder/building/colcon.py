@@ -21,11 +21,11 @@ from autograder.run.sandbox.trees import Entry, TreeError, list_tree, read_tree
 from autograder.run.workspace import Workspace
 
 RUNNER = Path(__file__).with_name("colcon_runner.py")
-LOG_LINES = 40
+LOG_LINES = 40  # of the end of a log, which a diagnosis contains
 
 
 class StoppedBuildError(StudentError):
-    """A limit ended the build. It is not repeated, because a grading has no time for a second build of that length."""
+    """A limit stopped the build. It is not repeated, because a grading has no time for a second build that long."""
 
 
 def colcon_command(workspace: Workspace, folders: Iterable[Path], verb: str, *options: str) -> list[str]:
@@ -43,12 +43,12 @@ def colcon_command(workspace: Workspace, folders: Iterable[Path], verb: str, *op
 def colcon_build(workspace: Workspace, folders: Iterable[Path], *selection: str) -> None:
     """Run `colcon build` on a workspace, without a network.
 
-    The build can write only to the workspace. `folders` are its packages, and `selection` is colcon's options that
-    select some of them.
+    The build can write only to the workspace. `folders` are the folders of its packages, and `selection` contains
+    colcon's options that select some of the packages.
 
     Raises:
-        StudentError: the build failed, or `require_contained` rejects its files. The detail has the end of the output.
-            If a limit ended the build, it is a StoppedBuildError.
+        StudentError: the build failed, or `require_contained` rejects its files. The detail is the end of the output.
+            If a limit stopped the build, the exception is a StoppedBuildError.
     """
     with workspace.private_folder() as folder:
         overlay = cmake_overlay.write_overlay(workspace.ros.prefixes, folder / "cmake-overlay")
@@ -82,8 +82,8 @@ def _run(workspace: Workspace, overlay: Path, command: list[str]) -> tuple[str, 
 def require_contained(install: Path) -> None:
     """Raise a StudentError if an install space is too large, or contains anything but files, folders and inner links.
 
-    The install space is mounted for nodes, and a mount follows links. It is also copied, and a copy of a sparse file
-    takes its whole size.
+    The install space is mounted for nodes, and a mount follows links. It is also copied, and in the copy a sparse file
+    needs space for its full size.
     """
     if install.is_symlink():
         raise _not_contained(f"{install.name}, which leads out of the install space")

@@ -32,12 +32,13 @@ HOOKS = (".sh", ".bash", ".zsh", ".ps1", ".dsv", ".py")
 
 
 def interface_bundle(packages: Mapping[str, Package], required: tuple[str, ...]) -> dict[str, Path]:
-    """Return the folders of the interface packages among the required ones and their dependencies, by name.
+    """Return the folders of the interface packages among the required packages and their dependencies, by name.
 
-    If they depend on any other package of the submission, the bundle is empty, and colcon builds everything together.
+    If one of them depends on another kind of package of the submission, the bundle is empty, and colcon builds
+    everything together.
     """
-    needed = _closure(packages, required)
-    bundle = {name: packages[name].folder for name in needed if _is_interface(packages[name])}
+    needed_names = _closure(packages, required)
+    bundle = {name: packages[name].folder for name in needed_names if _is_interface(packages[name])}
     return bundle if _closure(packages, tuple(bundle)) == set(bundle) else {}
 
 
@@ -66,7 +67,7 @@ def install_bundle(bundle: dict[str, Path], workspace: Workspace) -> None:
 
 
 def _sources(bundle: dict[str, Path]) -> dict[Entry, bytes]:
-    """Read a bundle's sources, with a folder for each package."""
+    """Read the sources of a bundle into a tree with a folder for each package."""
     tree: dict[Entry, bytes] = {}
     try:
         for name, folder in bundle.items():
@@ -99,13 +100,15 @@ def build_alone(workspace: Workspace) -> dict[Entry, bytes]:
     folders = sorted((workspace.root / "src").iterdir())
     names = [folder.name for folder in folders]
     colcon_build(workspace, folders, "--packages-select", *names)
-    installed = read_installed(workspace.install)
+    installed_files = read_installed(workspace.install)
     for name in names:
-        if Entry(name, "folder") not in installed:
+        if Entry(name, "folder") not in installed_files:
             sentence = f"colcon built {name} but installed nothing of it: look at its package.xml and CMakeLists.txt."
             raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
     metadata = json.dumps({"install": str(workspace.install)}).encode()
-    files = {_below("install", entry): data for entry, data in installed.items() if entry.path.split("/")[0] in names}
+    files = {
+        _below("install", entry): data for entry, data in installed_files.items() if entry.path.split("/")[0] in names
+    }
     return {Entry(METADATA, "file", size=len(metadata)): metadata, Entry("install", "folder"): b"", **files}
 
 

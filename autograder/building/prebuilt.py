@@ -1,4 +1,4 @@
-"""Copies a built workspace instead of building, for sources that differ from it only in files that colcon copies.
+"""Copies a built workspace instead of building one whose sources differ only in files that colcon copies.
 
 The verification grades thousands of versions of the reference, and building each would take longer than grading it.
 """
@@ -18,8 +18,8 @@ from autograder.run.workspace import Workspace
 def copy_prebuilt(built: Path, workspace: Workspace, packages: tuple[str, ...]) -> BuildOutcome:
     """Copy the folders `install` and `build` of a built workspace, and update them with the changed files of `src`.
 
-    An installed file with the same name and text as a file in `built`/src is a copy of that file. If `built` has no
-    install space, nothing is built, which is sufficient for checks that read only sources.
+    An installed file with the same name and text as a file in `built`/src is regarded as a copy of that file. If
+    `built` has no install space, the workspace gets none, which is sufficient for checks that only read sources.
     """
     for part in ("install", "build"):
         if (built / part).is_dir():
@@ -33,6 +33,6 @@ def copy_prebuilt(built: Path, workspace: Workspace, packages: tuple[str, ...]) 
             for copy in workspace.root.rglob(f"[ib][nu]*/**/{path.name}"):
                 if copy.read_bytes() == old:
                     copy.write_bytes(new)
-                    for compiled in copy.parent.glob(f"__pycache__/{path.stem}.*"):
-                        compiled.unlink()
+                    for bytecode in copy.parent.glob(f"__pycache__/{path.stem}.*"):
+                        bytecode.unlink()
     return BuildOutcome(Build(True, 0.0, packages), dict.fromkeys(packages, OK))

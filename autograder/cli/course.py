@@ -27,9 +27,9 @@ def course() -> None:
 @click.option("--dry-run", is_flag=True, help="Write nothing. List what would be updated.")
 def sync(names: tuple[str, ...], dry_run: bool) -> None:
     """Copy the reference into notebooks, and the points of the suites into grade cells."""
-    selected = chapters(names)
-    require_checks(chapter.assignment for chapter in selected)
-    for chapter in selected:
+    selected_chapters = chapters(names)
+    require_checks(chapter.assignment for chapter in selected_chapters)
+    for chapter in selected_chapters:
         differences = sync_chapter(chapter, write=not dry_run)
         for finding in differences if dry_run else ():
             echo(str(finding))
@@ -46,9 +46,9 @@ def check(names: tuple[str, ...]) -> None:
     if there are problems.
     """
     if not (problems := list(broken_course_file())):
-        parsed = {chapter.assignment: read_chapter(chapter) for chapter in chapters(names)}
-        problems = [finding for chapter in parsed.values() for finding in chapter.findings]
-        problems += broken_course(parsed, whole=not names)
+        parsed_chapters = {chapter.assignment: read_chapter(chapter) for chapter in chapters(names)}
+        problems = [finding for chapter in parsed_chapters.values() for finding in chapter.findings]
+        problems += broken_course(parsed_chapters, whole=not names)
     for line in dict.fromkeys(map(str, problems)):
         echo(line)
     sys.exit(1 if problems else 0)

@@ -20,7 +20,7 @@ from autograder.submission.intake.exercises import exercises_of
 from autograder.submission.intake.ignored import is_ignored
 from autograder.submission.intake.names import is_archive, is_notebook, stem
 
-TIMESTAMP = "timestamp.txt"  # a file of nbgrader beside the submission
+TIMESTAMP = "timestamp.txt"  # nbgrader writes this file beside a submission
 NO_SUBMISSION = "it is not a folder, an archive or a notebook"
 
 OnResult = Callable[[Result], None]
@@ -46,10 +46,11 @@ def grade_locally(submissions: Sequence[Job], on_result: OnResult, *, jobs: int)
 def discover(paths: tuple[Path, ...], assignment: str) -> Discovered:
     """Find the submissions at `paths`. Each path is a submission or a folder of submissions.
 
-    A folder of submissions has one file or folder for each student, or nbgrader's `submitted/STUDENT/ASSIGNMENT`.
+    A folder of submissions contains one file or folder for each student, or is nbgrader's `submitted` folder, which
+    contains `STUDENT/ASSIGNMENT`.
 
     Raises:
-        UsageError: a path does not exist, a folder contains no submission, or two submissions name the same student.
+        UsageError: a path does not exist, a folder contains no submission, or two submissions have the same name.
     """
     submissions: list[tuple[str, Path]] = []
     others: list[tuple[str, str]] = []
@@ -77,7 +78,7 @@ def discover(paths: tuple[Path, ...], assignment: str) -> Discovered:
 
 
 def student_of(path: Path) -> str:
-    """Return the name of the student in the name of a submitted file or folder: `ada` for `ada.tar.gz`."""
+    """Return the student's name, after which a submitted file or folder is named: `ada` for `ada.tar.gz`."""
     if path.is_dir():
         return path.name
     return stem(path.name) if stem(path.name) != path.name else path.stem
@@ -126,7 +127,7 @@ def grade_all(
     for student, path in submissions.items():
         job = Job(path, assignment, student, seed, out / student, isolation)
         remove_unfinished(job.out)
-        digests = job.digests if len(submissions) > 1 else None  # without others to compare, only the worker reads it
+        digests = job.digests if len(submissions) > 1 else None  # a single submission is compared with no other
         equal.setdefault(digests.graded_sha256 if digests else f"of {student}", []).append(job)
     groups = {group[0].student: group for group in equal.values()}
     results: dict[str, Result] = {}
@@ -135,8 +136,8 @@ def grade_all(
         return stored_result(job) if resume else None
 
     def add_result(result: Result) -> None:
-        graded, *others = groups[result.student]
-        copies = (reusable_result(job) or _copy(result, graded, job) for job in others)
+        graded_job, *others = groups[result.student]
+        copies = (reusable_result(job) or _copy(result, graded_job, job) for job in others)
         for student_result in (result, *copies):
             results[student_result.student] = student_result
             on_result(student_result)
@@ -163,14 +164,14 @@ def stored_result(job: Job) -> Result | None:
     return result if is_same and result.status is Status.GRADED else None
 
 
-def _copy(result: Result, graded: Job, job: Job) -> Result:
-    """Write the result of a graded submission as that of an equal one."""
-    if (digests := job.digests) is not None:  # the graded files are the same, but the others may differ
+def _copy(result: Result, graded_job: Job, job: Job) -> Result:
+    """Store the result of `graded_job` as the result of `job`, whose submission is equal."""
+    if (digests := job.digests) is not None:  # the files that are graded are the same, but others may differ
         digest = digests.sha256 if result.status is Status.GRADED else result.submission_sha256
         notices = result.notices if digests.notices is None else digests.notices
         result = replace(result, submission_sha256=digest, notices=notices, unused=digests.unused)
     artifacts = {name for artifact in result.artifacts for name in (artifact.name, artifact.run) if name}
-    files = ((name, graded.out / name) for name in (NOTEBOOK, LOG, *artifacts))
+    files = ((name, graded_job.out / name) for name in (NOTEBOOK, LOG, *artifacts))
     return write_result(job, result, {name: path.read_bytes() for name, path in files if path.is_file()})
 
 
@@ -179,7 +180,7 @@ def _is_submission(folder: Path, assignment: str) -> bool:
         return True
     exercises = exercises_of(assignment)
     names = {path.parts[0] for path in exercises.other_files if len(path.parts) > 1} if exercises is not None else ()
-    return any((folder / name).is_dir() for name in names)  # such as figures, which each release of the chapter has
+    return any((folder / name).is_dir() for name in names)  # such as `figures`, which every release contains
 
 
 def _discover_in_folder(folder: Path, assignment: str) -> tuple[list[tuple[str, Path]], list[tuple[str, str]]]:

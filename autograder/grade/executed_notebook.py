@@ -13,15 +13,15 @@ MAX_BYTES = 48 * 1024 * 1024
 
 
 def encode(notebook: NotebookNode) -> bytes:
-    """Return the bytes of an executed notebook, without its outputs if it is too large with them.
+    """Return the bytes of an executed notebook, without outputs if they make it too large.
 
     Each text is one string, because a list of its lines, as nbformat writes it, could have millions of values.
     """
-    data = _encoded(notebook)
+    data = _to_json(notebook)
     if len(data) <= MAX_BYTES:
         return data
     cells = [{**cell, "outputs": []} if cell.cell_type == "code" else cell for cell in notebook.cells]
-    return _encoded({**notebook, "cells": cells})
+    return _to_json({**notebook, "cells": cells})
 
 
 def decode(data: bytes) -> list[NotebookNode]:
@@ -30,8 +30,8 @@ def decode(data: bytes) -> list[NotebookNode]:
     Nothing else is checked, because a validation of the notebook's format can take a minute.
 
     Raises:
-        ValueError: it is not a notebook, or exceeds a bound.
-        RecursionError: it is nested too deep.
+        ValueError: `data` is not a notebook, or exceeds a limit.
+        RecursionError: `data` is nested too deeply.
     """
     notebook = read_json(data, NOTEBOOK_VALUES, is_strict=False)
     cells = notebook.get("cells") if isinstance(notebook, dict) else None
@@ -40,8 +40,8 @@ def decode(data: bytes) -> list[NotebookNode]:
     return [_code_cell(cell) for cell in cells if cell.get("cell_type") == "code"]
 
 
-def _encoded(notebook: Any) -> bytes:
-    # A single surrogate in a cell or its output cannot be encoded as UTF-8.
+def _to_json(notebook: Any) -> bytes:
+    # A lone surrogate in a cell or its output cannot be encoded as UTF-8.
     return json.dumps(notebook, ensure_ascii=False, sort_keys=True).encode("utf-8", errors="replace")
 
 

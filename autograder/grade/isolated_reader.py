@@ -28,16 +28,16 @@ from autograder.submission import intake
 from autograder.submission.intake import Submission
 from autograder.submission.intake.notebooks import read_cells
 
-MAX_CODE = 200_000  # characters of Python that leave the worker sandbox
+MAX_CODE = 200_000  # characters of Python code that may leave the worker sandbox
 
 
 @dataclass(frozen=True)
 class Digests:
-    """The digests of a submission, in hexadecimal digits, and the notices about its files for the result."""
+    """The hexadecimal digests of a submission, and what the result says about its files."""
 
-    sha256: str  # of all files
-    graded_sha256: str  # of the content that a grading reads
-    notices: tuple[str, ...] | None  # about the files that count; None if the notebook has to run first
+    sha256: str  # digest of all files
+    graded_sha256: str  # digest of the content that a grading reads
+    notices: tuple[str, ...] | None  # sentences about the files that count; None if the notebook has to run first
     unused: tuple[str, ...]  # files that are not graded
 
 
@@ -46,7 +46,7 @@ class Preview:
     """The part of a submission that counts."""
 
     files: int | None  # the number of files in packages; None if the notebook has to run first
-    notices: tuple[str, ...]  # about the files that count
+    notices: tuple[str, ...]  # sentences about the files that count
     unused: tuple[str, ...]  # files that are not graded
 
 
@@ -66,12 +66,12 @@ def read_preview(path: Path, assignment: str, isolation: Isolation) -> Preview:
 
 
 def read_code(path: Path, assignment: str, isolation: Isolation) -> str:
-    """Return the Python of a submission, at most `MAX_CODE` characters. Raise a StudentError if it cannot be read."""
+    """Return the Python code of a submission, up to `MAX_CODE` characters. Raise a StudentError if unreadable."""
     return str(_read("code", path, assignment, isolation))
 
 
 def code(submission: Submission) -> str:
-    """Return the Python of a submission: its modules and the code cells of its notebook."""
+    """Return the Python code of a submission: its modules and the code cells of its notebook."""
     texts = [f"# {file.path}\n{_text(file.data)}" for file in submission.source if file.path.suffix == ".py"]
     if submission.notebook is not None:
         with suppress(ValueError):  # the modules are returned even if the notebook cannot be read
@@ -108,7 +108,7 @@ def _read(reader: str, path: Path, assignment: str, isolation: Isolation) -> Any
 
 def _in_worker_sandbox(reader: str, path: Path, assignment: str) -> Any:
     command = [sys.executable, "-m", "autograder.grade.isolated_reader", reader, str(path), assignment]
-    chapter = course_paths.CHAPTERS / assignment  # a course directory of nbgrader may have other assignments
+    chapter = course_paths.CHAPTERS / assignment  # an nbgrader course may have assignments that are not chapters
     view = View(shown=(chapter,) if chapter.is_dir() else (), submitted=(path,))
     report = run_in_worker_sandbox(lambda scratch: command, Isolation.BUBBLEWRAP, READING_WORKER, view=view)
     try:
@@ -122,7 +122,7 @@ def _in_worker_sandbox(reader: str, path: Path, assignment: str) -> Any:
 
 
 def main() -> None:
-    """Print the output of a reader for the submission on the command line."""
+    """Read the submission on the command line with the reader named there, and print the outcome."""
     reader, path, assignment = sys.argv[1:]
     answer: dict[str, Any]
     try:

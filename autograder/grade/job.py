@@ -22,8 +22,8 @@ class Options:
     only: tuple[str, ...] = ()  # the checks to run; all if empty
     exit_first: bool = False  # whether to stop at the first check that does not pass
     pictures: bool = True  # whether checks save pictures
-    recordings: bool = False  # whether they also save whole recordings
-    prebuilt: str = ""  # a built workspace of similar sources, which replaces the build; see `building.prebuilt`
+    recordings: bool = False  # whether checks also save whole recordings
+    prebuilt: str = ""  # path of a built workspace that is copied instead of a build; see `building.prebuilt`
 
 
 WHOLE_SUITE = Options()
@@ -43,8 +43,8 @@ class Job:
     options: Options = WHOLE_SUITE  # how the suite is run
     seconds: float = GRADING_WORKER.wall_seconds  # real time for both tries: the second gets the remaining time
     # The process that starts the worker sets the following fields.
-    scratch: Path = Path()  # a file system of the worker sandbox, which is removed with the sandbox
-    # In the last try, an error that the program or the machine may have caused counts as the program's.
+    scratch: Path = Path()  # a file system in the worker sandbox, removed together with it
+    # In the last try, an error that the program or the machine may have caused counts as an error of the program.
     is_last_try: bool = False
 
     @property

@@ -5,8 +5,8 @@
 The request, `{"notebook": ..., "skipped": [INDEX, ...], "cell_seconds": ..., "max_output": ...}`, is read from one
 descriptor. The answer is written to another, one line of JSON for each event: `{"event": "cell", "index": ...,
 "outputs": [...], "execution_count": ...}` after each cell, and `{"event": "end", "reason": ...}`. The student's code in
-the sandbox can forge or remove it. So this program writes a byte to the third, a pipe, and closes it before the kernel
-starts, to report that it has started. The kernel's own messages are not passed on.
+the sandbox can forge or remove the answer. To prove that this program has started, it writes a byte to the third
+descriptor, a pipe, and closes it before the kernel starts. The kernel's own messages are not passed on.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def _execute(request: dict[str, Any], report: Any) -> None:
     from nbclient import NotebookClient
     from nbclient.exceptions import CellTimeoutError, DeadKernelError
 
-    received = 0
+    received_size = 0
 
     class Client(NotebookClient):
         """Reports the outcome of each cell, and stops a kernel that sends too much."""
@@ -60,9 +60,9 @@ def _execute(request: dict[str, Any], report: Any) -> None:
                 report("cell", index=cell_index, outputs=cell.outputs, execution_count=cell.execution_count)
 
         def process_message(self, msg: dict[str, Any], cell: Any, cell_index: int) -> Any:
-            nonlocal received
-            received += len(repr(msg.get("content", "")))
-            if received > request["max_output"]:
+            nonlocal received_size
+            received_size += len(repr(msg.get("content", "")))
+            if received_size > request["max_output"]:
                 raise DeadKernelError("it prints without end")
             return super().process_message(msg, cell, cell_index)
 

@@ -18,11 +18,11 @@ from autograder.run.sandbox.spec import View
 from autograder.run.sandbox.worker_sandbox import WorkerReport, in_worker_sandbox, path_in_sandbox, wait_and_report
 from autograder.suite import fingerprint
 
-GRACE = 30.0  # s for a worker to stop its programs and report, after its time is over
+GRACE = 30.0  # s that a worker gets beyond its time, to stop its programs and report
 
 
 def run_in_own_sandbox(job: Job) -> WorkerReport:
-    """Run a job with a worker in its own sandbox; return a report with the files of its result."""
+    """Run a job in a worker with its own sandbox; return a report with the files of the result."""
     own_end, worker_end = Pipe()
 
     def command(scratch: Path) -> list[str]:
@@ -44,12 +44,12 @@ def run_in_own_sandbox(job: Job) -> WorkerReport:
 
 
 def view(job: Job) -> View:
-    """Return the view of a job's worker: the submission, its chapter, and the files that its suite reads."""
+    """Return the files that a job's worker sees: the submission, its chapter, and the files that its suite reads."""
     chapter = course_paths.chapter(job.assignment)
     suite_paths = fingerprint.suite_paths(job.assignment, job.suite.reads)
     prebuilt = (Path(job.options.prebuilt),) if job.options.prebuilt else ()
     return View(shown=(chapter, *suite_paths, *prebuilt), submitted=(job.path,))
 
 
-def _worker_command(job: Job, line: int) -> list[str]:
-    return [sys.executable, "-m", "autograder.grade.worker", job.to_json(), str(line)]
+def _worker_command(job: Job, descriptor: int) -> list[str]:
+    return [sys.executable, "-m", "autograder.grade.worker", job.to_json(), str(descriptor)]

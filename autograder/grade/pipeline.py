@@ -26,8 +26,8 @@ from autograder.run.sandbox.worker_sandbox import WorkerReport
 from autograder.suite import suites
 
 TRIES = 2
-MIN_SHARE = 1 / 4  # of a submission's time that a try needs: with less, it would only run out of time
-DEFAULT_SEED = 2026  # of every grading without an explicit seed, so that all commands draw the same inputs
+MIN_SHARE = 1 / 4  # the part of a submission's time that a try needs; with less, it would only run out of time
+DEFAULT_SEED = 2026  # for every grading without an explicit seed, so that all commands draw the same inputs
 
 RunJob = Callable[[Job], WorkerReport]
 """Runs a job in a worker sandbox."""
@@ -73,7 +73,7 @@ class Budget:
         return self.remaining >= MIN_SHARE * self.seconds
 
     def spend(self, job: Job, run_job: RunJob) -> WorkerReport:
-        """Run a job in the remaining time, and subtract the time that it takes. Waiting for the machine is free."""
+        """Run a job in the remaining time, and subtract the time it takes. Waiting for the machine does not count."""
         start = time.monotonic()
         try:
             return run_job(replace(job, seconds=self.remaining))

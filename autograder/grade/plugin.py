@@ -1,8 +1,8 @@
 """The pytest plug-in of a grading. It collects the results of a suite's checks, and the errors of the grader.
 
-If a check raises an unexpected exception, it fails if the check or one of its fixtures read the student's data in a
-block of `autograder.submission.reading`, and the result reports it to the instructor. Without such data, the exception
-is an error of the grader.
+If a check raises an unexpected exception after it or one of its fixtures has read the student's data in a block of
+`autograder.submission.reading`, the check fails, and the result reports the exception to the instructor. If no such
+data was read, the exception is an error of the grader.
 
 The checks of every chapter, visible and hidden, can use the fixtures of this plug-in. A chapter defines its own
 fixtures in its conftest.py, or in the only module that uses them. `autograder.harness.Shared` keeps a harness for
@@ -70,12 +70,12 @@ class GradingPlugin:
         self.diagnosis: Diagnosis = OK
         self.failures: list[str] = []
         self.unjudged: dict[str, str] = {}
-        self._data_by_fixture: dict[str, tuple[str, ...]] = {}  # data read by each fixture
+        self._data_by_fixture: dict[str, tuple[str, ...]] = {}  # names of the data that each fixture read
         self._seconds: dict[str, float] = {}
 
     @property
     def is_finished(self) -> bool:
-        """Whether a check did not pass in a run that ends with the first such check."""
+        """Whether the run is over because it stops at the first check that does not pass."""
         return self._options.exit_first and any(r.outcome is not Outcome.PASSED for r in self.results.values())
 
     @pytest.fixture(scope="session")
@@ -95,7 +95,7 @@ class GradingPlugin:
 
     @pytest.fixture
     def draw(self, request: pytest.FixtureRequest) -> random.Random:
-        """Random numbers of the running check, the same for the same seed."""
+        """Random numbers for the running check, always the same for a seed."""
         return random.Random(f"{self._seed}:{request.function.__name__}")
 
     @pytest.fixture
@@ -155,7 +155,7 @@ class GradingPlugin:
         elif isinstance(error, StudentError) or (isinstance(error, DoubtfulError) and self._is_final):
             if self.diagnosis is OK:
                 self.diagnosis = error.diagnosis
-            diagnosis = error.diagnosis  # the hints of the check are about a program that runs
+            diagnosis = error.diagnosis  # the hints of the check assume a program that runs
             check_result = CheckResult.of(
                 check, Outcome.FAILED, diagnosis.sentence, seconds=seconds, hints=diagnosis.hints
             )
@@ -180,7 +180,7 @@ class GradingPlugin:
         return self._is_last_try or patience.is_late()
 
     def _is_caused_by_data(self, error: BaseException) -> bool:
-        """Return whether the student's data may have caused an exception. In the last try, almost any exception may."""
+        """Return whether the student's data is blamed for an exception. In the last try, it is for almost any."""
         is_unexpected = self._is_final and isinstance(error, Exception) and not isinstance(error, AutograderError)
         return is_data_error(error) or (is_unexpected and not is_machine_error(error))
 
@@ -199,9 +199,9 @@ def run(files: tuple[Path, ...], plugin: GradingPlugin) -> int:
     os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
     for variable in ("PYTEST_ADDOPTS", "PYTEST_PLUGINS"):
         os.environ.pop(variable, None)
-    # At the end of a session, unraisableexception collects garbage twice, which takes a fifth of a second.
+    # At the end of a session, unraisableexception collects garbage twice, which takes 0.2 s.
     disabled_plugins = ("cacheprovider", "terminal", "faulthandler", "unraisableexception")
-    chapter = files[0].parents[1]  # its conftest.py is for the visible and the hidden checks
+    chapter = files[0].parents[1]  # its conftest.py applies to visible and hidden checks
     arguments = [word for name in disabled_plugins for word in ("-p", f"no:{name}")]
     arguments += ["-c", "/dev/null", "--rootdir", str(chapter), "--confcutdir", str(chapter)]
     arguments += ["--import-mode=importlib", "-W", "default"]

@@ -1,4 +1,4 @@
-"""Checks the files from a worker. A worker that students' code has taken over can only harm its submission's result."""
+"""Checks the files from a worker. If students' code takes over a worker, it can harm only its own result."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ PICTURE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.png")
 RUN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.run\.json")
 RECORDING = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.npz")
 MAX_PIXELS = 25_000_000
-MAX_RESULT = 8 * MIB  # bytes; those of the course have 0.1 MiB
-MAX_PAGE = 64 * MIB  # bytes of all pictures and runs on a page: a result may name a file twice
+MAX_RESULT = 8 * MIB  # bytes; the results of this course take 0.1 MiB
+MAX_PAGE = 64 * MIB  # bytes of all pictures and runs on a page, where a file counts each time that the result names it
 _UNREAD = "0" * 64  # the digest in the result of a submission that could not be read
 
 
@@ -73,7 +73,7 @@ def _result(data: bytes, job: Job, sha256: str) -> Result:
 def _require_artifacts(files: Mapping[str, bytes], result: Result) -> None:
     pictures = {artifact.name for artifact in result.artifacts}
     runs = {artifact.run for artifact in result.artifacts if artifact.run}
-    recordings = {name for name in files if RECORDING.fullmatch(name)}  # which a replay requests
+    recordings = {name for name in files if RECORDING.fullmatch(name)}  # only a replay requests them
     if set(files) - recordings != pictures | runs:
         raise ReplyError(f"a worker's reply contains {sorted(files)} and its result names {sorted(pictures | runs)}")
     page_files = [name for artifact in result.artifacts for name in (artifact.name, artifact.run) if name]

@@ -1,4 +1,4 @@
-"""Runs a submitted notebook, client and kernel, in the sandbox. Its cells write files to a new workspace.
+"""Runs a submitted notebook in the sandbox, both the client and the kernel. Its cells write files to a new workspace.
 
 This process receives no messages of the kernel. A program in the sandbox receives them, and answers with the outputs of
 each cell in bounded JSON (`notebook_runner`). The cells' texts are never taken from the answer.
@@ -36,11 +36,11 @@ from sim.grading import GRADING_VARIABLE
 
 RUNNER = Path(__file__).with_name("notebook_runner.py")
 CELL_SECONDS = 60  # wall time of a cell; one that takes longer ends the run
-MAX_OUTPUT = 4 * 1024 * 1024  # characters
-MAX_REASON = 2000  # characters
+MAX_OUTPUT = 4 * 1024 * 1024  # characters of all messages of the kernel
+MAX_REASON = 2000  # characters of the reason why a run ended early
 MAX_ANSWER = 32 * 1024 * 1024  # bytes of all outputs; further bytes are ignored
-MAX_LINES = 2000  # of an answer, which has one line for each cell
-MAX_VALUES = 200_000  # in all outputs, which may be forged: checking a value takes up to 0.1 ms
+MAX_LINES = 2000  # lines of an answer, which has one for each cell
+MAX_VALUES = 200_000  # values in all outputs, which may be forged: validating a value takes up to 0.1 ms
 WRITEFILE = "%%writefile "
 
 
@@ -97,7 +97,7 @@ def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> Noteb
 
 @dataclass(frozen=True)
 class Answer:
-    """The report of a run from the sandbox."""
+    """The report on a run, as received from the sandbox."""
 
     reason: str = ""  # why the run ended early; empty if it finished or gave no reason
     cells: Mapping[int, NotebookNode] = field(default_factory=dict)  # valid code cells without text, by their indices

@@ -18,7 +18,7 @@ LOG = "grader.log"
 
 
 def write_result(job: Job, result: Result, files: Mapping[str, bytes]) -> Result:
-    """Write the result of a job, with its student's name, and files by their names; return the written result.
+    """Write the result of a job and its `files`, and return the result as written, with the name of the student.
 
     Until all files are written, the folder contains the old result, even if the process is killed. `result.json` is
     replaced last, so the mark changes in one step. Files of the old result that the new one does not have are removed.

@@ -1,6 +1,6 @@
 """Restores the cells of a submitted notebook that students may not change.
 
-Locked cells get the text of the source notebook. Deleted cells are added again. Copies of graded cells lose their grade
+Locked cells get the text of the source notebook. Deleted cells are restored. Copies of graded cells lose their grade
 id. Points, cell types and grade ids are taken from the source notebook, never from the submission.
 """
 
@@ -52,8 +52,8 @@ def _notebook(cells: list[Cell]) -> NotebookNode:
 def restore(submitted: NotebookNode, source: NotebookNode) -> NotebookNode:
     """Return a copy of the submitted notebook with the source notebook's nbgrader cells, and without outputs.
 
-    Cells that students may edit keep the student's text. If the student deleted such a cell, it is added again with a
-    comment that says so. Cells that the student added lose their metadata: it is never read, and there can be many.
+    Cells that students may edit keep the student's text. If the student deleted such a cell, it is restored with a
+    comment that reports this. Cells that the student added lose their metadata, which is never read and may be large.
     """
     originals = {grade_id(cell): cell for cell in source.cells if grade_id(cell)}
     ids = _grade_ids(submitted.cells, source.cells)
@@ -72,9 +72,9 @@ def restore(submitted: NotebookNode, source: NotebookNode) -> NotebookNode:
 
 
 def _grade_ids(cells: list[NotebookNode], source: list[NotebookNode]) -> list[str]:
-    """Return the grade ids of submitted cells, also of those whose metadata a tool has dropped.
+    """Return the grade ids of submitted cells, including cells whose metadata a tool has dropped.
 
-    Such a cell is recognised by its cell id, or an answer by the first line of the cell above it, the question.
+    Such a cell is recognised by its cell id. An answer is also recognised by the first line of the question above it.
     """
     names = [grade_id(cell) for cell in cells]
     ids = {cell.get("id"): grade_id(cell) for cell in source}
@@ -98,7 +98,7 @@ def _first_line(cell: NotebookNode) -> str:
 
 
 def _deleted_cell(original: NotebookNode) -> NotebookNode:
-    """Return a new copy of a deleted cell. An exercise has no answer, although the source notebook contains it."""
+    """Return a new copy of a deleted cell. If it is an exercise, the copy omits the answer in the source notebook."""
     cell = copy.deepcopy(original)
     if cell.metadata.nbgrader.get("solution"):
         cell.source = DELETED

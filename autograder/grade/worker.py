@@ -3,7 +3,7 @@
     python -m autograder.grade.worker JOB DESCRIPTOR
 
 It imports no student code, which runs in sandboxes inside this one. It sends `result.json` and the pictures over the
-line with this descriptor. If the grader fails, it ends with a traceback instead.
+connection with this descriptor. If the grader fails, it ends with a traceback instead.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class Grading:
             diagnosis = check_diagnosis if build_diagnosis is OK else build_diagnosis
         except StudentError as error:
             diagnosis = error.diagnosis
-            if error.__cause__ is not None:  # an exception that the code that read the data does not handle
+            if error.__cause__ is not None:  # an exception that the code reading the data does not handle
                 self._log(traceback.format_exception(error))
         if self._build is None and diagnosis is not OK:
             self._build = Build(False, self._phases.get("build", 0.0), log=diagnosis.detail)
@@ -132,9 +132,9 @@ class Grading:
                 original = course_paths.source_notebook(self._job.assignment)
                 run_notebook.run(submission.notebook, original, self._folder, self._workspace, self._job.out / NOTEBOOK)
                 # The notebook could write links and devices, but only plain files are read.
-                written = intake.read_packages(self._folder / "ws")
+                written_files = intake.read_packages(self._folder / "ws")
                 self._clear()
-                counted = intake.graded_packages(submission, written, self._job.assignment)
+                counted = intake.graded_packages(submission, written_files, self._job.assignment)
                 packages, self._notices = counted.packages, counted.notices
         assert packages is not None, "only a notebook creates packages that were not submitted"
         source = self._workspace.root / "src"
@@ -152,7 +152,7 @@ class Grading:
         return outcome.diagnosis
 
     def _clear(self) -> None:
-        """Remove the files that the notebook wrote, at any depth, so that a full disk has space again."""
+        """Remove the files that the notebook wrote, at any depth, so that a full disk has free space."""
         subprocess.run(["rm", "-rf", "--", self._folder, self._workspace.scratch], check=True)
         self._workspace.scratch.mkdir()
 
@@ -163,9 +163,9 @@ class Grading:
         with self._phase("checks"):
             run(self._suite.files, plugin)
         ids = self._job.options.only or [check.id for check in self._suite.checks]
-        missing = set(ids) - set(plugin.results)
-        if missing and not plugin.failures and not plugin.is_finished:
-            plugin.failures.append(f"no record of {', '.join(sorted(missing))}")
+        missing_ids = set(ids) - set(plugin.results)
+        if missing_ids and not plugin.failures and not plugin.is_finished:
+            plugin.failures.append(f"no record of {', '.join(sorted(missing_ids))}")
         if plugin.failures:
             raise GraderError("\n".join(plugin.failures))
         results.update(plugin.results)
@@ -195,7 +195,7 @@ def prepare() -> None:
 
 
 def work(job: Job) -> None:
-    """Grade a job, and send the files of its result over this process's line."""
+    """Grade a job, and send the files of its result over this process's connection."""
     job.out.mkdir(parents=True, exist_ok=True)
     write_json(job.out / RESULT, Grading(job).grade().to_json())
     with line.exclusive_line() as connection:
@@ -205,7 +205,7 @@ def work(job: Job) -> None:
 
 
 def main() -> None:
-    """Grade the job that the command line holds."""
+    """Grade the job that the command line contains."""
     job = Job.from_json(sys.argv[1])
     line.set_line(Connection(int(sys.argv[2])))
     prepare()

@@ -1,7 +1,7 @@
 """A harness that runs programs in lockstep if possible, and otherwise in real time. Checks need not know which.
 
 Whether a program can be stepped is determined once per grading. If nothing in its package could prevent it, the program
-is assumed to be steppable. Any other program is stepped for a second first, which no check sees.
+is assumed to be steppable. Any other program is first stepped for a second, in a trial that no check sees.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from autograder.run.time_record import LOCKSTEP, REAL
 from autograder.run.workspace import Workspace
 
 TIME_VARIABLE = "AUTOGRADER_TIME"  # "real" disables stepping
-PROBE_SECONDS = 1.0
-LATE_MESSAGE_SECONDS = 1.0  # in real time, for delays by a busy machine
-MAX_READ = 4 * 1024 * 1024  # bytes of a package's Python files that are searched
+PROBE_SECONDS = 1.0  # ROS time for which programs are stepped in a trial
+LATE_MESSAGE_SECONDS = 1.0  # maximum real time to wait for messages that a busy machine delays
+MAX_READ = 4 * 1024 * 1024  # how many bytes of a package's Python files are searched
 _SUSPICIOUS_WORDS = re.compile(
     rb"\b(threading|_?thread|asyncio|concurrent|multiprocessing|subprocess|sleep|Clock\w*|Executor)\b"
 )
@@ -38,7 +38,7 @@ else:
 
 
 class AutoHarness(Base):
-    """A `SteppedHarness` if the programs can be stepped, else a `RealTimeHarness`. It has the same interface.
+    """A `SteppedHarness` if the programs can be stepped, else a `RealTimeHarness`, behind one interface.
 
     `time` is "lockstep" or "real".
     """
@@ -97,7 +97,7 @@ class AutoHarness(Base):
         return harness
 
     def _reasons(self, programs: tuple[Program, ...]) -> dict[str, str]:
-        """Return why programs cannot be stepped, by executable. The result is cached for the grading."""
+        """Return why programs cannot be stepped, by executable. The result is cached until the grading ends."""
         if os.environ.get(TIME_VARIABLE) == REAL:
             return {program.executable: REAL for program in programs}
         files = [self._workspace.executable(program.package, program.executable) for program in programs]
@@ -105,8 +105,8 @@ class AutoHarness(Base):
         key = (names, *((path, path.stat().st_mtime_ns) for path in files))
         cache = self._workspace.time_record.unsteppable
         if key not in cache:
-            suspicious = any(_is_suspicious(self._workspace.install / program.package) for program in programs)
-            cache[key] = self._probe() if suspicious else {}
+            is_suspicious = any(_is_suspicious(self._workspace.install / program.package) for program in programs)
+            cache[key] = self._probe() if is_suspicious else {}
         return cache[key]
 
     def _probe(self) -> dict[str, str]:
@@ -115,7 +115,8 @@ class AutoHarness(Base):
         Other errors are ignored, because the harness that is entered next raises them again.
         """
         harness = self._make(SteppedHarness)
-        harness.optional = frozenset(program.executable for program in harness.programs)  # no failure hides a reason
+        # A failure of one program must not hide the reason of another.
+        harness.optional = frozenset(program.executable for program in harness.programs)
         with suppress(StudentError), harness:
             harness.run(PROBE_SECONDS)
         return dict(harness.notes)

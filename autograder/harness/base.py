@@ -1,4 +1,4 @@
-"""The common part of all harnesses: a student's programs, and the grader's node that talks with them over DDS."""
+"""What all harnesses have in common: a student's programs, and the grader's node that talks with them over DDS."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from autograder.run.sandbox import Mount, Process
 from autograder.run.workspace import Workspace
 from autograder.submission.reading import record_data
 
-MATCH_SECONDS = 30.0  # real time for all endpoints to match
-NAME_SECONDS = 5.0  # real time for the names of their nodes to be known
+MATCH_SECONDS = 30.0  # maximum real time until all endpoints are matched
+NAME_SECONDS = 5.0  # maximum real time until the names of the endpoints' nodes are known
 
 _DOMAIN_OFFSETS = itertools.count()
 _SECONDS = attrgetter("seconds")
@@ -47,7 +47,7 @@ class Program:
 class Harness(ExitStack, ABC):
     """A student's programs and the grader's node that talks with them over DDS; a context manager.
 
-    Name what the grader publishes and subscribes to, then enter::
+    Name the topics that the grader publishes and subscribes to, then enter the harness::
 
         sensors, commands = {"/scan": LaserScan}, {"/cmd_vel": Twist}
         with SteppedHarness(workspace, PACKAGE, EXECUTABLE, publishes=sensors, subscribes=commands) as harness:
@@ -55,24 +55,24 @@ class Harness(ExitStack, ABC):
             harness.run(0.1)
             harness.messages("/cmd_vel")
 
-    Every method raises `StudentError` when a program crashes, hangs or goes over a limit.
+    Every method raises `StudentError` when a program crashes, hangs or exceeds a limit.
 
     Args:
         workspace: the student's built workspace.
         package: the package of the program.
         executable: the name of the program in the package.
-        programs: several programs, instead of one, which also communicate with each other.
+        programs: several programs instead of one. They can also communicate with each other.
         publishes: topics that the grader publishes, with their types.
         subscribes: topics that the grader subscribes to, with their types.
-        arguments: the arguments of the one program.
-        clock_rate: seconds of the programs' system clock in a second of ROS time; always 1 in real time.
+        arguments: the arguments of the program `executable`.
+        clock_rate: how many seconds the programs' system clock advances per second of ROS time; always 1 in real time.
 
     Attributes:
         node: the grader's node; its graph functions show the actual endpoints of the student's programs.
-        tick_ns: the step of ROS time that suits the programs' timers.
-        finest_tick_ns: the shortest step of ROS time, which suits any timer.
+        tick_ns: the length of a step of ROS time. It depends on the programs' timers.
+        finest_tick_ns: the length of the shortest step.
         optional: executables that may fail. The others continue without them.
-        discovery_seconds: the time between the discovery of the nodes and of their endpoints; 0 in lockstep.
+        discovery_seconds: the time from the discovery of the nodes to that of their endpoints; 0 in lockstep.
     """
 
     tick_ns = TICK_NS
@@ -100,7 +100,8 @@ class Harness(ExitStack, ABC):
         self._domain = Domain(workspace.domain + next(_DOMAIN_OFFSETS))
         self._workspace = replace(workspace, domain=self._domain.number)
         sandbox = self._workspace.sandbox()
-        environment = {**sandbox.environment, PROFILES_VARIABLE: str(PROFILES)}  # to discover programs at once
+        # The profiles make programs discover each other at once.
+        environment = {**sandbox.environment, PROFILES_VARIABLE: str(PROFILES)}
         self._sandbox = replace(sandbox, mounts=(*sandbox.mounts, Mount(PROFILES)), environment=environment)
         self._publishes, self._subscribes = dict(publishes or {}), dict(subscribes or {})
         self._received: dict[str, list[ReceivedMessage]] = {topic: [] for topic in self._subscribes}
@@ -141,7 +142,7 @@ class Harness(ExitStack, ABC):
 
     @abstractmethod
     def _topics(self) -> tuple[set[str], set[str]]:
-        """Return the topics of `publishes` with a subscription, and those of `subscribes` with a publisher."""
+        """Return the topics of `publishes` that programs subscribe to, and those of `subscribes` that they publish."""
 
     @abstractmethod
     def _connected(self) -> bool:
@@ -177,7 +178,7 @@ class Harness(ExitStack, ABC):
                 raise StudentError(diagnose_exit(process))
 
     def takes(self, topic: str) -> bool:
-        """Return whether a program subscribes to a topic that the grader publishes, with the right type."""
+        """Return whether the grader publishes a topic, and a program subscribes to it with the same type."""
         return topic in self._grader_node.publishers
 
     def publish(self, topic: str, message: Any) -> None:
@@ -193,14 +194,14 @@ class Harness(ExitStack, ABC):
             remaining_ns -= self.tick_ns
 
     def subscribe(self, topics: Mapping[str, type]) -> None:
-        """Subscribe to more topics, with their types, while the programs run."""
+        """Subscribe to more topics while the programs run. `topics` contains their types by name."""
         self._subscribes.update(topics)
         for topic in topics:
             self._received.setdefault(topic, [])
         self._match()
 
     def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[ReceivedMessage]:
-        """Return the messages on a topic of `subscribes` after `since` and up to `until`, in s since the start."""
+        """Return the messages that arrived on a topic after `since` and not after `until`, in s since the start."""
         record_data(f"What your program sent on {topic}")
         received = self._received[topic]
         first = bisect_right(received, since, key=_SECONDS)
@@ -220,7 +221,7 @@ class Harness(ExitStack, ABC):
         answers: list[Any] = []
         start = self.seconds
         client = self._grader_node.client(service_type, name)
-        if client is not None and self._reach(client, seconds):
+        if client is not None and self._wait_for_server(client, seconds):
             self._grader_node.ask(service_type, name, request, answers.append)
             if self.until(lambda: bool(answers), start + seconds - self.seconds):
                 return answers[0]
@@ -228,13 +229,13 @@ class Harness(ExitStack, ABC):
         return None
 
     def send_goal(self, action_type: Any, name: str, goal: Any, seconds: float = 5.0) -> Goal:
-        """Send a goal to an action server of the student's. It makes progress while the programs run.
+        """Send a goal to a student's action server. The goal makes progress while the programs run.
 
-        Its `accepted` stays None if no server appears within `seconds` of ROS time.
+        The goal's `accepted` stays None if no server appears within `seconds` of ROS time.
         """
         record_data(f"What {name} answered")
         clients = self._actions.prepare(action_type, name)
-        if not all(client is not None and self._reach(client, seconds) for client in clients):
+        if not all(client is not None and self._wait_for_server(client, seconds) for client in clients):
             return Goal()
         return self._actions.send(action_type, name, goal)
 
@@ -252,19 +253,19 @@ class Harness(ExitStack, ABC):
         return self._grader_node.other_nodes()
 
     @abstractmethod
-    def _reach(self, client: Any, seconds: float) -> bool:
-        """Wait at most `seconds` of ROS time for a new client to be matched with its server. Return whether it is."""
+    def _wait_for_server(self, client: Any, seconds: float) -> bool:
+        """Wait at most `seconds` of ROS time until a client is matched with its server. Return whether it is."""
 
     def _match(self) -> None:
-        """Create the grader's endpoints for those of the programs, and wait until all are matched."""
-        subscribed, published = self._topics()
-        for topic in sorted(subscribed):
+        """Create the grader's endpoints that correspond to the programs', and wait until all are matched."""
+        subscribed_topics, published_topics = self._topics()
+        for topic in sorted(subscribed_topics):
             self._grader_node.make_publisher(topic, self._publishes[topic])
-        for topic in sorted(published):
+        for topic in sorted(published_topics):
             self._grader_node.make_subscription(topic, self._subscribes[topic], self._receiver(topic))
         self._await(self._connected)
         # An endpoint is discovered before its node. An endpoint that rclpy did not create has no node.
-        self.wait_for(lambda: self._grader_node.knows_nodes_of(subscribed | published), NAME_SECONDS)
+        self.wait_for(lambda: self._grader_node.knows_nodes_of(subscribed_topics | published_topics), NAME_SECONDS)
 
     def _receiver(self, topic: str) -> OnMessage:
         received = self._received[topic]
@@ -274,23 +275,23 @@ class Harness(ExitStack, ABC):
         self._workspace.exchanges.add(self.seconds, kind, name, format_message(message))
 
     def _arrival_seconds(self, arrived_ns: int) -> float:
-        """Return the ROS time, in seconds since the start, of an arrival at `arrived_ns` since the epoch."""
+        """Return the ROS time, in s since the start, at which a message arrived. `arrived_ns` counts from the epoch."""
         return self.seconds
 
     def _error_of(self, program: Program, error: StudentError) -> StudentError:
-        """Return a program's error, which names the program if several run."""
+        """Return a program's error. If several programs are running, add the program's name."""
         if len(self.processes) == 1:
             return error
         return StudentError(replace(error.diagnosis, sentence=f"{program.executable}: {error.diagnosis.sentence}"))
 
     def _await(self, condition: Callable[[], bool]) -> None:
-        matched = self.wait_for(lambda: self._grader_node.is_impersonated() or condition(), MATCH_SECONDS)
+        is_matched = self.wait_for(lambda: self._grader_node.is_impersonated() or condition(), MATCH_SECONDS)
         if self._grader_node.is_impersonated():
             sentence = (
                 f"Your node is called {NAME}, which is the grader's own name: give it the name that is asked for."
             )
             raise StudentError(Diagnosis(Kind.RESERVED_NAME, sentence))
-        if not matched:
+        if not is_matched:
             sentence = (
                 f"Your node and the grader did not discover each other within {MATCH_SECONDS:.0f} s: keep the "
                 "publishers, subscriptions and services that you make, and make all of them with rclpy."

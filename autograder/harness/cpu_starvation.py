@@ -1,4 +1,4 @@
-"""Measures how long a busy machine kept programs in real time from running.
+"""Measures how long programs in real time could not run because the machine was busy.
 
 Only the kernel can distinguish a slow program from one that did not get a processor. A stall of the whole machine also
 stalls the grader, which measures it with its own clock. Time that the submission's own processes used does not count.
@@ -17,7 +17,8 @@ from autograder.run.sandbox.starvation import measure_use, starved_seconds, used
 def watch(pids: Iterable[int], seconds: float, report: Callable[[float], None]) -> Iterator[None]:
     """Measure how long processes could not run during this block, which takes `seconds` on an idle machine.
 
-    `report` is called with the longest time in s for which other processes kept one of them, or this one, from running.
+    `report` is called with the longest time in s for which other processes kept one of the processes, or the grader,
+    from running.
     """
     pids = tuple(pids)
     before, start = measure_use(pids), time.monotonic()

@@ -16,7 +16,7 @@ from autograder.harness.grader_node import requested_qos
 
 @dataclass(frozen=True)
 class ReceivedMessage:
-    """A message of the student's program, and its arrival in s of ROS time since the program started."""
+    """A message from the student's program, and the ROS time of its arrival in s since the program started."""
 
     seconds: float
     message: Any
@@ -30,7 +30,7 @@ class Goal:
         id: its UUID.
         accepted: whether the server accepted it; None while it has not answered.
         feedback: its feedback messages so far.
-        status: the last received status, of `action_msgs/GoalStatus`.
+        status: the last status that was received, a constant of `action_msgs/GoalStatus`.
         result: the result message once the goal has ended, None before.
         cancelled: whether the server agreed to cancel it; None if it was not asked or has not answered.
     """
@@ -49,7 +49,7 @@ class Goal:
 
 
 class Actions:
-    """The action clients of a harness, made of plain services and subscriptions."""
+    """The action clients of a harness, which consist of plain service clients and subscriptions."""
 
     def __init__(self, grader_node: Any, arrival_seconds: Callable[[int], float]) -> None:
         self._grader_node = grader_node
@@ -79,9 +79,9 @@ class Actions:
         ]
 
     def send(self, kind: Any, name: str, goal: Any) -> Goal:
-        """Send a goal to an action that was prepared, and ask for its result once it is accepted."""
+        """Send a goal to a server for which `prepare` was called. Once it is accepted, ask for its result."""
         sent_goal = Goal(GoalInfo().goal_id)
-        # A counter instead of a random number, so that every run is the same.
+        # A counter instead of a random number, so that all runs are the same.
         sent_goal.id.uuid = list(next(self._numbers).to_bytes(16, "big"))
         self._goals[bytes(sent_goal.id.uuid)] = sent_goal
         request = kind.Impl.SendGoalService.Request(goal_id=sent_goal.id, goal=goal)

@@ -1,7 +1,7 @@
 """The grader's node: its publishers, subscriptions and clients.
 
-It counts the messages that it has sent and taken on each channel, as the programs do (see `lockstep_host`). So a
-harness in lockstep knows when it has taken every message.
+Like the programs (see `lockstep_host`), it counts the messages that it has sent and taken on each channel. This is how
+a harness in lockstep knows when it has taken every message.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from autograder.harness.inflow import Inflow
 from autograder.ros.discovery import fast_discovery
 from autograder.run.lockstep.lockstep_host import channels
 
-DEPTH = 1000
+DEPTH = 1000  # length of the queues of its publishers and subscriptions
 NAME = "grader"
-UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"  # rmw_dds_common's name for the node of an endpoint until the node is known
+UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"  # what rmw_dds_common calls the node of an endpoint until the node is discovered
 
 OnMessage = Callable[[Any, int], None]
 """Called with a message and the time at which it arrived, in ns since the epoch."""
@@ -39,17 +39,17 @@ OnExchange = Callable[[str, str, Any], None]
 class GraderReader:
     """A subscription or client of the grader, which takes messages."""
 
-    kind: str  # subscription or client
+    kind: str  # "subscription" or "client"
     channels: tuple[str, ...]  # the channels that it receives from
     entity: Any  # rclpy's object
     take: Callable[[], bool]  # takes and handles one message; False if none has arrived
     count: int = 0  # number of messages that it has taken
     expected: int = 0  # number of messages that were sent to it, as far as is known
-    transient_local: bool = False  # whether publishers send it messages that they keep for late subscriptions
-    is_new: bool = True  # whether those messages are not counted yet
+    transient_local: bool = False  # whether it receives messages that publishers keep for late subscriptions
+    is_new: bool = True  # whether such messages are not yet included in `expected`
 
     def drain(self) -> None:
-        """Take the messages that have arrived, at most a full queue: a program may send faster than this takes them."""
+        """Take the messages that have arrived, at most a full queue: a program may send faster than they are taken."""
         for _ in range(DEPTH):
             if not self.take():
                 return
@@ -64,7 +64,7 @@ class GraderNode:
         publisher_channels: the channels of the publishers, by topic.
         readers: the subscriptions and clients.
         sent: the number of messages sent on each channel since the programs were last informed.
-        on_exchange: called at each request, response and feedback message.
+        on_exchange: called for each request, response and feedback message.
     """
 
     def __init__(self, domain: int, on_exchange: OnExchange = lambda kind, name, message: None) -> None:
@@ -89,7 +89,7 @@ class GraderNode:
         self.context.try_shutdown()
 
     def make_publisher(self, topic: str, kind: Any) -> None:
-        """Create a publisher that fits every visible subscription, unless one exists or the types differ."""
+        """Create a publisher compatible with all visible subscriptions, unless it exists or the types differ."""
         peers = self.subscriptions_of(topic)
         if topic in self.publishers or not _have_type(kind, peers):
             return
@@ -98,10 +98,10 @@ class GraderNode:
         self.publisher_channels[topic] = channels.publisher_channel(topic, kind, qos)
 
     def make_subscription(self, topic: str, kind: Any, receive: OnMessage) -> None:
-        """Create a subscription that fits every visible publisher, unless one exists or the types differ."""
+        """Create a subscription compatible with all visible publishers, unless it exists or the types differ."""
         peers = self.publishers_of(topic)
-        subscribed = (reader.entity.topic_name for reader in self.readers if reader.kind == "subscription")
-        if topic not in subscribed and _have_type(kind, peers):
+        subscribed_topics = (reader.entity.topic_name for reader in self.readers if reader.kind == "subscription")
+        if topic not in subscribed_topics and _have_type(kind, peers):
             self.subscribe(topic, kind, receive, requested_qos(peers))
 
     def subscribe(self, topic: str, kind: Any, receive: OnMessage, qos: QoSProfile) -> None:
@@ -131,14 +131,14 @@ class GraderNode:
         )
 
     def publish(self, topic: str, message: Any) -> None:
-        """Publish a message on a topic that has a publisher."""
+        """Publish a message on a topic for which a publisher was created."""
         self.publishers[topic].publish(message)
         self.sent[self.publisher_channels[topic]] += 1
 
     def client(self, kind: Any, name: str) -> Any:
-        """Return the client of a service, which is created on first use.
+        """Return the client of a service. It is created on first use.
 
-        It is None if this process already uses the service with another type: DDS allows only one type per name.
+        Return None if this process already uses the service with another type: DDS allows only one type per name.
         """
         channel = channels.request(name, kind)
         if (name, channel) not in self._clients:
@@ -161,7 +161,7 @@ class GraderNode:
         return self._clients[(name, channel)]
 
     def ask(self, kind: Any, name: str, request: Any, on_response: Callable[[Any], None]) -> None:
-        """Send a request to a service that has a client. `on_response` is called with the response."""
+        """Send a request to a service. `on_response` is called with the response."""
         client = self.client(kind, name)
         self.on_exchange("asked", name, request)
         sequence = client.handle.send_request(request)
@@ -231,21 +231,21 @@ def _have_type(kind: Any, peers: list[Any]) -> bool:
 
 
 def offered_qos(peers: list[Any]) -> QoSProfile:
-    """Return a publisher's QoS profile that is compatible with every subscription."""
-    durable = any(peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in peers)
+    """Return a QoS profile for a publisher that is compatible with all these subscriptions."""
+    is_durable = any(peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in peers)
     return QoSProfile(
         depth=DEPTH,
         reliability=ReliabilityPolicy.RELIABLE,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if durable else DurabilityPolicy.VOLATILE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if is_durable else DurabilityPolicy.VOLATILE,
     )
 
 
 def requested_qos(peers: list[Any]) -> QoSProfile:
-    """Return a subscription's QoS profile that is compatible with every publisher."""
-    reliable = all(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in peers)
-    durable = bool(peers) and all(p.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for p in peers)
+    """Return a QoS profile for a subscription that is compatible with all these publishers."""
+    is_reliable = all(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in peers)
+    is_durable = bool(peers) and all(p.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for p in peers)
     return QoSProfile(
         depth=DEPTH,
-        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if durable else DurabilityPolicy.VOLATILE,
+        reliability=ReliabilityPolicy.RELIABLE if is_reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if is_durable else DurabilityPolicy.VOLATILE,
     )

@@ -21,7 +21,7 @@ class Inflow:
         """Count a message of `size` bytes, before it is parsed.
 
         Raises:
-            StudentError: there are too many messages or bytes. The sentence names the topic with the largest share.
+            StudentError: there are too many messages or bytes. The error names the topic with the largest share.
         """
         self._messages[topic] += 1
         self._bytes[topic] += size

@@ -31,17 +31,17 @@ from autograder.run.workspace import Workspace
 from autograder.submission.reading import reading, record_data
 
 RUNNER = Path(__file__).with_name("launch_runner.py")
-ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
+ANSWER_SECONDS = 10.0  # maximum real time until a parameter service answers; if its node spins, it answers at once
 _POLL_SECONDS = 0.05  # between two checks of a condition while no message arrives
 _PROGRAM = re.compile(r"/lib/(?P<package>[^/]+)/(?P<name>[^/]+)$")
-MAX_STATUS = 64  # bytes of the line with a launch's exit status, to which its programs can write, too
+MAX_STATUS = 64  # maximum bytes of the line with a launch's exit status; the launched programs can write to it as well
 _STATUS = re.compile(rb"-?[0-9]{1,9}\n")
 _DOMAIN_OFFSETS = itertools.count()
 
 
 @dataclass(frozen=True)
 class RunningProgram:
-    """A running executable of a package, as the system sees it."""
+    """A process that runs an executable of a package."""
 
     pid: int
     package: str
@@ -49,7 +49,7 @@ class RunningProgram:
 
     @property
     def start_seconds(self) -> float | None:
-        """When it started, in s since the boot, up to `LaunchHarness.start_resolution` early; None if it has ended."""
+        """When it started, in s since boot, up to `LaunchHarness.start_resolution` too early; None if it has ended."""
         return procfs.start_seconds(self.pid)
 
     @property
@@ -60,26 +60,26 @@ class RunningProgram:
 
 @dataclass(frozen=True)
 class Stop:
-    """The outcome of Ctrl-C: the exit status, None if the launch still runs, and the commands that it left running."""
+    """The outcome of Ctrl-C."""
 
-    status: int | None
-    left: tuple[str, ...]
+    status: int | None  # the exit status of the launch; None if it is still running
+    left: tuple[str, ...]  # the commands that the launch left running
 
 
 def start(arguments: Sequence[str], spec: Sandbox, status: int | None = None) -> Process:
-    """Start `ros2 ARGUMENTS...`, the real one if it is installed, otherwise the stand-in.
+    """Start `ros2 ARGUMENTS...`: the real `ros2` if it is installed, otherwise the stand-in.
 
     Args:
         arguments: the arguments of `ros2`.
-        spec: the sandbox, from `sandbox`.
-        status: a file descriptor to which the exit status is written as a line. The process then outlives `ros2`.
+        spec: the sandbox, as `sandbox` returns it.
+        status: a file descriptor to which the exit status is written as a line; the process then outlives `ros2`.
     """
     command = [sys.executable, str(RUNNER), "-" if status is None else str(status), *arguments]
     return launch(command, spec, pass_fds=() if status is None else (status,), profile="launch")
 
 
 def sandbox(workspace: Workspace) -> Sandbox:
-    """Return the sandbox of a `ros2` command: that of a node, with this package as well."""
+    """Return the sandbox of a `ros2` command: like that of a node, but the `autograder` package can be imported."""
     package = Path(autograder.__file__).parent
     node_sandbox = workspace.sandbox(LAUNCH)
     path = os.pathsep.join(
@@ -93,7 +93,7 @@ def sandbox(workspace: Workspace) -> Sandbox:
 
 
 class LaunchHarness(contextlib.ExitStack):
-    """A running `ros2 launch` and the grader's node, which talks with its nodes over DDS. A context manager.
+    """A running `ros2 launch` and the grader's node that talks with the launched nodes over DDS; a context manager.
 
     For example::
 
@@ -109,14 +109,14 @@ class LaunchHarness(contextlib.ExitStack):
     Args:
         workspace: the student's built workspace.
         package: the package with the launch file.
-        file: its name.
+        file: the launch file's name.
         arguments: launch arguments by name.
         subscribes: topics that the grader subscribes to from the start, with their types.
-        environment: variables that are set for the launch.
+        environment: environment variables that are set for the launch.
 
     Attributes:
         another: creates a new harness for the same launch, not yet entered.
-        start_resolution: s by which `RunningProgram.start_seconds` may be early.
+        start_resolution: how many seconds too early `RunningProgram.start_seconds` may be.
     """
 
     start_resolution = procfs.TICK
@@ -186,7 +186,7 @@ class LaunchHarness(contextlib.ExitStack):
     def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Take messages until `condition` is true, at most `seconds` of real time. Return whether it is.
 
-        It does not wait for a launch that has ended. It raises a StudentError if the launch exceeded a limit.
+        If the launch has ended, return at once. Raise a StudentError if it exceeded a limit.
         """
         deadline = time.monotonic() + seconds
         while True:
@@ -217,7 +217,7 @@ class LaunchHarness(contextlib.ExitStack):
         return self._received[topic]
 
     def parameters(self, node: str, names: Collection[str], seconds: float = ANSWER_SECONDS) -> dict[str, Any] | None:
-        """Ask the node with this full name for parameters, and wait `seconds` of real time for each answer.
+        """Ask the node with this full name for parameters. Wait at most `seconds` of real time for each answer.
 
         Returns:
             The values by name, with None for undeclared parameters; or None if the node does not answer.
@@ -227,7 +227,7 @@ class LaunchHarness(contextlib.ExitStack):
         if not self.wait_for(self._grader_node.client(GetParameters, service).service_is_ready, seconds):
             return None
         for name in names:
-            # One request each: if one of the parameters is not declared, a node answers without any value.
+            # One request per parameter: if one of several is not declared, a node returns none of their values.
             self._grader_node.ask(GetParameters, service, GetParameters.Request(names=[name]), answers.append)
             if not self.wait_for(lambda: len(answers) > len(values), seconds):
                 return None
@@ -237,7 +237,7 @@ class LaunchHarness(contextlib.ExitStack):
     def programs(self) -> list[RunningProgram]:
         """Return the running executables of packages, in the order of their process ids.
 
-        A child that a program has forked, and that still has its name, does not count as another program.
+        A child that a program has forked does not count as another program while it has the program's name.
         """
         processes = self._processes()
         keys = {(program.pid, program.package, program.name) for program in processes}
@@ -272,7 +272,7 @@ class LaunchHarness(contextlib.ExitStack):
         return Stop(self.status, self.left())
 
     def left(self) -> tuple[str, ...]:
-        """Return the commands that are still running now that the launch has ended."""
+        """Return the commands that the launch left running; none while the launch itself is running."""
         runner = self.process.innermost()
         pids = [pid for pid in procfs.measure(runner).pids if pid != runner and _command_of(pid)]
         return tuple(" ".join(_command_of(pid)) for pid in pids) if self.status is not None else ()

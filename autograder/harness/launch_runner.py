@@ -1,9 +1,9 @@
-"""Runs `ros2` in a sandbox, in a process that outlives it and observes the processes that it leaves running.
+"""Runs `ros2` in a sandbox, as the child of a process that outlives it and adopts the processes that it leaves running.
 
     python launch_runner.py DESCRIPTOR ARGUMENTS-OF-ROS2...
 
 When `ros2` has ended, its exit status is written to DESCRIPTOR, and this process waits to be killed. `ros2` is its
-first child. It also adopts processes that lose their parent. If DESCRIPTOR is a dash, this process becomes `ros2`.
+first child. If DESCRIPTOR is a dash, this process becomes `ros2`.
 """
 
 from __future__ import annotations

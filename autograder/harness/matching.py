@@ -13,7 +13,7 @@ def connected(programs: Sequence[Description], grader_node: GraderNode) -> bool:
     readers = [reader.channels for reader in grader_node.readers if reader.kind == "subscription"]
     readers = [*(names for program in programs for names, _ in program.readers), *readers]
     writers = [*(name for program in programs for name, _ in program.writers), *grader_node.publisher_channels.values()]
-    served = {name for program in programs for name in program.servers}
+    served_channels = {name for program in programs for name in program.servers}
 
     def subscriptions(channel: str) -> int:
         return sum(channel in names for names in readers)
@@ -24,7 +24,7 @@ def connected(programs: Sequence[Description], grader_node: GraderNode) -> bool:
     return (
         all(count >= subscriptions(name) for program in programs for name, count in program.writers)
         and all(count is None or count >= publishers(names) for program in programs for names, count in program.readers)
-        and all(ready or name not in served for program in programs for name, ready in program.clients)
+        and all(ready or name not in served_channels for program in programs for name, ready in program.clients)
         and all(
             publisher.get_subscription_count() >= subscriptions(grader_node.publisher_channels[topic])
             for topic, publisher in grader_node.publishers.items()
@@ -34,5 +34,7 @@ def connected(programs: Sequence[Description], grader_node: GraderNode) -> bool:
             for reader in grader_node.readers
             if reader.kind == "subscription"
         )
-        and all(client.service_is_ready() or channel not in served for channel, client in grader_node.clients())
+        and all(
+            client.service_is_ready() or channel not in served_channels for channel, client in grader_node.clients()
+        )
     )

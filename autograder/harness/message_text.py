@@ -11,12 +11,12 @@ from unique_identifier_msgs.msg import UUID
 
 from autograder.harness.parameter_values import KNOWN_TYPES
 
-MAX_ITEMS = 6  # items of a list
-MAX_CHARACTERS = 200  # characters of a text
+MAX_ITEMS = 6  # of a list; the others are only counted
+MAX_CHARACTERS = 200  # of a string; the others are left out
 
 
 def format_message(message: Any) -> str:
-    """Return a message's fields as a text of limited length, without UUIDs, empty texts and empty lists."""
+    """Return a message's fields as a text of limited length, without UUIDs, empty strings and empty lists."""
     fields = {name: getattr(message, name) for name in type(message).get_fields_and_field_types()}
     texts = {name: _value(value) for name, value in fields.items() if not isinstance(value, UUID)}
     return ", ".join(f"{name}: {text}" for name, text in texts.items() if text not in ("''", "[]", "{}"))

@@ -1,4 +1,4 @@
-"""Reads the value of a parameter from the answer of a node, which may answer anything."""
+"""Reads the value of a parameter from a node's answer, which may contain anything."""
 
 from __future__ import annotations
 

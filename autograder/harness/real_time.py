@@ -1,4 +1,4 @@
-"""A harness in real time: the programs run as `ros2 run` would start them, and can get signals."""
+"""A harness in real time: the programs run as if `ros2 run` had started them, and can receive signals."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from autograder.run.lockstep.failures import diagnose_exit, diagnose_no_answer, 
 from autograder.run.sandbox import Process
 from autograder.run.sandbox.launcher import launch
 
-START_SECONDS = 60.0  # real time until the nodes are visible, generous for a busy machine
-GRACE_NS = 300_000_000  # real time for the programs to match the grader's endpoints; they cannot be asked
-SETTLE_SECONDS = 3.0  # real time for a node's endpoints to become visible after the node
+START_SECONDS = 60.0  # maximum real time until the nodes are visible; it is long enough for a busy machine
+GRACE_NS = 300_000_000  # real time in which the programs match the grader's endpoints; the programs cannot be asked
+SETTLE_SECONDS = 3.0  # maximum real time from the discovery of a node to that of its endpoints
 
 
 class RealTimeHarness(Harness):
-    """Programs in real time, for tests that stepping cannot cover: signals, threads of a program, whole processes."""
+    """Programs in real time, for what cannot be tested in steps: signals, threads and processes."""
 
     _running: Sequence[tuple[Program, Process]] = ()
 
@@ -55,7 +55,7 @@ class RealTimeHarness(Harness):
         return time.monotonic() - self._start_time
 
     def step(self, dt_ns: int) -> None:
-        """Take messages for `dt_ns` nanoseconds of real time. Return at once if the caller is already late."""
+        """Take messages for `dt_ns` nanoseconds of real time. If `dt_ns` is not positive, return at once."""
         if dt_ns <= 0:
             return
         end_time = time.monotonic() + dt_ns / 1e9
@@ -104,12 +104,12 @@ class RealTimeHarness(Harness):
         self.step(GRACE_NS)
 
     def _topics(self) -> tuple[set[str], set[str]]:
-        def complete() -> bool:
+        def is_complete() -> bool:
             return all(map(self._grader_node.subscriptions_of, self._publishes)) and all(
                 map(self._grader_node.publishers_of, self._subscribes)
             )
 
-        self.wait_for(lambda: self._alive() and complete(), SETTLE_SECONDS)
+        self.wait_for(lambda: self._alive() and is_complete(), SETTLE_SECONDS)
         return {topic for topic in self._publishes if self._grader_node.subscriptions_of(topic)}, {
             topic for topic in self._subscribes if self._grader_node.publishers_of(topic)
         }
@@ -121,19 +121,19 @@ class RealTimeHarness(Harness):
             self.node.count_publishers(reader.topic_name) for reader in readers
         )
 
-    def _reach(self, client: Any, seconds: float) -> bool:
+    def _wait_for_server(self, client: Any, seconds: float) -> bool:
         return self.until(client.service_is_ready, seconds)
 
 
 def usual_rate(instants: Sequence[float], seconds: float) -> float:
-    """Return the usual rate, per second, of events in `seconds`. `instants` are their times in s, ascending.
+    """Return the usual rate, per second, of events during `seconds`. `instants` are their times in s, ascending.
 
-    A busy machine sometimes keeps a program from running, and the events of that time never happen. A count would blame
-    the program, but the median interval does not. If the count is less than half of the number that the median interval
-    implies, the count is used.
+    A busy machine sometimes keeps a program from running, and the events that were due then never happen. The number of
+    events would blame the program for that, but the median interval does not. The number is used only if it is less
+    than half of what the median interval implies.
     """
     count = len(instants) / seconds
     if len(instants) < 3:
         return count
-    usual = 1.0 / max(statistics.median(after - before for before, after in pairwise(instants)), 1e-6)
-    return usual if count > usual / 2 else count
+    median_rate = 1.0 / max(statistics.median(after - before for before, after in pairwise(instants)), 1e-6)
+    return median_rate if count > median_rate / 2 else count

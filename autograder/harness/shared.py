@@ -1,4 +1,4 @@
-"""Keeps one harness for several checks. A program is started again only if it can no longer be used."""
+"""Keeps one harness for several checks, and starts its programs again only if they can no longer be used."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from autograder.run.sandbox import Process
 
 
 class Programs(AbstractContextManager[Any], Protocol):
-    """Programs in a harness, or in something built on one. They run inside its `with` block."""
+    """Programs in a harness, or in an object that is based on a harness. They run inside its `with` block."""
 
     @property
     def processes(self) -> tuple[Process, ...]:
@@ -24,12 +24,12 @@ P = TypeVar("P", bound=Programs)
 class Shared(ExitStack, Generic[P]):
     """Keeps one harness for several checks, and replaces it once one of its programs has ended.
 
-    Programs that did not start are not started again: each further check gets the same error at once. It is a context
-    manager, whose end also ends the programs.
+    Programs that did not start are not started again: each further check gets the same error at once. `Shared` is a
+    context manager. Its exit ends the programs.
 
     Args:
         make: creates a harness, not yet entered.
-        usable: whether a harness whose programs run can be used for the next check. Otherwise, it is replaced.
+        usable: returns whether a harness with running programs can be used for the next check. If not, it is replaced.
     """
 
     def __init__(self, make: Callable[[], P], usable: Callable[[P], bool] = lambda _: True) -> None:
@@ -39,7 +39,7 @@ class Shared(ExitStack, Generic[P]):
         self._error: StudentError | None = None  # why the programs did not start
 
     def get(self) -> P:
-        """Return a harness whose programs run. Raises the errors of creating and entering one."""
+        """Return a harness whose programs are running. Raise the error if it cannot be created or entered."""
         if self._error is not None:
             raise self._error
         current = self._current

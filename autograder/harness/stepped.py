@@ -19,9 +19,9 @@ from autograder.run.lockstep.lockstep_host import channels
 from autograder.run.lockstep.protocol import START_NS
 from autograder.run.sandbox import Process
 
-DELIVERY_SECONDS = 15.0  # real time, over a whole run, to wait for announced messages
-SETTLE_SECONDS = 5.0  # real time for the names of the programs' nodes to become visible
-MAX_ROUNDS = 1000  # in one step; programs that still answer each other then would never stop
+DELIVERY_SECONDS = 15.0  # maximum real time that a whole run waits for announced messages
+SETTLE_SECONDS = 5.0  # maximum real time until the names of the programs' nodes are visible
+MAX_ROUNDS = 1000  # at one instant; programs that answer each other more often would never stop
 
 
 class _OptionalProgramLost(Exception):
@@ -29,14 +29,14 @@ class _OptionalProgramLost(Exception):
 
 
 class SteppedHarness(Harness):
-    """Programs that are stepped through ROS time: faster than real time, and the same every time.
+    """Programs that are stepped through ROS time. This is faster than real time, and all runs are the same.
 
-    They start at ROS time `START_NS`. `tick_ns` is between 10 ms and 100 ms, so that their timers fire at the end of a
-    step. In a step, they take the messages that were sent before, then their timers fire, and then they take the
-    messages that they sent each other. `autograder.harness.turns` defines the order.
+    They start at ROS time `START_NS`. `tick_ns` is between 10 ms and 100 ms, and is chosen so that their timers fire at
+    the end of a step. In a step, the programs first take the messages that were sent before it, then their timers fire,
+    and finally they take the messages that they sent to each other. `autograder.harness.turns` defines the order.
 
     Attributes:
-        notes: for each executable that does not only run in steps, the reason, one of the protocol's `REASONS`.
+        notes: for each executable that may also run between steps, the reason: one of the protocol's `REASONS`.
         activations: how often each executable was run, which determines the cost of a run in lockstep.
     """
 
@@ -52,7 +52,7 @@ class SteppedHarness(Harness):
             stepper = self.enter_context(Stepper(self._sandbox, path, program.arguments, self._clock_rate))
             self._stepped = [*self._stepped, SteppedProgram(number, program, stepper)]
         for stepped in self._stepped:
-            with suppress(_OptionalProgramLost), self._attributing(stepped):
+            with suppress(_OptionalProgramLost), self._attribute_errors_to(stepped):
                 stepped.stepper.wait_ready()
 
     @property
@@ -87,7 +87,7 @@ class SteppedHarness(Harness):
         self._deliver_from_grader()
         instants = (self._now_ns - 1, self._now_ns) if dt_ns else ()
         alone = len(self._stepped) == 1
-        # The grader may react to the response of a request, and its reaction belongs to the same phase.
+        # The grader may react to the response to a request, and its reaction belongs to the same phase.
         has_request = any(not channels.is_topic(name) for s in self._stepped for _, sent in s.inbox for name in sent)
         if self._flow is not None and (alone or not has_request):
             for stepped in self._flow if instants else ():
@@ -112,7 +112,7 @@ class SteppedHarness(Harness):
     # Turns.
 
     def _settle(self, instant: int) -> None:
-        """Run rounds at one instant until no message is left."""
+        """Run rounds at one instant until no messages are left."""
         for _ in range(MAX_ROUNDS):
             self._deliver_from_grader()
             if not any(stepped.inbox for stepped in self._stepped):
@@ -135,7 +135,7 @@ class SteppedHarness(Harness):
         """Run a program for its turns, and deliver what it sends."""
         while turns and stepped in self._stepped:
             try:
-                with self._attributing(stepped):
+                with self._attribute_errors_to(stepped):
                     reply = stepped.stepper.step([(turn.instant, turn.messages) for turn in turns])
             except _OptionalProgramLost:
                 return
@@ -143,21 +143,21 @@ class SteppedHarness(Harness):
             stepped.wake, stepped.due = reply.wake, reply.due
             for reason in reply.notes:
                 self.notes.setdefault(stepped.program.executable, reason)
-            done = turns[: len(reply.sent)]
-            self._require_arrival(reply.lost, {channel for turn in done for channel in turn.messages})
-            for turn, sent in zip(done, reply.sent, strict=True):
+            finished_turns = turns[: len(reply.sent)]
+            self._require_arrival(reply.lost, {channel for turn in finished_turns for channel in turn.messages})
+            for turn, sent in zip(finished_turns, reply.sent, strict=True):
                 self._deliver(turn.place, sent, sender=stepped)
                 self._expect(sent)
             self._collect()
-            turns = turns[len(done) :]
+            turns = turns[len(finished_turns) :]
             if reply.changed:
                 self._match()
 
-    def _require_arrival(self, lost: tuple[str, ...], announced: set[str]) -> None:
-        """Raise a DoubtfulError if a message of the grader is lost on a channel with announced messages."""
-        for channel in lost:
-            # The student's programs may forge the counts of messages that they sent. The grader's counts are correct.
-            if channel in announced and channel in self._grader_node.publisher_channels.values():
+    def _require_arrival(self, lost_channels: tuple[str, ...], announced_channels: set[str]) -> None:
+        """Raise a DoubtfulError if a message of the grader that was announced to a program is lost."""
+        for channel in lost_channels:
+            # Only the grader's counts are reliable. The student's programs may forge the counts of what they sent.
+            if channel in announced_channels and channel in self._grader_node.publisher_channels.values():
                 sentence = (
                     f"A message that was sent to your node on {channel.split()[0]} did not arrive: do not replace "
                     "functions of rclpy, and take each message that comes."
@@ -171,7 +171,7 @@ class SteppedHarness(Harness):
             self._grader_node.sent.clear()
 
     def _deliver(self, place: Place, sent: dict[str, int], sender: SteppedProgram | None = None) -> None:
-        """Add the messages of a turn to the inbox of each program, except the sender, that reads their channels."""
+        """Add the messages of a turn to the inbox of each program that reads their channels, except the sender's."""
         for stepped in self._stepped:
             counts = {name: count for name, count in sent.items() if name in stepped.description.reads}
             if stepped is not sender and counts:
@@ -210,7 +210,7 @@ class SteppedHarness(Harness):
         for stepped in self._stepped:
             others = [description for description in descriptions if description is not stepped.description]
             early = _sum(description.early for description in others)
-            with self._attributing(stepped):
+            with self._attribute_errors_to(stepped):
                 stepped.stepper.match(
                     _sum(description.kept for description in others),
                     {channel: count for channel, count in early.items() if not channels.is_topic(channel)},
@@ -246,13 +246,13 @@ class SteppedHarness(Harness):
     def _describe(self) -> list[Description]:
         descriptions = []
         for stepped in self._stepped:
-            with self._attributing(stepped):
+            with self._attribute_errors_to(stepped):
                 stepped.description = stepped.stepper.describe()
                 descriptions.append(stepped.description)
         self._flow = flow(self._stepped)
         return descriptions
 
-    def _reach(self, client: Any, seconds: float) -> bool:
+    def _wait_for_server(self, client: Any, seconds: float) -> bool:
         channel = channels.request(client.srv_name, client.srv_type)
 
         def is_served() -> bool:
@@ -264,11 +264,11 @@ class SteppedHarness(Harness):
         return True
 
     @contextmanager
-    def _attributing(self, stepped: SteppedProgram) -> Iterator[None]:
-        """Drop an optional program that failed. If another one of several programs failed, name it in the error."""
+    def _attribute_errors_to(self, stepped: SteppedProgram) -> Iterator[None]:
+        """If a program fails in this block, drop it if it is optional, else name it in the error if several run."""
         try:
             yield
-        except UnsteppableError as error:  # of an optional program, too, because this is not a failure
+        except UnsteppableError as error:  # even for an optional program, because this is not a failure
             self.notes[stepped.program.executable] = error.reason
             raise
         except StudentError as error:

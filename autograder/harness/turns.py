@@ -1,14 +1,15 @@
 """The order in which programs in lockstep run.
 
-A step up to an instant t of ROS time has two phases: t - 1 ns, for what was due before t, and t. A phase consists of
-rounds. In a round, the programs have their turns in the order in which they were named. A program has a turn if
-messages were sent to it. In the first round at t, a program also has a turn if something in it is due. If it is the
-only program, the same applies at t - 1 ns. In a turn, it takes exactly the messages that were sent before the turn, and
-runs what is due. A phase ends when no message is left. A step of length 0 is one phase, in which nothing is due.
+A step that ends at ROS time t has two phases: one at t - 1 ns, for what was due before t, and one at t. A phase
+consists of rounds. In a round, the programs take turns in the order in which they were named. A program has a turn if
+messages were sent to it. In the first round at t, a program also has a turn if something in it is due. A program that
+is alone in its harness has such a turn at t - 1 ns as well. In a turn, a program takes exactly the messages that were
+sent before the turn, and runs what is due. A phase ends when no messages are left. A step of length 0 has only one
+phase, in which nothing is due.
 
-Only this order is observable, so a program that has nothing to do is not run. If no message can return to its sender by
-way of other programs, all turns of the first program in the flow are known in advance. It then runs once for all turns
-of a step, after which those of the next program are known.
+Only this order is observable, so a program that has nothing to do is not run. If no message can return to its sender
+via other programs, all turns of the first program in the flow are known in advance. That program then runs once for all
+its turns in a step, and afterwards the turns of the next program are known.
 """
 
 from __future__ import annotations
@@ -24,15 +25,15 @@ from autograder.run.lockstep import Description, Stepper
 from autograder.run.lockstep.lockstep_host import channels
 from autograder.run.lockstep.protocol import response_channel
 
-_PARAMETER_EVENTS = "/parameter_events"  # every program publishes them, and no description names them
+_PARAMETER_EVENTS = "/parameter_events"  # every program publishes on this topic, but no description lists it
 
 
 class Place(NamedTuple):
-    """The position of a turn in a step. Positions compare in the order of the turns."""
+    """The position of a turn in a step. Places have the same order as the turns."""
 
-    phase: int = -1  # the grader sends before each phase
+    phase: int = -1  # -1 is before all turns of a step: the grader sends its messages then
     round: int = 0
-    number: int = 0  # number of the program
+    number: int = 0  # the program's number, as in `SteppedProgram`
 
 
 class Turn(NamedTuple):
@@ -51,26 +52,30 @@ class SteppedProgram:
     program: Program
     stepper: Stepper
     description: Description = field(default_factory=Description)  # the last description of its nodes
-    # Messages for it, with the turns in which they were sent.
+    # For each turn that sent messages to it: the place of the turn, and the number of messages on each channel.
     inbox: list[tuple[Place, Counter[str]]] = field(default_factory=list)
     wake: int | None = None  # as in `Reply`
     due: int | None = 0  # as in `Reply`
 
     def is_due(self, instant: int) -> bool:
-        """Return whether something in it may be due."""
+        """Return whether something in this program may be due at an instant."""
         return self.due is not None and self.due <= instant
 
     def take(self, before: Place | None = None) -> Counter[str]:
-        """Remove the messages that were sent before a place, or all, from the inbox. Return their counts by channel."""
+        """Remove the messages that were sent before a place from the inbox. Return their counts by channel.
+
+        If `before` is None, all messages are removed.
+        """
         entries = [entry for entry in self.inbox if before is None or entry[0] < before]
         self.inbox = [entry for entry in self.inbox if entry not in entries]
         return sum((counts for _, counts in entries), Counter())
 
 
 def turns_of(program: SteppedProgram, instants: Sequence[int], *, alone: bool) -> list[Turn]:
-    """Return a program's turns in a step with a phase at each instant. All messages for it must be in its inbox.
+    """Return a program's turns in a step with a phase at each instant.
 
-    After its first turn, it is not known what is due, so it has a turn in the first round of every later phase.
+    All messages for the program must be in its inbox. What is due after its first turn is not known, so it also has a
+    turn in the first round of every later phase.
     """
     turns: list[Turn] = []
     for phase, instant in enumerate(instants):
@@ -85,10 +90,10 @@ def turns_of(program: SteppedProgram, instants: Sequence[int], *, alone: bool) -
 
 
 def batches(turns: Iterable[Turn]) -> list[list[Turn]]:
-    """Group the turns of one program into lists, so that it can run once for each list.
+    """Group the turns of one program into batches, so that the program can run once for each batch.
 
-    The program holds back the messages of later turns by subscription, so only one turn of a list may have messages on
-    a topic. Also, the queue of a subscription could not hold the messages of several turns.
+    The program holds back the messages of later turns separately for each subscription, so only one turn of a batch may
+    have messages on a given topic. Besides, a subscription's queue may be too short for the messages of several turns.
     """
     groups: list[list[Turn]] = []
     group_topics: set[str] = set()
@@ -103,26 +108,28 @@ def batches(turns: Iterable[Turn]) -> list[list[Turn]]:
 
 
 def flow(programs: Sequence[SteppedProgram]) -> list[SteppedProgram] | None:
-    """Return programs in an order in which none can send messages to an earlier one, or None if that is impossible."""
-    senders = {
+    """Return the programs in an order in which none can affect an earlier one, or None if there is no such order."""
+    senders_to = {
         receiver: [
             sender
             for sender in programs
-            if sender is not receiver and _reaches(sender.description, receiver.description)
+            if sender is not receiver and _may_affect(sender.description, receiver.description)
         ]
         for receiver in programs
     }
     try:
-        return list(TopologicalSorter(senders).static_order())
+        return list(TopologicalSorter(senders_to).static_order())
     except CycleError:
         return None
 
 
-def _reaches(sender: Description, receiver: Description) -> bool:
-    """Return whether a program may send messages to another one, or publishes on one of the other one's topics."""
-    written = {channel for channel, _ in sender.writers}
-    sent = {*written, *(channel for channel, _ in sender.clients)}
-    sent.update(response_channel(name, receiver.prefix) for name in sender.servers)
-    shared = {*map(channels.topic_of, written)} & {channels.topic_of(channel) for channel, _ in receiver.writers}
+def _may_affect(sender: Description, receiver: Description) -> bool:
+    """Return whether the first program may send messages to the second, or both publish on the same topic."""
+    written_channels = {channel for channel, _ in sender.writers}
+    sent_channels = {*written_channels, *(channel for channel, _ in sender.clients)}
+    sent_channels.update(response_channel(name, receiver.prefix) for name in sender.servers)
+    shared_topics = {*map(channels.topic_of, written_channels)} & {
+        channels.topic_of(channel) for channel, _ in receiver.writers
+    }
     reads_parameter_events = any(channels.topic_of(channel) == _PARAMETER_EVENTS for channel in receiver.reads)
-    return bool(sent & receiver.reads or shared or reads_parameter_events)
+    return bool(sent_channels & receiver.reads or shared_topics or reads_parameter_events)

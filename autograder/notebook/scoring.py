@@ -16,7 +16,7 @@ from autograder.notebook.simulator_session import SimulatorSession
 from autograder.result.model import write_json
 from sim import Recording
 
-FILE = Path("scores.json")  # used only by this module
+FILE = Path("scores.json")  # in the notebook's folder; only this module uses it
 COLUMNS = ("", "run", "goal", "driven", "nearest thing")
 
 
@@ -27,10 +27,10 @@ class Score:
     Attributes:
         world: the world's name.
         run: the student's name for the run.
-        arrived: time at which the robot's centre reached the goal, in seconds; None if it did not.
-        left: smallest distance to the goal, in metres; 0 if it arrived.
-        metres: distance driven until it arrived or the drive ended.
-        margin: smallest distance between the robot's edge and an obstacle on this way, in metres.
+        arrived: the time in seconds at which the robot's centre reached the goal; None if it did not.
+        left: the smallest distance to the goal in metres; 0 if the robot arrived.
+        metres: the distance that the robot drove until it arrived or the drive ended.
+        margin: the smallest distance in metres between the robot's edge and an obstacle up to then.
     """
 
     world: str
@@ -55,7 +55,7 @@ class Score:
 
 @dataclass(frozen=True)
 class ScoreTable:
-    """The student's drives in a world, best first, and the newest of them."""
+    """The scores of the student's drives in a world, best first, and the newest score."""
 
     scores: tuple[Score, ...]
     newest: Score
@@ -95,7 +95,7 @@ def score(drive: DriveReport | SimulatorSession | Notice, run: str = "") -> Scor
         return drive
     if drive.recording is None:
         return Notice("Nothing was recorded, so the run has no score.")
-    scores = _read()
+    scores = _read_scores()
     newest = score_of(drive.recording, run or f"run {len(scores) + 1}")
     scores.append(newest)
     write_json(FILE, [asdict(entry) for entry in scores])
@@ -135,7 +135,7 @@ def _score_of_robot(recording: Recording, run: str, robot: int) -> Score:
     )
 
 
-def _read() -> list[Score]:
+def _read_scores() -> list[Score]:
     if not FILE.exists():
         return []
     try:

@@ -35,7 +35,7 @@ def run_in_worker(
     Args:
         verb: `drive` or `check`.
         workspace: the student's workspace.
-        early: called once with the first part of the reply, while the worker continues.
+        early: a function that is called once with the first part of the reply, while the worker continues.
         arguments: the verb's arguments.
 
     Raises:
@@ -60,7 +60,7 @@ def run_on(
     early: Callable[[dict[str, Any]], None] | None = None,
     **arguments: Any,
 ) -> Iterator[tuple[dict[str, Any], Path]]:
-    """Do the same as `run_in_worker`, at a given isolation level. For a check, `source` may be a submission."""
+    """Do the same as `run_in_worker` at a given isolation level. For a check, `source` may be a submission."""
     own_end, worker_end = Pipe()
     with tempfile.TemporaryDirectory(prefix="request-") as folder, own_end:
 
@@ -90,7 +90,7 @@ def run_on(
                 _,
             ),
         ):
-            worker_end.close()  # the worker has the only other copy, so the connection ends with it
+            worker_end.close()  # now the worker has the only copy, so the connection ends when the worker does
             first_part, listeners = Path(folder) / EARLY_FILE, [early] if early else []
 
             def has_ended() -> bool:
@@ -99,7 +99,7 @@ def run_on(
                     listeners.pop()(json.loads(first_part.read_text(encoding="utf-8")))
                 return process.exit_reason is not None
 
-            # Answers the worker's requests for interface packages.
+            # Answer the worker's requests for interface packages until it ends.
             bundle_server.serve_worker(own_end, isolation, has_ended)
             has_ended()  # the worker may have written the first part just before it ended
             report = wait_and_report(process)

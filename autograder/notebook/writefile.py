@@ -43,18 +43,18 @@ def register(shell: InteractiveShell | None) -> None:
 def write(line: str, cell: str, original: Any) -> None:
     """Write a cell's text to the file named by `line`, unless that would destroy a student's work.
 
-    The whole old text is compared. If the record is lost, the result is an extra copy, never lost work. `line` is the
-    text after `%%writefile`, and `original` is IPython's own magic, which writes the file and prints a message.
+    If the record of the last written texts is lost, a needless copy is made, but no work is lost. `line` is the text
+    after `%%writefile`, and `original` is IPython's own magic, which writes the file and prints a message.
     """
     parse: Any = magic_arguments.parse_argstring
     arguments = parse(original, line)
     path = Path(arguments.filename.strip("'\"")).expanduser()
-    workspace = _workspace(path)
-    record, name, on_disk = read_record(workspace), os.path.relpath(path, workspace), _text(path)
+    workspace = _find_workspace(path)
+    record, name, on_disk = read_record(workspace), os.path.relpath(path, workspace), _read_text(path)
     _make_folder(path.parent)
     if arguments.append:
         original(line, cell)
-        if on_disk is None or record.get(name) == digest(on_disk):  # only cells have written it
+        if on_disk is None or record.get(name) == digest(on_disk):  # only cells have written the file
             write_json(workspace / RECORD, {**record, name: digest((on_disk or "") + cell)})
         return
     if on_disk is not None and on_disk != cell:
@@ -88,12 +88,12 @@ def _show(sentence: str) -> None:
     show(Notice(sentence))
 
 
-def _workspace(path: Path) -> Path:
+def _find_workspace(path: Path) -> Path:
     """Return the workspace `ws` that contains a file, or the file's folder."""
     return next((folder for folder in path.parents if folder.name == "ws"), path.parent)
 
 
-def _text(path: Path) -> str | None:
+def _read_text(path: Path) -> str | None:
     if not path.is_file():
         return None
     return path.read_bytes().decode("utf-8", "surrogateescape")

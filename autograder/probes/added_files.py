@@ -14,7 +14,7 @@ from autograder.submission.reading import reading
 
 
 def install_with(workspace: Workspace, package: str, files: Iterable[str]) -> Installed:
-    """Copy a package, add empty files to the copy, build it, and return its installation.
+    """Copy a package, add empty files to the copy, build it, and return what was installed.
 
     Args:
         workspace: the built workspace, which is not changed.

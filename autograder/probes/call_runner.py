@@ -1,4 +1,4 @@
-"""Runs inside the sandbox: calls functions and classes of a student's module, as a request in JSON asks.
+"""Runs inside the sandbox: calls functions and classes of a student's module, as a JSON request specifies.
 
     python call_runner.py REQUEST_FD ANSWER_FD
 
@@ -20,8 +20,8 @@ import sys
 import traceback
 from typing import Any
 
-MAX_TEXT = 2000
-REFERENCE = "$made"
+MAX_TEXT = 2000  # characters
+REFERENCE = "$made"  # the key of an argument that is the result of an earlier step
 
 
 def main() -> None:
@@ -41,8 +41,8 @@ def main() -> None:
 
 
 def _step(module: Any, results: list[Any], step: dict[str, Any]) -> dict[str, Any]:
-    arguments = [_resolved(results, value) for value in step["args"]]
-    keywords = {name: _resolved(results, value) for name, value in step["kwargs"].items()}
+    arguments = [_resolve(results, value) for value in step["args"]]
+    keywords = {name: _resolve(results, value) for name, value in step["kwargs"].items()}
     printed = io.StringIO()
     try:
         owner = importlib.import_module(step["module"]) if step["module"] else module
@@ -66,7 +66,7 @@ def _step(module: Any, results: list[Any], step: dict[str, Any]) -> dict[str, An
 
 
 def _run_coroutine(value: Any) -> Any:
-    """Run a coroutine until it first waits; return its result, or None if it has not ended. Return other values."""
+    """Run a coroutine until it first waits; return its result, or None if it has not ended. Return any other value."""
     if not inspect.iscoroutine(value):
         return value
     try:
@@ -77,7 +77,7 @@ def _run_coroutine(value: Any) -> Any:
     return None
 
 
-def _resolved(results: list[Any], value: Any) -> Any:
+def _resolve(results: list[Any], value: Any) -> Any:
     """Return an argument's value: the result of an earlier step if it refers to one, otherwise the argument itself."""
     return results[value[REFERENCE]] if isinstance(value, dict) and REFERENCE in value else value
 

@@ -1,4 +1,4 @@
-"""Calls of a student's functions in the sandbox: JSON in and JSON out, bounded in size, compared by exact type.
+"""Calls a student's functions in the sandbox. Arguments and results are JSON values of limited size.
 
     outcomes = calls(workspace, "wheels.data_processing",
                      call("mask_invalid", [1.0, nan], 0.1, 3.5),
@@ -32,7 +32,7 @@ from autograder.run.workspace import Workspace
 from autograder.submission.reading import beyond_bounds, reading
 from autograder.suite import CheckFailed
 
-REFERENCE = "$made"  # as in call_runner.py, which runs alone in the sandbox
+REFERENCE = "$made"  # the same as in call_runner.py, which cannot import this module in the sandbox
 RUNNER = Path(__file__).with_name("call_runner.py")
 MAX_ANSWER = 1024 * 1024
 MAX_KINDS = 20
@@ -40,14 +40,14 @@ MAX_KINDS = 20
 
 @dataclass(frozen=True)
 class Step:
-    """A call, or the reading of an attribute."""
+    """A call, or an access to an attribute."""
 
     name: str  # a function, class or attribute
     args: tuple[Any, ...] = ()  # positional arguments, JSON or `result_of(N)`
-    kwargs: Mapping[str, Any] = field(default_factory=dict)  # keyword arguments, likewise
+    kwargs: Mapping[str, Any] = field(default_factory=dict)  # keyword arguments, JSON or `result_of(N)`
     on: int | None = None  # the number of the step whose result has `name`; None for the module
     module: str | None = None  # another module that has `name`, such as `random`; None for the student's
-    is_call: bool = True  # whether it is called, or only read
+    is_call: bool = True  # whether `name` is called, or only read
     runs_coroutine: bool = False  # whether a coroutine that it returns is run until it first waits
 
 
@@ -56,11 +56,11 @@ class StepResult:
     """The result of a step."""
 
     value: Any = None  # the returned value as JSON, or None
-    type: str = ""  # the name of the returned value's type when JSON cannot hold it; empty otherwise
-    raised: str = ""  # the name of the exception, `message` its text; empty without one
-    message: str = ""
-    kinds: tuple[str, ...] = ()  # the names of the exceptions that it is an instance of, its own first
-    arguments: tuple[Any, ...] = ()  # the arguments after the call, to see whether it changed them
+    type: str = ""  # the name of the returned value's type if JSON cannot represent the value; empty otherwise
+    raised: str = ""  # the name of the exception that the step raised, or empty
+    message: str = ""  # the text of that exception
+    kinds: tuple[str, ...] = ()  # the names of the exception's class and its base classes, in this order
+    arguments: tuple[Any, ...] = ()  # the arguments after the call, which may have changed them
     printed: str = ""  # the output of the step
 
 
@@ -70,7 +70,7 @@ def call(name: str, *args: Any, on: int | None = None, module: str | None = None
 
 
 def callback(name: str, *, on: int) -> Step:
-    """Return a step that calls a node's callback as an executor does, which also runs a coroutine."""
+    """Return a step that calls a node's callback as an executor does, and runs the coroutine that it may return."""
     return Step(name, on=on, runs_coroutine=True)
 
 
@@ -131,7 +131,7 @@ def parse_answer(data: bytes, module: str, count: int, process: Process) -> list
     with reading(f"What {module} answered"):
         answer = _parse(data)
         if answer is not None and "failed" in answer:
-            raise StudentError(_not_imported(module, answer["failed"]))
+            raise StudentError(_import_diagnosis(module, answer["failed"]))
         outcomes = None if answer is None else answer.get("outcomes")
         if not isinstance(outcomes, list) or len(outcomes) != count:
             raise StudentError(diagnose_exit(process))
@@ -142,7 +142,7 @@ def value(outcome: StepResult, expression: str) -> Any:
     """Return an outcome's value; `expression` is the call as the student would write it.
 
     Raises:
-        CheckFailed: it raised an exception, or returned a value that JSON cannot represent.
+        CheckFailed: the step raised an exception, or returned a value that JSON cannot represent.
     """
     if outcome.raised == "NotImplementedError":
         raise CheckFailed(f"{expression} is still to be written.")
@@ -154,7 +154,7 @@ def value(outcome: StepResult, expression: str) -> Any:
 
 
 def same(one: Any, other: Any) -> bool:
-    """Return whether two JSON values are equal. nan equals nan, no int equals a bool, floats may differ by 1e-9."""
+    """Return whether two JSON values are equal. nan equals nan, no int equals a bool, and floats may differ by 1e-9."""
     if isinstance(one, list) and isinstance(other, list):
         return len(one) == len(other) and all(map(same, one, other))
     if isinstance(one, bool) or isinstance(other, bool) or one is None or other is None:
@@ -172,8 +172,8 @@ def _parse(text: bytes) -> dict[str, Any] | None:
     return answer if isinstance(answer, dict) else None
 
 
-def _not_imported(module: str, failed: object) -> Diagnosis:
-    data = failed if isinstance(failed, dict) else {}
+def _import_diagnosis(module: str, failure: object) -> Diagnosis:
+    data = failure if isinstance(failure, dict) else {}
     kind, message, traceback_text = (str(data.get(name, "")) for name in ("raised", "message", "traceback"))
     if kind == "ModuleNotFoundError" and module in message:
         sentence = f"The package installs no module {module}: is its file written? Look at its place, at __init__.py "
@@ -186,9 +186,9 @@ def _not_imported(module: str, failed: object) -> Diagnosis:
 def _outcome(data: object) -> StepResult:
     data = data if isinstance(data, dict) else {}
     arguments, kinds = data.get("arguments"), data.get("kinds")
-    beyond = beyond_bounds(data.get("value")) or beyond_bounds(arguments)
-    if beyond:
-        return StepResult(type=beyond)
+    excess = beyond_bounds(data.get("value")) or beyond_bounds(arguments)
+    if excess:
+        return StepResult(type=excess)
     return StepResult(
         value=data.get("value"),
         type=str(data.get("type", "")),

@@ -1,4 +1,4 @@
-"""Tests whether tests fail on a faulty copy of their package: a test that calls or asserts nothing still passes."""
+"""Tests whether tests fail on a faulty copy of their package, where a test that asserts nothing still passes."""
 
 from __future__ import annotations
 

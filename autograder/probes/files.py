@@ -28,10 +28,10 @@ def read_below(folder: Path, name: Path, limit: int) -> bytes | None:
     """Return a file's bytes as `read_plain` does, or None if a link in its path leads out of the folder."""
     path = folder / name
     try:
-        inside = path.parent.resolve().is_relative_to(folder.resolve())
-    except (OSError, RuntimeError):  # links in a circle
+        is_inside = path.parent.resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError):  # links form a cycle
         return None
-    return read_plain(path, limit) if inside else None
+    return read_plain(path, limit) if is_inside else None
 
 
 def plain_files(folder: Path, limit: int, *, skip: Collection[str] = (), suffix: str = "") -> list[Path]:
@@ -57,7 +57,7 @@ def parse_python(source: str | bytes) -> ast.Module | None:
     """Parse Python source without running it; return None if it is not Python."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # a student's "\d" is not our warning
+            warnings.simplefilter("ignore")  # a student's "\d" must not cause a warning here
             return ast.parse(source)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None

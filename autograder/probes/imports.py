@@ -1,7 +1,7 @@
 """Compares the imports of a package's sources with the dependencies in package.xml. Sources are parsed and never run.
 
 rosdep installs the packages in package.xml before a build, so an undeclared import works only on its author's machine.
-Files that are too large, not Python, or beyond the maximum number are left out.
+Files that are too large or not Python are left out, and so are files beyond `MAX_FILES`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from autograder.suite import CheckFailed
 
 MAX_FILES = 300
 MAX_BYTES = 256 * 1024
-MAX_ALL_BYTES = 4 * 1024 * 1024  # of all files of a package that are parsed
+MAX_ALL_BYTES = 4 * 1024 * 1024  # bytes of all parsed files of a package
 SKIPPED_FOLDERS = frozenset({"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".pytest_cache"})
 
 # The rosdep keys of common modules that are not ROS packages. A ROS package's key is its own name.
@@ -40,7 +40,7 @@ KEYS = {
     "sympy": "python3-sympy",
     "yaml": "python3-yaml",
 }
-SETUP_FILE = "setup.py"  # colcon's own set-up provides its imports
+SETUP_FILE = "setup.py"  # not searched, because colcon provides its imports
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
         without: the folders whose files are not read.
 
     Raises:
-        CheckFailed: these files are larger than `MAX_ALL_BYTES` together.
+        CheckFailed: together, these files are larger than `MAX_ALL_BYTES`.
     """
     first_party = {path.parent.name for path in package.glob("*/__init__.py")} | {package.name}
     by_module: dict[str, list[str]] = {}
@@ -93,7 +93,7 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
 
 @lru_cache(MAX_FILES)  # several checks read the same files
 def modules(text: str) -> frozenset[str]:
-    """Return the names of the top-level modules that a source imports; none if it is not Python."""
+    """Return the names of the top-level modules that a source text imports; none if it is not Python."""
     names: set[str] = set()
     for node in ast.walk(parse_python(text) or ast.Module([], [])):
         if isinstance(node, ast.Import):
@@ -111,13 +111,13 @@ def undeclared(imports: Collection[Import], declared: Collection[str]) -> tuple[
 def missing(package: Path, manifest: Manifest) -> Mapping[str, tuple[Import, ...]]:
     """Return the undeclared imports of a package, by the kind of dependency that would declare them.
 
-    `exec` is for imports of the modules and launch files. `test` is for those that only files in test/ need; an `exec`
-    dependency declares them, too.
+    `exec` is for imports in modules and launch files. `test` is for imports that only files in test/ need, which may
+    also be declared as `exec` dependencies.
     """
     runtime = undeclared(imported(package, without=("test",)), manifest.needs("exec"))
     tests = undeclared(imported(package, within=("test",)), manifest.needs("exec", "test"))
-    known = {item.module for item in runtime}
-    return {"exec": runtime, "test": tuple(item for item in tests if item.module not in known)}
+    runtime_modules = {item.module for item in runtime}
+    return {"exec": runtime, "test": tuple(item for item in tests if item.module not in runtime_modules)}
 
 
 def describe(imports: Collection[Import]) -> str:

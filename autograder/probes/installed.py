@@ -1,4 +1,4 @@
-"""Reads the installed files of a Python package. Checks test setup.py and setup.cfg by these, not by their text.
+"""Reads the installed files of a Python package. Checks judge setup.py and setup.cfg by these files, not by their text.
 
 Only plain files are read. No link out of the install space is followed, and nothing is imported.
 """
@@ -26,19 +26,19 @@ class Installed:
     """A package's install prefix, `install/PACKAGE` in colcon's isolated layout."""
 
     package: str  # the package's name
-    prefix: Path  # the folder
+    prefix: Path  # the folder of the prefix
     executables: tuple[str, ...]  # names in lib/PACKAGE, where `ros2 run` and launch files look
     misplaced: tuple[str, ...]  # names in bin/, where they do not
-    # Dotted names of the installed Python modules and packages, also of those that belong to another package.
+    # Dotted names of the installed Python modules and packages, including those that belong to another ROS package.
     modules: frozenset[str]
-    marker: bool  # whether the ament index knows the package
+    marker: bool  # whether the ament index lists the package
     shared: tuple[str, ...]  # paths below share/PACKAGE, without those that colcon itself adds
     # Files that setup.py itself installed, below the prefix. colcon adds a marker and package.xml.
     recorded: frozenset[str]
     extras: Mapping[str, tuple[str, ...]]  # the requirements of each extra, such as `test`
     metadata: Mapping[str, str]  # headers such as Version, License, Maintainer-email
-    programs: Mapping[str, str]  # the module of each program, as setup.py names them
-    classifiers: tuple[str, ...]  # as setup.py names them
+    programs: Mapping[str, str]  # the module of each program, both as named in setup.py
+    classifiers: tuple[str, ...]  # as listed in setup.py
 
     def read(self, name: str) -> bytes | None:
         """Return a file of share/PACKAGE, or None if it does not exist, is not a plain file or is too large."""
@@ -53,7 +53,7 @@ def inspect_package(install: Path, package: str) -> Installed:
 
 def _inspect_package(install: Path, package: str) -> Installed:
     prefix = install / package
-    # Only one exists, because its name contains the version of the Python that built it.
+    # There is only one, because its name contains the version of Python that built the package.
     sites = [path for path in sorted(prefix.glob("lib/python3*/site-packages")) if not path.is_symlink()]
     modules = frozenset(name for site in sites for file in _files(site) if (name := _module(file)))
     eggs = [egg for site in sites for egg in sorted(site.glob("*-info")) if egg.is_dir() and not egg.is_symlink()]
@@ -67,11 +67,11 @@ def _inspect_package(install: Path, package: str) -> Installed:
         modules=modules,
         marker=read_plain(prefix / INDEX / package, MAX_BYTES) is not None,
         shared=tuple(name for name in _files(share) if not _is_added_by_colcon(name)),
-        recorded=_recorded(install, package),
-        extras=_extras(_joined(own_metadata, "requires.txt")),
-        metadata=dict(HeaderParser().parsestr(_joined(own_metadata, "PKG-INFO")).items()),
-        programs=_programs(_joined(eggs, "entry_points.txt")),
-        classifiers=tuple(HeaderParser().parsestr(_joined(eggs, "PKG-INFO")).get_all("Classifier", [])),
+        recorded=_recorded_files(install, package),
+        extras=_extras(_join_files(own_metadata, "requires.txt")),
+        metadata=dict(HeaderParser().parsestr(_join_files(own_metadata, "PKG-INFO")).items()),
+        programs=_programs(_join_files(eggs, "entry_points.txt")),
+        classifiers=tuple(HeaderParser().parsestr(_join_files(eggs, "PKG-INFO")).get_all("Classifier", [])),
     )
 
 
@@ -79,15 +79,15 @@ def _files(folder: Path) -> tuple[str, ...]:
     return tuple(map(str, plain_files(folder, MAX_FILES)))
 
 
-def _recorded(install: Path, package: str) -> frozenset[str]:
-    """Return the files that setup.py installed, by the record that it writes for colcon in the build space."""
+def _recorded_files(install: Path, package: str) -> frozenset[str]:
+    """Return the files that setup.py installed, according to the log that it writes in the build space."""
     log = read_below(install.parent / "build", Path(package, "install.log"), MAX_BYTES) or b""
     text = log.decode(errors="replace")
     below = [line.partition(f"/{install.name}/{package}/") for line in text.splitlines()]
     return frozenset(name for _, separator, name in below if separator)
 
 
-def _joined(folders: list[Path], name: str) -> str:
+def _join_files(folders: list[Path], name: str) -> str:
     return "\n".join((read_plain(folder / name, MAX_BYTES) or b"").decode(errors="replace") for folder in folders)
 
 

@@ -17,8 +17,8 @@ from autograder.plain_text import nearest
 
 MAX_BYTES = 64 * 1024
 PARTS = {"msg": ("",), "srv": ("request", "response"), "action": ("goal", "result", "feedback")}
-PARSER_KINDS = {"msg": "message", "srv": "service", "action": "action"}  # in the names of the parser's functions
-_NEAR = 0.7  # from this difflib ratio on, one name is taken for a misspelling of the other
+PARSER_KINDS = {"msg": "message", "srv": "service", "action": "action"}  # as in the names of the parser's functions
+_NEAR = 0.7  # names with at least this difflib ratio count as misspellings of each other
 
 
 class Unreadable(Exception):
@@ -112,7 +112,7 @@ def parse(package: str, path: str, text: str) -> Interface:
 def compare(expected: Interface, actual: Interface) -> tuple[Difference, ...]:
     """Return the differences of a definition from its contract.
 
-    Additional constants are not differences, nor is a default that equals the value of a field without one.
+    Additional constants are not differences, nor is a default that equals the value of a field without a default.
     """
     parts = range(len(expected.parts))
     return tuple(difference for index in parts for difference in _Comparison(expected, actual, index).differences())
@@ -130,13 +130,13 @@ def elements(expected: Interface, aspect: Aspect) -> Iterator[Field | Constant]:
 
 
 def share(expected: Interface, differences: Sequence[Difference]) -> float:
-    """Return the share of a contract's elements that are right, in [0, 1]."""
+    """Return the share of a contract's elements that are correct, from 0 to 1."""
     elements = sum(len(part.fields) + len(part.constants) for part in expected.parts)
     return max(0.0, 1.0 - len(differences) / elements) if elements else float(not differences)
 
 
 def closest(path: str, present: Sequence[str]) -> str:
-    """Return the definition in `present` that is probably meant by `path`, or an empty string."""
+    """Return the path in `present` that was probably meant to be `path`, or an empty string."""
     by_case = {other.casefold(): other for other in present}
     return by_case.get(nearest(path.casefold(), by_case, 0.8), "")
 
@@ -149,12 +149,14 @@ class _Comparison:
         self._actual = actual.parts[index]
         others = [other for other in range(len(expected.parts)) if other != index]
         names = PARTS[expected.path.partition("/")[0]]
-        self._elsewhere = {
+        # For each name that another part contains against its contract, the name of that part.
+        self._actual_part = {
             name: names[other]
             for other in others
             for name in _names(actual.parts[other]) - _names(expected.parts[other])
         }
-        self._strayed = {
+        # The names that other parts should contain, but do not.
+        self._missing_elsewhere = {
             name for other in others for name in _names(expected.parts[other]) - _names(actual.parts[other])
         }
         self._name = names[index]
@@ -172,15 +174,15 @@ class _Comparison:
         constants = {constant.name.lower() for constant in self._part.constants}  # `_constants` reports those
         extra = [name for name in actual if name not in expected and name not in constants]
         for name in (name for name in expected if name not in actual):
-            if name in self._elsewhere:
-                yield self._difference(Aspect.FIELDS, f"{name} is in the {self._elsewhere[name]}, it belongs here")
-            elif near := nearest(name, (other for other in extra if other not in self._strayed), _NEAR):
+            if name in self._actual_part:
+                yield self._difference(Aspect.FIELDS, f"{name} is in the {self._actual_part[name]}, it belongs here")
+            elif near := nearest(name, (other for other in extra if other not in self._missing_elsewhere), _NEAR):
                 extra.remove(near)
                 yield self._difference(Aspect.FIELDS, f"a field is called {near}, it should be {name}")
             else:
                 yield self._difference(Aspect.FIELDS, f"the field {name} is missing")
         for name in extra:
-            if name not in self._strayed:
+            if name not in self._missing_elsewhere:
                 yield self._difference(Aspect.FIELDS, f"the contract has no field {name}")
         if expected.keys() == actual.keys() and list(expected) != list(actual):
             order, other = ", ".join(expected), ", ".join(actual)
@@ -207,8 +209,8 @@ class _Comparison:
                     texts = [f"{constant.type} {constant.value!r}" for constant in (actual, expected)]
                     sentence = f"the constant {name} is {texts[0]}, it should be {texts[1]}"
                     yield self._difference(Aspect.CONSTANTS, sentence)
-            elif name in self._elsewhere:
-                part = self._elsewhere[name]
+            elif name in self._actual_part:
+                part = self._actual_part[name]
                 yield self._difference(Aspect.CONSTANTS, f"the constant {name} is in the {part}, it belongs here")
             elif name.lower() in fields:
                 sentence = f"{name.lower()} is a field; a constant is written {expected.type} {name} = VALUE"
@@ -243,7 +245,7 @@ def _plain(value: Any) -> Any:
 
 
 def _reason(error: Exception) -> str:
-    """Describe an exception of the parser. The texts of some consist of the line only, or are empty."""
+    """Describe an exception of the parser. Some have no text, or only the line of the definition."""
     advice = {
         "InvalidServiceSpecification": "one line --- parts the request from the response",
         "InvalidActionSpecification": "two lines --- part goal, result and feedback",

@@ -12,13 +12,13 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from autograder.ros.discovery import fast_discovery
 
-DEPTH = 10  # more than a publisher should keep
-JOIN_SECONDS = 30.0  # of real time until the first message is received; only a publisher that keeps none takes so long
-FURTHER_SECONDS = 0.3  # of real time until the others are received: they are sent together
+DEPTH = 10  # more messages than a publisher should keep
+JOIN_SECONDS = 30.0  # real time to wait for the first message; only a publisher that keeps none takes so long
+FURTHER_SECONDS = 0.3  # real time to wait for the other messages, which are sent together with the first
 
 
 def count_kept_messages(node: Node, topic: str, kind: type) -> int:
-    """Return how many messages a new transient local subscription receives, `DEPTH` at most.
+    """Return how many messages a new transient local subscription receives, at most `DEPTH`.
 
     The publisher must not publish meanwhile, and in lockstep it does not.
 
@@ -41,7 +41,7 @@ def count_kept_messages(node: Node, topic: str, kind: type) -> int:
         while not received and time.monotonic() < deadline:
             executor.spin_once(timeout_sec=0.1)
         deadline = time.monotonic() + FURTHER_SECONDS
-        while time.monotonic() < deadline and len(received) < DEPTH:  # a publisher that does not stop fills the memory
+        while time.monotonic() < deadline and len(received) < DEPTH:  # so that a publisher cannot fill the memory
             executor.spin_once(timeout_sec=0.05)
         return len(received)
     finally:

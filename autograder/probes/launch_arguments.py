@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-_NAME = re.compile(r"^    '(?P<name>.+)':\*?$")  # the star marks an argument that is declared on a condition
+_NAME = re.compile(r"^    '(?P<name>.+)':\*?$")  # the star marks an argument that is declared under a condition
 _DEFAULT = re.compile(r"^        \(default: (?P<default>.*)\)$")
 _CHOICES = ("Valid choices are: ", "One of: ")  # the text before a list or a tuple
 _QUOTED = re.compile(r"'([^']*)'")
@@ -18,7 +18,7 @@ class Argument:
     """A launch argument, as `ros2 launch -s` shows it."""
 
     name: str
-    description: str  # or an empty string
+    description: str  # empty if there is none
     default: str | None  # the text of the default; None if there is none, or it is computed
     choices: tuple[str, ...]  # the values that are allowed; empty if all are
     is_computed: bool = False  # whether the text of the default is known only when the launch runs
@@ -49,8 +49,8 @@ def _argument(name: str, lines: Sequence[str]) -> Argument:
             default = None if is_computed else "".join(_QUOTED.findall(match["default"]))
             continue
         for phrase in _CHOICES:
-            before, separator, listed = text.rpartition(phrase)
-            if separator and listed.startswith(("[", "(")) and listed.endswith(("]", ")")):
-                text, choices = before.strip(), tuple(_QUOTED.findall(listed))
+            before, separator, list_text = text.rpartition(phrase)
+            if separator and list_text.startswith(("[", "(")) and list_text.endswith(("]", ")")):
+                text, choices = before.strip(), tuple(_QUOTED.findall(list_text))
         description += [text] if text and text != "no description given" else []
     return Argument(name, " ".join(description), default, choices, is_computed)

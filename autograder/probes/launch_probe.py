@@ -22,10 +22,10 @@ from autograder.run.workspace import Workspace
 from autograder.submission.reading import reading
 from autograder.suite import CheckFailed, expect
 
-START_SECONDS = 40.0  # real time until all nodes are seen, generous for a machine that is busy
-QUIET_SECONDS = 1.5  # real time without a change, once each running program has its node
-STOP_SECONDS = 20.0  # real time until the launch ends; nodes that end cleanly need 0.2
-SHOW_SECONDS = 30.0
+START_SECONDS = 40.0  # real time to wait for all nodes; long enough for a busy machine
+QUIET_SECONDS = 1.5  # real time without a change after which `settle` expects no more nodes
+STOP_SECONDS = 20.0  # real time to wait for the end of the launch; nodes that end cleanly need 0.2 s
+SHOW_SECONDS = 30.0  # real time for `ros2 launch -s`
 KILLED = "-9"  # the exit code of a process that neither SIGINT nor SIGTERM has ended
 
 _EXCEPTION = re.compile(r"Caught exception in launch \(see debug for traceback\): (?P<reason>.+(?:\n - .+)?)")
@@ -57,7 +57,7 @@ def declared_arguments(workspace: Workspace, package: str, file: str) -> dict[st
 def expect_argument(arguments: Mapping[str, Argument], name: str, default: str, *, described: bool = True) -> None:
     """Fail the check unless an argument has the expected default and, if `described`, a description.
 
-    A computed default passes: a launch without arguments shows its value.
+    A computed default passes, because only a launch without arguments shows its value.
     """
     names = ", ".join(arguments) or "none"
     expect(name in arguments, f"The launch file declares no argument {name}; it declares: {names}.")
@@ -79,18 +79,18 @@ def settle(harness: LaunchHarness, expected: Collection[str]) -> list[str]:
     expected ones or have not changed for a while. If two nodes should have the same name, `expected` contains it twice.
     """
     state: tuple[object, ...] = ()
-    since = time.monotonic()
+    unchanged_since = time.monotonic()
 
-    def done() -> bool:
-        nonlocal state, since
+    def is_settled() -> bool:
+        nonlocal state, unchanged_since
         nodes, program_count = harness.nodes(), len(harness.programs())
         if nodes == sorted(expected) and program_count == len(expected):
             return True
         if (nodes, program_count) != state or len(nodes) < program_count or not program_count:
-            state, since = (nodes, program_count), time.monotonic()
-        return time.monotonic() - since > QUIET_SECONDS
+            state, unchanged_since = (nodes, program_count), time.monotonic()
+        return time.monotonic() - unchanged_since > QUIET_SECONDS
 
-    harness.wait_for(done, START_SECONDS)
+    harness.wait_for(is_settled, START_SECONDS)
     require_written(harness.output)
     return harness.nodes()
 
@@ -112,7 +112,7 @@ def expect_nodes(harness: LaunchHarness, expected: Collection[str]) -> None:
 
 
 def expect_parameters(harness: LaunchHarness, node: str, expected: Mapping[str, Value]) -> None:
-    """Fail the check unless a node, by its full name, has these values. `parameters.same` compares them.
+    """Fail the check unless the node with this full name has these values, according to `parameters.same`.
 
     If an exception ends a launch, the launch stops its nodes, and a node may still answer before it ends. That answer
     does not count.
@@ -127,12 +127,12 @@ def expect_parameters(harness: LaunchHarness, node: str, expected: Mapping[str, 
 
 
 def expect_clean_stop(harness: LaunchHarness) -> None:
-    """Fail the check unless Ctrl-C ends the launch with exit status 0 and each process cleanly, and leaves none.
+    """Fail the check unless Ctrl-C ends the launch with exit status 0, and each process ends cleanly.
 
-    If a process had to be killed, a second launch decides. Once in some two thousand times that right nodes end
-    together, Fast DDS 2.14 deadlocks: `DomainParticipant::set_listener` and a callback of discovery wait for each
-    other. Such a node ends neither on SIGINT nor on SIGTERM. A program that ignores Ctrl-C fails both times. A second
-    launch also decides if rclpy lost a race, or crashed.
+    If a process had to be killed, a second launch decides. When correct nodes end together, Fast DDS 2.14 deadlocks in
+    about one of two thousand cases: `DomainParticipant::set_listener` and a callback of discovery wait for each other.
+    Such a node ends neither on SIGINT nor on SIGTERM. A program that ignores Ctrl-C fails both times. A second launch
+    also decides if rclpy lost a race, or crashed.
     """
     nodes = harness.nodes()
     died = _died_of_ctrl_c(harness)
@@ -145,7 +145,7 @@ def expect_clean_stop(harness: LaunchHarness) -> None:
 
 
 def _died_of_ctrl_c(harness: LaunchHarness) -> list[tuple[str, str]]:
-    """Interrupt a launch, which has to end; return name and exit code of each process that did not end cleanly.
+    """Interrupt a launch, which then has to end; return the name and exit code of each process that ended badly.
 
     A node is visible before its constructor has returned, and until then its `main` does not catch Ctrl-C. A node that
     answers a request is spinning, so each node gets one first. The wait for a node that does not answer is short.
@@ -157,7 +157,7 @@ def _died_of_ctrl_c(harness: LaunchHarness) -> list[tuple[str, str]]:
 
 
 def _lost_a_race(output: str) -> bool:
-    """Return whether one of the programs that died did so because rclpy lost a race, by the launch's output."""
+    """Return whether one of the programs that died did so because rclpy lost a race."""
     lines_of: dict[str, list[str]] = {f"[{match['label']}": [] for match in _DEAD.finditer(output)}
     for line in output.splitlines():
         label, _, text = line.partition("] ")
@@ -174,12 +174,12 @@ def expect_stopped(stop: Stop) -> None:
 
 
 def started(output: str) -> list[str]:
-    """Return the programs that a launch has started, by its output, in order and without their numbers."""
+    """Return the programs that a launch has started according to its output, in order and without their numbers."""
     return [match["name"] for match in _STARTED.finditer(output)]
 
 
 def ended(output: str) -> list[str]:
-    """Return the programs that have ended, by the launch's output, in order and without their numbers."""
+    """Return the programs that have ended according to the launch's output, in order and without their numbers."""
     return [match["name"] for match in _ENDED.finditer(output)]
 
 
@@ -209,7 +209,7 @@ def failure(output: str) -> str:
 
 
 def unreadable(output: str) -> str:
-    """Return one line that says why `ros2 launch` could not read a launch file, with the line of the student's file."""
+    """Return one line that says why `ros2 launch` could not read a launch file, and where."""
     lines = output.split("\n")
     reasons = (after[3:] for line, after in pairwise(lines) if _NOT_READ in line and after.startswith(" - "))
     reason = next(filter(None, reasons), "") or _last_line(output)
@@ -246,8 +246,8 @@ def with_files(
         workspace: the built workspace, which is not changed.
         name: the copy's name, different from that of any other copy.
         package: the package.
-        files: texts by path below `share/PACKAGE`.
-        programs: texts of executables, by name.
+        files: the new text of each file, by its path below `share/PACKAGE`.
+        programs: the new text of each executable, by its name.
     """
     root = workspace.root.with_name(f"{workspace.root.name}-{name}")  # not in scratch, where students' code may write
     with reading("What colcon installed"):

@@ -9,7 +9,7 @@ import random
 import re
 
 SYLLABLES = ("ba", "do", "fe", "gi", "ka", "lo", "mu", "ne", "pi", "ra", "so", "tu", "ve", "wa", "xi", "zu")
-LENGTH = 10
+LENGTH = 10  # syllables of a marker
 _MARKER = re.compile(f"(?=((?:{'|'.join(SYLLABLES)}){{{LENGTH}}}))")  # a lookahead, because markers may overlap
 
 
@@ -21,4 +21,4 @@ def draw_marker(draw: random.Random) -> str:
 def markers_in(text: str) -> set[str]:
     """Return the markers that a text contains."""
     markers: set[str] = set(_MARKER.findall(text))
-    return {word for word in markers if len({word[at : at + 2] for at in range(0, len(word), 2)}) == LENGTH}
+    return {word for word in markers if len({word[start : start + 2] for start in range(0, len(word), 2)}) == LENGTH}

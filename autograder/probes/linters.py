@@ -1,9 +1,9 @@
 """Runs the linters on a student's package, as the grader's own check.
 
 A test called `test_flake8` does not necessarily call flake8. So the tests that `ros2 pkg create` writes replace the
-student's. They read only the Python files of the package, in a subfolder from which nothing is imported: no
-configuration, no conftest.py and no module with a linter's name has an effect, and no comment that disables a linter.
-Then the student's own tests have to find mistakes of style in a copy.
+student's. They read only the Python files of the package, in a subfolder from which nothing is imported. Therefore, a
+configuration, a conftest.py, a module with a linter's name or a comment that disables a linter has no effect. After
+that, the student's own tests have to find mistakes of style in a copy.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from autograder.ros.ros2.pkg_templates import PYTHON_TESTS
 from autograder.run.workspace import Workspace
 from autograder.suite import CheckFailed
 
-SUBFOLDER = "package"  # which holds the package's files
-# Comments that make flake8, pycodestyle and pydocstyle skip a line or a file. A replacement has the same length.
+SUBFOLDER = "package"  # the folder for the package's files
+# Comments that make flake8, pycodestyle and pydocstyle skip a line or a file. They are replaced by equally long text.
 _DISABLING_COMMENT = re.compile(rb"(#\s*(?:flake8\s*[:=]\s*)?no)(qa|pep8)", re.IGNORECASE)
 # The output format of each linter.
 _FINDINGS = {
@@ -30,7 +30,7 @@ _FINDINGS = {
 
 
 def expect_tidy(workspace: Workspace, source: Source, tests: Collection[str], fraction: float = 0.0) -> None:
-    """Fail the check if a linter finds a mistake that the student's test did not report, or if a test finds nothing.
+    """Fail the check if a linter finds a mistake that the student's test misses, or if a test passes on an untidy copy.
 
     Args:
         workspace: the built workspace.
@@ -51,12 +51,12 @@ def _without_effect(comment: re.Match[bytes]) -> bytes:
 def lint(workspace: Workspace, source: Source) -> dict[str, str]:
     """Run flake8 and pep257 on a package; return the first finding of each, by the name of its test.
 
-    The student's own tests of these names are not linted.
+    The student's own tests with these names are not linted.
     """
     tests = [f"{name}.py" for name in _FINDINGS]
-    replaced = {f"test/{name}" for name in tests}
-    linted = {name: data for name, data in source.files.items() if name.endswith(".py") and name not in replaced}
-    files = {f"{SUBFOLDER}/{name}": _DISABLING_COMMENT.sub(_without_effect, data) for name, data in linted.items()}
+    own_tests = {f"test/{name}" for name in tests}
+    sources = {name: data for name, data in source.files.items() if name.endswith(".py") and name not in own_tests}
+    files = {f"{SUBFOLDER}/{name}": _DISABLING_COMMENT.sub(_without_effect, data) for name, data in sources.items()}
     files |= {f"test/{name}": PYTHON_TESTS[name].encode() for name in tests}
     empty = replace(workspace, root=workspace.root.with_name(f"{workspace.root.name}-style"))
     empty.install.mkdir(parents=True, exist_ok=True)

@@ -33,7 +33,7 @@ class Manifest:
     licences: tuple[str, ...]  # each <license>, as written
     maintainers: tuple[tuple[str, str], ...]  # each (name, e-mail)
     build_type: str  # the text of <build_type> in <export>; without it, ROS takes the package for an old CMake one
-    depends: Mapping[str, frozenset[str]]  # the names by kind, one of `KINDS`, if their condition is true in this ROS
+    depends: Mapping[str, frozenset[str]]  # names by kind, if their condition is true in this ROS
     groups: frozenset[str]  # the dependency groups
 
     def needs(self, *kinds: str) -> frozenset[str]:
@@ -42,12 +42,12 @@ class Manifest:
 
 
 def read(package: Path) -> Manifest:
-    """Read the manifest of the package in a folder. A CheckFailed says why ROS would reject it."""
+    """Read the manifest of the package in a folder. Raise a CheckFailed with the reason if ROS rejects it."""
     return parse(_text(package), _file_name(package))
 
 
 def read_leniently(package: Path) -> Manifest:
-    """Read the tags of a manifest, even if ROS rejects it as a whole. A CheckFailed says why it has none.
+    """Read the tags of a manifest, even if ROS rejects it as a whole. Raise a CheckFailed if it is not XML.
 
     A manifest that ROS accepts is read as by `read`. In any other, conditions are ignored.
     """
@@ -81,17 +81,17 @@ def _text(package: Path) -> str:
 
 
 def parse(text: str, file_name: str = MANIFEST) -> Manifest:
-    """Read a manifest's text; `file_name` names it in a CheckFailed, which says why ROS would reject it."""
+    """Read a manifest's text. If ROS rejects it, raise a CheckFailed with the reason, which calls it `file_name`."""
     _refuse_unsafe(text, file_name)
     try:
         package = parse_package_string(text, file_name)
     except InvalidPackage as error:
         raise CheckFailed(f"ROS refuses {file_name}: {_reason(error)}") from None
-    except Exception as error:  # of expat and catkin_pkg, such as TypeError for a file of bytes
+    except Exception as error:  # from expat or catkin_pkg, such as TypeError for a file of bytes
         raise CheckFailed(f"{file_name} is not well-formed XML: {error}") from None
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DeprecationWarning)  # of pyparsing, in catkin_pkg
+            warnings.simplefilter("ignore", DeprecationWarning)  # from pyparsing, which catkin_pkg uses
             package.evaluate_conditions(DISTRIBUTION.variables)
     except (ValueError, RecursionError) as error:
         raise CheckFailed(f"A condition in {file_name} cannot be read: {error}") from None

@@ -10,12 +10,12 @@ from statistics import median
 from autograder.harness import ReceivedMessage
 from autograder.run.time_record import LOCKSTEP, REAL
 
-TOLERANCE = 0.08  # of the period: an error of a tenth is detected
-JITTER = {LOCKSTEP: 0.0, REAL: 0.01}  # s of additional tolerance for each pause
+TOLERANCE = 0.08  # share of the period; small enough to detect an error of 10 %
+JITTER = {LOCKSTEP: 0.0, REAL: 0.01}  # s, added to the tolerance of each pause
 # The share of the pauses between messages that have to be right. In real time, a busy machine delays some messages, and
 # the pauses before and after each of these are wrong.
 MIN_SHARE = {LOCKSTEP: 0.9, REAL: 0.5}
-MAX_FACTOR = 2.0  # for the mean pause in real time, in which messages get lost
+MAX_FACTOR = 2.0  # the longest mean pause in real time, in periods; messages may get lost
 
 
 def mean_period(messages: Sequence[ReceivedMessage]) -> float:
@@ -26,8 +26,8 @@ def mean_period(messages: Sequence[ReceivedMessage]) -> float:
 def is_paced(messages: Sequence[ReceivedMessage], period: float, time: str) -> bool:
     """Return whether messages were received one by one, with a pause of `period` s between them.
 
-    Two messages at once and then a double pause are wrong, although the number is right. In real time, single pauses
-    have a larger tolerance, but the median does not: a program can choose to run in real time.
+    Two messages at once followed by a double pause are wrong, although the number is right. In real time, the tolerance
+    is larger for single pauses, but not for the median, because a program can choose to run in real time.
 
     Args:
         messages: two or more messages, in the order in which they were received.

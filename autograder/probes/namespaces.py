@@ -8,7 +8,7 @@ from autograder.harness import AutoHarness, Workspace
 from autograder.probes.qos import non_default_qos
 
 NAMESPACE = "/robot7"
-DISCOVERY_SECONDS = 5.0  # of real time until a name is in the graph; only a wrong program takes so long
+DISCOVERY_SECONDS = 5.0  # real time to wait for a name in the graph; only a wrong program takes so long
 
 
 def missing_in_namespace(
@@ -22,13 +22,13 @@ def missing_in_namespace(
     full_names = [f"{NAMESPACE}/{name}" for name in names]
     with AutoHarness(workspace, package, executable, arguments=("--ros-args", "-r", f"__ns:={NAMESPACE}")) as harness:
 
-        def missing() -> list[str]:
+        def missing_names() -> list[str]:
             graph = harness.node
             present = {name for name, _ in graph.get_topic_names_and_types() + graph.get_service_names_and_types()}
             return [name for name in full_names if name not in present]
 
-        harness.wait_for(lambda: not missing(), DISCOVERY_SECONDS)
-        absent = missing()
+        harness.wait_for(lambda: not missing_names(), DISCOVERY_SECONDS)
+        absent = missing_names()
         difference = non_default_qos(harness.node, *full_names) if plain else ""
     if not absent:
         return difference

@@ -1,4 +1,4 @@
-"""Calls the callbacks of several nodes in one process in turn, and returns what each call published."""
+"""Calls callbacks of several nodes in turn, in one process, and returns what each call published."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ def published(
         workspace: the workspace in which the module is installed.
         module: the student's module that defines the nodes' classes.
         nodes: the calls that create the nodes. All are created before the first callback is called.
-        turns: the number of a node, the name of its callback, and the call that creates its message, or None.
+        turns: for each turn, the number of a node, the name of its callback, and the call that creates the message
+            for it, or None.
 
     Returns:
         For each turn, the `repr` of the published messages. If the callback does not exist, there are none.

@@ -1,4 +1,4 @@
-"""Compares the two files that describe a package, setup.py and package.xml, and checks manifests of interfaces."""
+"""Compares setup.py with package.xml, which both describe a package, and checks the manifests of interface packages."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ INTERFACE_GROUP = "rosidl_interface_packages"
 
 
 def licence(installed: Installed) -> str:
-    """Return the licence that setup.py names."""
+    """Return the licence that setup.py declares."""
     return installed.metadata.get("License-Expression", installed.metadata.get("License", ""))
 
 

@@ -1,10 +1,10 @@
-"""Reads and changes a node's parameters by its services, and describes differences in sentences for the student.
+"""Reads and changes a node's parameters through its services, and describes differences in sentences for the student.
 
     node = NodeParameters(harness, "/configured_node")
     node.values("safety_distance")         # {"safety_distance": 0.5}
     node.change({"safety_distance": 9.0})  # SetParametersReply(accepted=False, reason="... out of range ...")
 
-A student can forge a node's answers. Messages quote them shortened, and checks rely on them only if behaviour agrees.
+A student can forge a node's answers. Messages shorten them, and checks rely on them only if the behaviour agrees.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ from autograder.suite import CheckFailed
 Value = bool | int | float | str | list[object] | None
 
 RCLPY_PARAMETERS = frozenset({"use_sim_time", "start_type_description_service"})  # rclpy declares them on every node
-TIMEOUT = 5.0  # s of the node's time for an answer
+TIMEOUT = 5.0  # s of the node's time to wait for an answer
 MAX_QUOTE = 200  # characters of a node's answer
-MIN_RATIO = 0.6  # of difflib, for a near miss
+MIN_RATIO = 0.6  # the smallest difflib ratio of a near miss
 MAX_FILE = 64 * 1024
-MAX_PARAMETERS = 100  # of a node
+MAX_PARAMETERS = 100  # the most parameters that a node may declare
 TYPE_NAMES = {
     ParameterType.PARAMETER_NOT_SET: "of no type yet",
     ParameterType.PARAMETER_BOOL: "a bool",
@@ -56,7 +56,7 @@ class SetParametersReply:
 
 @dataclass(frozen=True)
 class NodeParameters:
-    """The parameter services of one node, by its fully qualified name."""
+    """The parameter services of the node with the fully qualified name `node`."""
 
     harness: Harness
     node: str
@@ -70,7 +70,7 @@ class NodeParameters:
         return names
 
     def values(self, *names: str) -> dict[str, Value]:
-        """Return values by name; an undeclared name is left out."""
+        """Return the values of parameters by name, without those of undeclared names."""
         # One request for each name, because a node returns no values if one of the names is unknown.
         answers = {
             name: self._ask(GetParameters, "get_parameters", GetParameters.Request(names=[name])) for name in names
@@ -78,7 +78,7 @@ class NodeParameters:
         return {name: value_of(answer.values[0], name) for name, answer in answers.items() if answer.values}
 
     def descriptors(self, *names: str) -> dict[str, ParameterDescriptor]:
-        """Return descriptors by name; an undeclared name is left out."""
+        """Return the descriptors of parameters by name, without those of undeclared names."""
         requests = {name: DescribeParameters.Request(names=[name]) for name in names}
         answers = {name: self._ask(DescribeParameters, "describe_parameters", r) for name, r in requests.items()}
         return {name: answer.descriptors[0] for name, answer in answers.items() if answer.descriptors}
@@ -92,7 +92,7 @@ class NodeParameters:
         return SetParametersReply(result.successful, shortened(result.reason))
 
     def _ask(self, kind: Any, name: str, request: Any) -> Any:
-        """Call one of the node's services. A CheckFailed says that it is missing or does not answer."""
+        """Call one of the node's services. Raise a CheckFailed if it is missing or does not answer."""
         service = f"{self.node}/{name}"
         response = self.harness.call(kind, service, request, TIMEOUT)
         if response is not None:
@@ -190,7 +190,7 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
     with reading(path.name):
         try:
             file = student_yaml.load(text)
-        except (yaml.YAMLError, ValueError, RecursionError) as error:  # a ValueError: it reads 2026-13-01 as a date
+        except (yaml.YAMLError, ValueError, RecursionError) as error:  # ValueError: PyYAML takes 2026-13-01 for a date
             raise CheckFailed(f"{path.name} is not YAML: {shortened(reason(error))}.") from None
         if not isinstance(file, dict):
             raise CheckFailed(f"{path.name} names no node: it begins with a node's name or with /**, and a colon.")
@@ -198,7 +198,7 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
 
 
 def for_node(file: Mapping[str, Mapping[str, Value]], name: str) -> dict[str, Value]:
-    """Return the values for a node in the result of `read_file`, by wildcards or by its name without a namespace."""
+    """Return the values from `read_file` that apply to a node, under a wildcard or its name without a namespace."""
     keys = ("/**", f"/**/{name}", name, f"/{name}")
     return {parameter: value for key in keys for parameter, value in file.get(key, {}).items()}
 
@@ -209,18 +209,18 @@ def _values(file: str, node: str, below: object) -> dict[str, Value]:
     if not isinstance(below, dict) or not below:
         raise CheckFailed(f"In {file}, nothing is below {node}: indent ros__parameters under it.")
     if set(below) != {"ros__parameters"}:
-        others = _listed(name for name in below if name != "ros__parameters")
+        others = _join_names(name for name in below if name != "ros__parameters")
         raise CheckFailed(f"In {file}, {others} is directly below {node}: ROS reads what is below ros__parameters.")
     values = below["ros__parameters"]
     if not isinstance(values, dict) or not values:
         raise CheckFailed(f"In {file}, {node} has no values: indent them under its ros__parameters.")
     for name, value in values.items():
-        if beyond := beyond_bounds(value):
-            raise CheckFailed(f"In {file}, {shortened(str(name))} is a {beyond}, which ROS cannot hold.")
+        if excess := beyond_bounds(value):
+            raise CheckFailed(f"In {file}, {shortened(str(name))} is a {excess}, which ROS cannot hold.")
     return {str(name): value for name, value in values.items()}
 
 
-def _listed(names: Iterable[object]) -> str:
+def _join_names(names: Iterable[object]) -> str:
     return ", ".join(shortened(str(name)) for name in names)
 
 

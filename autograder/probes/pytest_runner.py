@@ -5,7 +5,7 @@
 After the tests, the report in JUnit XML is written to REPORT_FD and the exit status to STATUS_FD. The process then
 waits until GO_FD is closed. The tests in this process can forge all of this, so the trusted side does not rely on it.
 
-If this process was forked with the launch packages imported, programs that the tests launch are forked, too.
+If this process was forked with the launch packages imported, the programs that the tests launch are also forked.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class ReverseOrder:
 
 
 def main() -> None:
-    """Run pytest with the arguments of the command line."""
+    """Run pytest with the arguments from the command line."""
     report_fd, status_fd, go_fd, backwards = (int(argument) for argument in sys.argv[1:5])
     report = Path(os.environ["HOME"]) / "report.xml"
     arguments, sys.argv = [*sys.argv[5:], f"--junitxml={report}"], ["pytest"]

@@ -1,4 +1,4 @@
-"""Tests the quality of service of a program's endpoints if the contract gives only the length of the queue."""
+"""Tests the quality of service of endpoints for which the contract specifies only the length of the queue."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
 
 def non_default_qos(node: Node, *topics: str) -> str:
-    """Describe the first endpoint on the topics that is not reliable and volatile, as `10` is; "" if there is none.
+    """Describe the first endpoint on the topics that is not reliable and volatile, as `10` is; "" if all are.
 
     The length of a queue is not visible in the graph. `node` is the grader's, and its endpoints do not count.
     """

@@ -1,15 +1,15 @@
-"""Recognises errors that rclpy sometimes raises when a signal ends a program, even a right one."""
+"""Recognises errors that rclpy sometimes raises when a signal ends a program, even a correct one."""
 
 from __future__ import annotations
 
 import signal
 
-_CRASH_SIGNALS = (signal.SIGSEGV, signal.SIGABRT)  # of the C++ code below rclpy
+_CRASH_SIGNALS = (signal.SIGSEGV, signal.SIGABRT)  # signals of a crash in the C++ code below rclpy
 _SHELL_OFFSET = 128  # a shell and bubblewrap add it to the number of a signal
 
 
 def crashed(status: int | None) -> bool:
-    """Return whether an exit status is that of a crash of native code, which Python code cannot raise by itself.
+    """Return whether an exit status comes from a crash of native code, which Python code alone cannot cause.
 
     On a busy machine, a node sometimes crashes if a thread still spins while the main thread shuts the context down.
     """
@@ -19,9 +19,9 @@ def crashed(status: int | None) -> bool:
 def lost_a_race(output: str) -> bool:
     """Return whether a program's output ends with the traceback of an error that rclpy raises by chance.
 
-    Each error is a race of a few microseconds with rclpy's signal thread, which shuts the context down after other code
-    has found it valid: an executor that builds its wait set, or `Context.try_shutdown`. On a busy machine, the latter
-    loses one time in 500. A program that calls `rclpy.shutdown` after the signal is not a race: it raises each time.
+    Each error results from a race of a few microseconds with rclpy's signal thread, which shuts the context down after
+    other code has found it valid: an executor that builds its wait set, or `Context.try_shutdown`. On a busy machine,
+    the latter loses in one of 500 cases. Calling `rclpy.shutdown` after the signal is not a race: it fails every time.
     """
     lines = output.splitlines()
     frames = [line for line in lines if line.startswith("  File ")]

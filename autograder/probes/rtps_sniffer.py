@@ -15,7 +15,7 @@ import struct
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import DoubtfulError
 
-# Programs do not usually choose these, and their ports are above those that the system assigns.
+# Programs rarely choose these domains, whose ports are above those that the system assigns.
 DOMAINS = range(215, 232)
 GROUP = "239.255.0.1"
 _MAGIC = b"RTPS"
@@ -55,7 +55,7 @@ class RtpsSniffer:
 def _join_group(port: int) -> socket.socket:
     """Return a socket that receives messages to the multicast group on this machine."""
     sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # participants bind the port, too
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # participants also bind this port
     sock.bind((GROUP, port))
     for index, _ in socket.if_nameindex():
         request = struct.pack("4s4si", socket.inet_aton(GROUP), bytes(4), index)

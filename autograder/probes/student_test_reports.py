@@ -1,8 +1,8 @@
 """Records of runs of a student's tests: the package, the requested run, and its report in JUnit XML.
 
 A run that can read a hidden version can put the version's text into any part of the report: ids of parametrized tests,
-names of generated ones, exceptions, output. So such a report is closed (`Report.closed`): the only text that remains is
-names from the student's source.
+names of generated ones, exceptions, output. So such a report is closed (`Report.closed`): only names from the student's
+source remain.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from autograder.probes.versions import Version
 from autograder.run.sandbox import ExitReason
 
 MAX_BYTES = 1024 * 1024
-MAX_MESSAGE = 300
+MAX_MESSAGE = 300  # characters
 MAX_SOURCE = 256 * 1024  # bytes of a test file from which names are read
-MAX_SOURCES = 1024 * 1024  # bytes of all such files
-MAX_NAME = 300  # characters of such a name, including the classes around the test
+MAX_SOURCES = 1024 * 1024  # bytes of all test files from which names are read
+MAX_NAME = 300  # characters of a test's name, including the classes around it
 UNNAMED = "a test"  # the name for a test whose own name does not occur in the student's source
-_KEY = secrets.token_bytes(16)
+_KEY = secrets.token_bytes(16)  # the key for the digests of parameters' ids
 
 
 class ClaimedOutcome(str, Enum):
@@ -43,7 +43,7 @@ class ClaimedOutcome(str, Enum):
 class Claims:
     """The outcomes of all tests, as the run reports them."""
 
-    # By test, `module::name` or `module::Class::name`, in the order in which they ran.
+    # The outcomes by test, `module::name` or `module::Class::name`, in the order of execution.
     verdicts: Mapping[str, ClaimedOutcome] = field(default_factory=dict)
     messages: Mapping[str, str] = field(default_factory=dict)  # the first line of each failure, by test
 
@@ -52,7 +52,7 @@ class Claims:
 class TestRun:
     """One run of a student's tests."""
 
-    files: tuple[str, ...]  # test files, by their paths below the package's folder `test`
+    files: tuple[str, ...]  # paths of test files, below the package's folder `test`
     version: Version | None = None  # the package under test; None for the student's own, as it was built
     backwards: bool = False  # whether the tests run in the opposite order
     exit_first: bool = False  # whether the run ends with the first test that fails
@@ -65,16 +65,19 @@ class TestRun:
 
 @dataclass(frozen=True)
 class Report:
-    """The report of a run: a claim, except for `exit_reason`, `open_sockets`, `is_logging` and `joined_domain`."""
+    """The report of a run.
+
+    The run itself claims everything except `exit_reason`, `open_sockets`, `is_logging` and `joined_domain`.
+    """
 
     exit_reason: ExitReason | None  # how the process ended; None if the grader ended it after pytest
     status: int | None  # pytest's exit status, or None if pytest did not reach its end
     claims: Claims  # the reported outcomes of the tests
-    open_sockets: int  # UDP sockets that were open after the last test: each ROS context that still exists has some
+    open_sockets: int  # UDP sockets open after the last test; each ROS context that still exists has some
     output: str
-    is_logging: bool = False  # whether a log file was open then: rclpy closes its own with the last context
+    is_logging: bool = False  # whether a log file was still open then; rclpy closes its own with the last context
     joined_domain: bool = False  # whether a program joined the default domain, if the run was sniffed
-    source_tests: frozenset[str] | None = None  # of a closed report: the tests in the student's source, `module::name`
+    source_tests: frozenset[str] | None = None  # in a closed report: the tests in the student's source, `module::name`
 
     @property
     def timed_out(self) -> bool:
@@ -98,7 +101,7 @@ class Report:
         return tuple(name for name, verdict in self.claims.verdicts.items() if verdict in bad)
 
     def detects_fault(self, right: Report) -> bool:
-        """Whether a test that passed on a right version failed here. A file that cannot be read does not count."""
+        """Return whether a test that passed on a right version failed here. An unreadable file does not count."""
         if self.source_tests is not None and right.source_tests is None:
             right = right.closed(self.source_tests)
         return self.status == 1 and bool(set(self.failed) & set(right.executed) - set(right.failed))
@@ -108,15 +111,15 @@ class Report:
         bad = set(other.failed)
         if other.source_tests is None:
             return tuple(name for name in self.claims.verdicts if name in bad)
-        return tuple(name for name in self.claims.verdicts if _closed(name, other.source_tests) in bad)
+        return tuple(name for name in self.claims.verdicts if _closed_name(name, other.source_tests) in bad)
 
     def closed(self, source_tests: frozenset[str]) -> Report:
         """Return the report without any text of the run, for a run that can read a hidden version.
 
-        It has no output and no messages. A test has its name in the student's source, or `UNNAMED`. The id of a
+        It has no output and no messages. A test is named as in the student's source, or `UNNAMED`. The id of a
         parameter is replaced by a digest, which is used only to compare runs in this process.
         """
-        verdicts = {_closed(name, source_tests): verdict for name, verdict in self.claims.verdicts.items()}
+        verdicts = {_closed_name(name, source_tests): verdict for name, verdict in self.claims.verdicts.items()}
         return replace(self, claims=Claims(verdicts), output="", source_tests=source_tests)
 
 
@@ -125,7 +128,7 @@ def shown_name(test: str) -> str:
     return test.partition("[#")[0].partition("::")[2] or UNNAMED
 
 
-def _closed(name: str, source_tests: frozenset[str]) -> str:
+def _closed_name(name: str, source_tests: frozenset[str]) -> str:
     if name in source_tests:
         return name
     base, digest = name.partition("[")[0], hmac.digest(_KEY, name.encode(errors="replace"), "sha256").hex()[:16]
@@ -141,13 +144,13 @@ class Source:
 
     @property
     def tests(self) -> dict[str, bytes]:
-        """The files below `test`, by their paths below it."""
+        """The files below `test`, by their paths relative to it."""
         return {name.removeprefix("test/"): data for name, data in self.files.items() if name.startswith("test/")}
 
     def test_names(self, files: tuple[str, ...]) -> frozenset[str]:
         """Return the tests in test files, named as in a report. The files are parsed, not run.
 
-        Very long names, and files that are too large or too many, are left out: their tests are `UNNAMED`.
+        Tests with very long names, or in files that exceed the limits, are left out and become `UNNAMED`.
         """
         names: set[str] = set()
         tests, remaining = self.tests, MAX_SOURCES
@@ -177,7 +180,7 @@ def _tests(node: ast.stmt, prefix: str) -> Iterator[str]:
 
 def parse_claims(data: bytes) -> Claims | None:
     """Parse JUnit XML; return None if it is too large, declares entities, or is not JUnit XML."""
-    if len(data) > MAX_BYTES or b"<!" in data.replace(b"\0", b"").replace(b"<![CDATA[", b""):  # also in UTF-16
+    if len(data) > MAX_BYTES or b"<!" in data.replace(b"\0", b"").replace(b"<![CDATA[", b""):  # UTF-16 has null bytes
         return None
     try:
         root = ET.fromstring(data)

@@ -9,7 +9,7 @@ path, the same times and environment, and no writable folder except a temporary 
 the others, the suites or earlier runs. `versions` explains how versions are made indistinguishable, and the remaining
 differences. The report on a version that students do not have is returned without its text (`Report.closed`). Only a
 sniffed run shares the grader's loopback, which no other program uses. The run can detect that, so its version has to be
-a right one.
+correct.
 """
 
 from __future__ import annotations
@@ -44,15 +44,15 @@ from autograder.submission.reading import reading, record_data
 
 RUNNER = Path(__file__).with_name("pytest_runner.py")
 STANDINS = Path(autograder.ros.__file__).parent / "standins"
-JOBS = 5  # runs at a time: a run mostly waits, for processes to start and for time to pass
-HOME = Path("/tmp")  # of the sandbox
+JOBS = 5  # runs at a time; a run mostly waits for processes to start and for time to pass
+HOME = Path("/tmp")  # the home folder in the sandbox
 
 
 def read_source(workspace: Workspace, package: str) -> Source:
     """Read a package's source, to which the student's code could write during the build.
 
     Raises:
-        StudentError: it does not consist of plain files, or no folder has the package's name.
+        StudentError: the source does not consist of plain files, or no folder has the package's name.
     """
     entries = read_packages(workspace.root)
     folder = next(
@@ -61,16 +61,16 @@ def read_source(workspace: Workspace, package: str) -> Source:
     if folder is None:
         sentence = f"There is no folder src/{package} with a package.xml: a package's folder has its name."
         raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, sentence))
-    inside = [entry for entry in entries if entry.path.is_relative_to(folder)]
-    return Source(package, {entry.path.relative_to(folder).as_posix(): entry.data for entry in inside})
+    package_entries = [entry for entry in entries if entry.path.is_relative_to(folder)]
+    return Source(package, {entry.path.relative_to(folder).as_posix(): entry.data for entry in package_entries})
 
 
 def run(workspace: Workspace, source: Source, test_runs: Sequence[TestRun]) -> list[Report]:
     """Run a package's tests in a built workspace; return a report for each run, in the given order.
 
-    A run that had to be stopped is repeated if no other run of its files had to be, and the second run counts. An
-    executor that spins in a thread can miss its end: `Executor.shutdown` destroys the guard condition with which it has
-    just woken the executor.
+    If only one run of some files had to be stopped, it is repeated, and the second run counts. The reason may be an
+    executor that spins in a thread and misses its end, because `Executor.shutdown` destroys the guard condition with
+    which it has just woken the executor.
 
     Raises:
         StudentError: the disk is full.
@@ -80,16 +80,16 @@ def run(workspace: Workspace, source: Source, test_runs: Sequence[TestRun]) -> l
     with ThreadPoolExecutor(JOBS) as pool:
         run_once = partial(_run, workspace, source)
         reports = list(pool.map(run_once, test_runs))
-        stopped = [index for index, report in enumerate(reports) if report.timed_out]
-        files = Counter(test_runs[index].files for index in stopped)
-        repeated = [index for index in stopped if files[test_runs[index].files] == 1]
-        for index, report in zip(repeated, pool.map(run_once, [test_runs[i] for i in repeated]), strict=True):
+        stopped_indices = [index for index, report in enumerate(reports) if report.timed_out]
+        files = Counter(test_runs[index].files for index in stopped_indices)
+        retries = [index for index in stopped_indices if files[test_runs[index].files] == 1]
+        for index, report in zip(retries, pool.map(run_once, [test_runs[i] for i in retries]), strict=True):
             reports[index] = report
     return reports
 
 
 def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = TEST_RUN, network: bool = False) -> Sandbox:
-    """Return the sandbox of a run: the workspace's, with the files that pytest needs.
+    """Return the sandbox of a run: that of the workspace, with the files that pytest needs.
 
     Args:
         workspace: the built workspace.
@@ -169,7 +169,7 @@ def _launch_plugins() -> tuple[str, str]:
 
 
 def _launches(source: Source, test_run: TestRun) -> bool:
-    """Return whether tests may launch programs, which needs further imports."""
+    """Return whether tests may launch programs, which requires further imports."""
     names = [*test_run.files, *(name for name in source.tests if not Path(name).name.startswith("test_"))]
     return any(b"launch" in source.tests.get(name, b"") for name in names)
 
@@ -178,10 +178,10 @@ def _start_pytest(spec: Sandbox, test_run: TestRun, arguments: list[str], launch
     status_read, status_write = os.pipe()
     go_read, go_write = os.pipe()
     with os.fdopen(os.memfd_create("report"), "w+b") as report:
-        inherited = (report.fileno(), status_write, go_read)
-        command = [sys.executable, str(RUNNER), *map(str, inherited), str(int(test_run.backwards)), *arguments]
+        descriptors = (report.fileno(), status_write, go_read)
+        command = [sys.executable, str(RUNNER), *map(str, descriptors), str(int(test_run.backwards)), *arguments]
         try:
-            process = launch(command, spec, pass_fds=inherited, profile="launch" if launches else "tests")
+            process = launch(command, spec, pass_fds=descriptors, profile="launch" if launches else "tests")
         finally:
             os.close(status_write)
             os.close(go_read)

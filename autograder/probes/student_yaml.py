@@ -1,4 +1,4 @@
-"""Reads untrusted YAML. The values to which aliases and merges expand are limited in number."""
+"""Reads untrusted YAML. The number of values to which aliases and merges expand is limited."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ def load(text: str | bytes) -> Any:
     """Parse a YAML document into plain data.
 
     Raises:
-        yaml.YAMLError: it is not YAML, it contains itself, or it expands to more than `MAX_VALUES`. PyYAML raises other
-            exceptions, too, for tags and numbers that it cannot read.
+        yaml.YAMLError: the text is not YAML, or a value contains itself or expands to more than `MAX_VALUES` values.
+            PyYAML also raises other exceptions for tags and numbers that it cannot read.
     """
     loader = yaml.SafeLoader(text)
     try:
@@ -28,7 +28,7 @@ def load(text: str | bytes) -> Any:
 
 
 def _size(node: yaml.Node, sizes: dict[int, int]) -> int:
-    """Return the number of values in a node. `sizes` has those of other nodes, 0 for one being counted."""
+    """Return the number of values in a node. `sizes` maps other nodes to theirs, and nodes being counted to 0."""
     size = sizes.get(id(node))
     if size == 0:
         raise yaml.YAMLError("an alias is inside the value that it repeats")

@@ -1,4 +1,4 @@
-"""Makes versions of a package under test, which differ only in their behaviour.
+"""Creates versions of a package under test, which differ only in their behaviour.
 
 A test could report the expected result without running a version, if it recognised the version by the text of a file,
 its hash or byte code, or by names, paths or times. So `obfuscate` rewrites every version, including the reference: it
@@ -64,7 +64,7 @@ def read(folder: Path, scripts: Mapping[str, str]) -> Version:
 def obfuscate(version: Version, seed: int) -> Version:
     """Return a version with the same behaviour, and with Python files that differ for each seed."""
     draw = random.Random(seed)
-    files = {name: _obfuscated(text, draw) if name.endswith(".py") else text for name, text in version.files.items()}
+    files = {name: _rewrite(text, draw) if name.endswith(".py") else text for name, text in version.files.items()}
     return with_markers(Version(files, version.scripts), draw)
 
 
@@ -88,7 +88,7 @@ def write_version(version: Version, package: str, tests: Mapping[str, bytes], ro
     """
     source, prefix = root / "src" / package, root / "install" / package
     for name, text in version.files.items():
-        for path in (source / name, _installed(prefix, package, name)):
+        for path in (source / name, _install_path(prefix, package, name)):
             if path is not None:
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(text)
@@ -109,14 +109,14 @@ def write_version(version: Version, package: str, tests: Mapping[str, bytes], ro
     return source
 
 
-def _installed(prefix: Path, package: str, name: str) -> Path | None:
+def _install_path(prefix: Path, package: str, name: str) -> Path | None:
     top = Path(name).parts[0]
     if top == package:
         return site_packages(prefix) / name
     return prefix / "share" / package / name if top in ("launch", "config", "package.xml") else None
 
 
-def _obfuscated(text: str, draw: random.Random) -> str:
+def _rewrite(text: str, draw: random.Random) -> str:
     tree, words = ast.parse(text), _words(draw)
     nodes = list(ast.walk(tree))  # walked once, because it is slow and done for hundreds of trees
     for node in nodes:
@@ -130,7 +130,7 @@ def _obfuscated(text: str, draw: random.Random) -> str:
             if isinstance(node, ast.Name) and node.id in names:
                 node.id = names[node.id]
     for owner in (node for node in nodes if isinstance(node, ast.ClassDef)):
-        attributes = [node for node in ast.walk(owner) if _is_of_self(node)]
+        attributes = [node for node in ast.walk(owner) if _is_attribute_of_self(node)]
         names = {name: next(words) for name in sorted({a.attr for a in attributes if isinstance(a.ctx, ast.Store)})}
         for attribute in attributes:
             attribute.attr = names.get(attribute.attr, attribute.attr)
@@ -138,25 +138,25 @@ def _obfuscated(text: str, draw: random.Random) -> str:
 
 
 def _local_names(nodes: Sequence[ast.AST]) -> set[str]:
-    """Return the names that only a function with these nodes assigns to.
+    """Return the names to which a function with these nodes assigns, and which are local to it.
 
     Parameters are left out, because callers may pass them by name, and so are global and nonlocal names.
     """
-    assigned = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
-    excluded = {node.arg for node in nodes if isinstance(node, ast.arg)}
-    excluded |= {name for node in nodes if isinstance(node, ast.Global | ast.Nonlocal) for name in node.names}
-    return assigned - excluded
+    assigned_names = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    excluded_names = {node.arg for node in nodes if isinstance(node, ast.arg)}
+    excluded_names |= {name for node in nodes if isinstance(node, ast.Global | ast.Nonlocal) for name in node.names}
+    return assigned_names - excluded_names
 
 
-def _is_of_self(node: ast.AST) -> TypeGuard[ast.Attribute]:
+def _is_attribute_of_self(node: ast.AST) -> TypeGuard[ast.Attribute]:
     return isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self"
 
 
 def _words(draw: random.Random) -> Iterator[str]:
-    """Yield private names without end. No name is yielded twice, because two attributes must not get the same name."""
-    yielded: set[str] = set()
+    """Yield private names endlessly. No name is yielded twice, because two attributes must not get the same name."""
+    yielded_words: set[str] = set()
     while True:
         word = "_" + "".join(draw.choice(SYLLABLES) for _ in range(4))
-        if word not in yielded:
-            yielded.add(word)
+        if word not in yielded_words:
+            yielded_words.add(word)
             yield word

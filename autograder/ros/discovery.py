@@ -19,8 +19,8 @@ PROFILES = Path(__file__).with_name("fast_discovery.xml")
 def fast_discovery() -> Iterator[None]:
     """Make participants that `rclpy.init` creates in the block announce themselves ten times a second.
 
-    Fast DDS reads its profiles only at the first `init` of a process. These profiles then apply to every later `init`,
-    and have no effect in a process that has already called it. Profiles that the user has chosen are kept.
+    Fast DDS reads its profiles only at the first `init` of a process, and uses them for every later one. In a process
+    that has already called `init`, this function has no effect. Profiles that the user has chosen are kept.
     """
     if PROFILES_VARIABLE in os.environ:
         yield

@@ -15,12 +15,12 @@ from typing import Any
 
 @dataclass(frozen=True)
 class PlatformPackage:
-    """A Python package or tool that pip installs, with its version on the distribution's platform.
+    """A Python package or tool that pip installs, and its version on the distribution's platform.
 
     Attributes:
         name: its name in pip.
         debian: its name in apt.
-        version: the platform's version.
+        version: its version on the platform.
         meets: where students use it.
         differs: the reason why a different version may be installed, or an empty string if none may.
     """
@@ -44,9 +44,9 @@ class Distribution:
         setup: the file that a shell sources if ROS is installed from packages.
         docs: the URL of its documentation.
         platform: the operating system that it is made for.
-        platform_page: the URL of the package versions of that system.
-        tags: the installed tag of each source repository, by the repository's name.
-        commits: the commit of each of these tags, 40 hexadecimal digits. It is a digest of the tag's whole content.
+        platform_page: the URL of the page that lists the package versions of that system.
+        tags: the tag of each source repository that is installed, by the repository's name.
+        commits: the commit of each of these tags as 40 hexadecimal digits, a digest of the tag's whole content.
         packages: the packages that students' programs, builds and tests use. Versions are those of `platform_page`,
             except for catkin_pkg, whose version is from ROS's own package repository.
     """
@@ -72,7 +72,7 @@ class Distribution:
 
     @property
     def variables(self) -> dict[str, str]:
-        """The environment variables that tell ROS's tools the distribution."""
+        """The environment variables that tell ROS's tools which distribution this is."""
         return {"ROS_DISTRO": self.name, "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
 
     @property

@@ -1,10 +1,10 @@
-"""Claims a `ROS_DOMAIN_ID` that no other caller on this machine has.
+"""Claims a `ROS_DOMAIN_ID` that no other program on this machine has claimed.
 
-A claim is an abstract Unix socket. It ends with its process, even after a crash. Like the domain's traffic on one
-machine, it is limited to the network namespace. Programs that choose a domain without a claim are not detected.
+A claim is an abstract Unix socket. It ends with its process, even after a crash. Like the traffic of the domain, it is
+limited to one network namespace of the machine. Programs that use a domain without a claim are not detected.
 
-A user's notebooks and terminals share one domain. Each of them adds a socket with the user's id in its name, so the
-domain stays the user's until the last of them ends.
+A user's notebooks and terminals share one domain. Each of them binds a socket with the user's id in its name, so the
+user keeps the domain until the last of them ends.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from autograder.ros.exceptions import NoFreeDomainError
 
 DOMAINS = range(1, 102)  # 0 is every program's default; above 101, the ports are in Linux's ephemeral range
 _UNIX_SOCKETS = Path("/proc/net/unix")  # lists the sockets of this network namespace; `@` marks an abstract name
-_LOCK_TIMEOUT = 10.0
+_LOCK_TIMEOUT = 10.0  # s; how long to wait for another program of the user that is choosing a domain
 _SHARE = re.compile(r" @ros-domain-(?P<number>\d+)-(?P<user>\d+)-(?P<token>[0-9a-f]+)$", re.MULTILINE)
 
 
@@ -37,11 +37,11 @@ class Domain:
     """
 
     def __init__(self, first: int | None = None, *, user: int | None = None) -> None:
-        """Claim the domain that the user's other programs have, or the first free one.
+        """Claim the domain that the user's other programs share, or the first free one.
 
         Args:
-            first: any number; determines the domain that is tried first. By default, it is derived from the process id,
-                or from the user id if `user` is given.
+            first: any number, which determines the domain that is tried first. By default, it is derived from the
+                process id, or from the user id if `user` is given.
             user: a user id. All claims of this user share one domain. By default, the domain is not shared.
 
         Raises:
@@ -121,7 +121,7 @@ def _share_name(number: int, user: int) -> str:
 
 
 def _shares(user: int | None = None) -> list[re.Match[str]]:
-    """Return a match for each socket that shares a domain, of all users or of one."""
+    """Return a match for each socket that shares a domain of this user, or of any user."""
     try:
         names = _UNIX_SOCKETS.read_text(errors="replace")
     except OSError:  # some sandboxes do not have this file; then no domain is shared
@@ -131,7 +131,7 @@ def _shares(user: int | None = None) -> list[re.Match[str]]:
 
 @contextlib.contextmanager
 def _lock(user: int) -> Iterator[None]:
-    """Hold the user's lock while the block runs. After `_LOCK_TIMEOUT`, run the block without the lock."""
+    """Hold the user's lock while the block runs. If the lock is not free in time, run the block without it."""
     name, deadline = f"\0ros-domains-of-{user}", time.monotonic() + _LOCK_TIMEOUT
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as lock:
         while time.monotonic() < deadline:

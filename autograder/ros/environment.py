@@ -15,11 +15,11 @@ from autograder.ros.distribution import DISTRIBUTION
 from autograder.ros.exceptions import RosNotFoundError, WrongDistroError
 from autograder.ros.log_folder import log_folder
 
-# The wheels' start-up hook sets these two for one Python prefix. They must not leak into another one.
+# The wheels' start-up hook sets these two variables for one Python prefix. They must not leak into another prefix.
 WHEEL_BOOTSTRAP_VARIABLES = ("_ROS_WHEELS_BOOTSTRAP_COMPLETE", "LD_LIBRARY_PATH")
 
-# ROS logs to stderr by default, which Jupyter shows in red and late. It shows stdout in order. Terminals do not set
-# this variable, so that their output is the same as in a terminal with ROS.
+# ROS logs to stderr by default. Jupyter shows stderr in red and late, but stdout in order. Only notebooks set this
+# variable, so that programs in a terminal print what they print with any ROS.
 LOGS_TO_STDOUT = {"RCUTILS_LOGGING_USE_STDOUT": "1"}
 
 
@@ -29,12 +29,12 @@ def without_wheel_bootstrap(environ: Mapping[str, str]) -> dict[str, str]:
     LD_LIBRARY_PATH is removed only if the hook set it. The value of a sourced ROS is kept.
     """
     marker = WHEEL_BOOTSTRAP_VARIABLES[0]
-    dropped = WHEEL_BOOTSTRAP_VARIABLES if environ.get(marker) else ()
-    return {name: value for name, value in environ.items() if name not in dropped}
+    dropped_names = WHEEL_BOOTSTRAP_VARIABLES if environ.get(marker) else ()
+    return {name: value for name, value in environ.items() if name not in dropped_names}
 
 
 def site_packages(prefix: Path) -> Path:
-    """Return the folder of a prefix in which its packages' Python modules are installed."""
+    """Return the folder of an install prefix that contains its Python modules."""
     return prefix / f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
 
 
@@ -44,8 +44,8 @@ class RosEnvironment:
 
     Attributes:
         kind: `wheels` (pip, in this virtual environment) or `sourced` (a `setup.bash` was sourced).
-        prefixes: ament prefixes of the installation, in order of precedence, without those of sourced workspaces.
-        rclpy: the folder that `import rclpy` would load.
+        prefixes: the ament prefixes of the installation, in order of precedence, without those of sourced workspaces.
+        rclpy: the folder from which `import rclpy` loads the package.
     """
 
     kind: Literal["wheels", "sourced"]
@@ -64,13 +64,14 @@ class RosEnvironment:
         domain: int | None = None,
         log_dir: Path | None = None,
     ) -> dict[str, str]:
-        """Return the environment variables that a process using this ROS 2 needs.
+        """Return the environment variables that a process needs to use this ROS 2.
 
         Args:
             overlays: install prefixes of colcon workspaces, in order of precedence. They take precedence over the
                 installation.
             domain: `ROS_DOMAIN_ID` (0 to 232). By default, it is not set.
-            log_dir: a writable folder for log files, `log_folder()` by default. `rclpy.init` raises without one.
+            log_dir: a writable folder for log files, without which `rclpy.init` raises an error. The default is
+                `log_folder()`.
 
         Raises:
             ValueError: `domain` is outside 0..232.
@@ -120,10 +121,10 @@ def find(environ: Mapping[str, str] | None = None) -> RosEnvironment:
         )
     prefixes = tuple(Path(part) for part in environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part)
     # The prefixes before the installation are workspaces: sourced by the user, or built and loaded by this process.
-    installed = [index for index, prefix in enumerate(prefixes) if rclpy.is_relative_to(prefix)]
-    if not installed:
+    installation_indices = [index for index, prefix in enumerate(prefixes) if rclpy.is_relative_to(prefix)]
+    if not installation_indices:
         raise RosNotFoundError(f"rclpy is at {rclpy}, but not in AMENT_PREFIX_PATH: source {DISTRIBUTION.setup}")
-    return RosEnvironment("sourced", prefixes[installed[0] :], rclpy)
+    return RosEnvironment("sourced", prefixes[installation_indices[0] :], rclpy)
 
 
 def activate(*, overlays: tuple[Path, ...] = (), domain: int | None = None) -> RosEnvironment:
@@ -136,8 +137,8 @@ def activate(*, overlays: tuple[Path, ...] = (), domain: int | None = None) -> R
         RosError: no usable ROS 2 of the course's distribution was found.
     """
     environment = find()
-    sourced = [Path(part) for part in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part]
-    workspaces = tuple(path for path in sourced if path not in {*overlays, *environment.prefixes})
+    sourced_prefixes = [Path(part) for part in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part]
+    workspaces = tuple(path for path in sourced_prefixes if path not in {*overlays, *environment.prefixes})
     variables = environment.variables(overlays=(*overlays, *workspaces), domain=domain)
     # If the user has set one of these, keep that value.
     for name in ("ROS_LOG_DIR", "FASTDDS_BUILTIN_TRANSPORTS"):

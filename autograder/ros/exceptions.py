@@ -1,4 +1,4 @@
-"""Errors of finding and using ROS 2.
+"""Errors that occur when ROS 2 is found and used.
 
 RosError
 ├── RosNotFoundError   neither a sourced ROS 2 nor its wheels can be imported
@@ -8,7 +8,7 @@ RosError
 
 
 class RosError(Exception):
-    """Base of every error about the ROS 2 installation."""
+    """Base class of all errors about the ROS 2 installation."""
 
 
 class RosNotFoundError(RosError):

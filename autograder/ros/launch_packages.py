@@ -1,4 +1,4 @@
-"""The source repositories of the real `launch`, `launch_ros` and `ros2cli`, and the packages that are installed here.
+"""The source repositories of the real `launch`, `launch_ros` and `ros2cli`, and which of their packages are installed.
 
 Tags and commits are those of `distribution.json`. The records in tests/e2e were written with them.
 """
@@ -56,16 +56,16 @@ class Source:
         return Location(url, tag, "") if has_tag else Location(override, self.tag, self.commit)
 
 
-def _pinned(variable: str, repository: str, *packages: str, is_interface: bool = False) -> Source:
+def _pinned_source(variable: str, repository: str, *packages: str, is_interface: bool = False) -> Source:
     name = repository.rpartition("/")[2]
     url = f"https://github.com/{repository}.git"
     return Source(variable, url, DISTRIBUTION.tags[name], DISTRIBUTION.commits[name], packages, is_interface)
 
 
 SOURCES = (
-    _pinned("ROS2_INTERFACES_SOURCE", "ros2/rcl_interfaces", "composition_interfaces", is_interface=True),
-    _pinned("ROS2_RUNTIME_SOURCE", "ros2/rosidl_runtime_py", "."),
-    _pinned(
+    _pinned_source("ROS2_INTERFACES_SOURCE", "ros2/rcl_interfaces", "composition_interfaces", is_interface=True),
+    _pinned_source("ROS2_RUNTIME_SOURCE", "ros2/rosidl_runtime_py", "."),
+    _pinned_source(
         "ROS2_LAUNCH_SOURCE",
         "ros2/launch",
         "launch",
@@ -74,10 +74,10 @@ SOURCES = (
         "launch_testing",
         "launch_pytest",
     ),
-    _pinned("ROS2_LAUNCH_ROS_SOURCE", "ros2/launch_ros", "launch_ros", "ros2launch", "launch_testing_ros"),
+    _pinned_source("ROS2_LAUNCH_ROS_SOURCE", "ros2/launch_ros", "launch_ros", "ros2launch", "launch_testing_ros"),
     # `ros2 pkg create` reads the licence texts from it.
-    _pinned("ROS2_LINT_SOURCE", "ament/ament_lint", "ament_copyright"),
-    _pinned(
+    _pinned_source("ROS2_LINT_SOURCE", "ament/ament_lint", "ament_copyright"),
+    _pinned_source(
         "ROS2_CLI_SOURCE",
         "ros2/ros2cli",
         "ros2cli",
@@ -108,7 +108,7 @@ def python_packages(sources: Sequence[Source] = SOURCES) -> dict[str, str]:
 
 
 def installed_packages(names: Iterable[str]) -> dict[str, str]:
-    """Return the version of each Python package of these names that is installed."""
+    """Return the versions of those Python packages among `names` that are installed."""
     versions: dict[str, str] = {}
     for name in names:
         with suppress(PackageNotFoundError):
@@ -118,5 +118,5 @@ def installed_packages(names: Iterable[str]) -> dict[str, str]:
 
 def describe_launch() -> str:
     """Return the versions of the real `launch`, `launch_ros` and `ros2cli`, or "stand-ins" if none is installed."""
-    installed = installed_packages(("launch", "launch_ros", "ros2cli"))
-    return ", ".join(f"{name} {number}" for name, number in installed.items()) or STANDINS
+    installed_versions = installed_packages(("launch", "launch_ros", "ros2cli"))
+    return ", ".join(f"{name} {number}" for name, number in installed_versions.items()) or STANDINS

@@ -1,4 +1,4 @@
-"""The command `launch_test FILE` of the real `launch_testing`. With the stand-in, it only prints an error."""
+"""The command `launch_test FILE`, which runs the real `launch_testing`. With the stand-in, it only prints an error."""
 
 from __future__ import annotations
 

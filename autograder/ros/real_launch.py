@@ -35,9 +35,9 @@ from autograder.ros.exceptions import RosError
 from autograder.ros.launch_packages import SOURCES, Source, describe_launch, installed_packages, python_packages
 
 STANDINS_VARIABLE = "ROS2_STANDINS"  # an environment variable; 1 selects the stand-ins
-REACH_SECONDS = 10.0  # for all sources together
-CLONE_SECONDS = 120.0
-BUILD_SECONDS = 600.0
+REACH_SECONDS = 10.0  # the time in which all sources must respond; they are asked in parallel
+CLONE_SECONDS = 120.0  # the time in which all sources must be cloned, in parallel
+BUILD_SECONDS = 600.0  # the time for any other step
 # The lock files list everything else that the packages import.
 REQUIREMENT = "osrf-pycommon==2.0.2 --hash=sha256:bba7292491db7518f84be4f11502f008cc24086790d5d8bfca2936f925bdabb5"
 
@@ -66,14 +66,14 @@ def install(
     sources: Sequence[Source] = SOURCES,
     requirement: str = REQUIREMENT,
 ) -> list[str]:
-    """Install every package of the sources, or no Python package at all.
+    """Install the packages of all sources. If that fails, none of their Python packages stays installed.
 
     Args:
         ros: the ROS to extend. Interfaces are built into its first prefix.
         environ: the environment variables, which may override the sources.
         python: the interpreter whose environment gets the Python packages.
         sources: the repositories to install, in this order.
-        requirement: a package to install from the package index first, with its hash; may be empty.
+        requirement: a package from the package index, with its hash, to install first; it may be empty.
 
     Returns:
         The names of the packages, in installation order.
@@ -102,8 +102,8 @@ def install(
                 _run(Step(f"build {', '.join(folders)}", [*pip, "wheel", *options, *map(str, folders.values())]))
                 python_names += folders
         if requirement:
-            (pinned := scratch / "requirements.txt").write_text(requirement)
-            options = ["--no-deps", "--require-hashes", "-r", str(pinned)]
+            (requirements_file := scratch / "requirements.txt").write_text(requirement)
+            options = ["--no-deps", "--require-hashes", "-r", str(requirements_file)]
             _run(Step(f"install {requirement.partition('==')[0]}", [*pip, "install", *options]))
         options = ["--no-deps", "--no-index", "--force-reinstall", *map(str, sorted(wheels.glob("*.whl")))]
         try:
@@ -132,15 +132,15 @@ def set_up(environ: Mapping[str, str]) -> str:
         One line that names the installed packages and, after a failure, the reason.
 
     Raises:
-        RealLaunchError: the stand-ins are chosen, and the real packages cannot be uninstalled.
+        RealLaunchError: the stand-ins are chosen, but the real packages cannot be uninstalled.
     """
-    pinned = python_packages()
-    installed = installed_packages(pinned)
+    pinned_versions = python_packages()
+    installed_versions = installed_packages(pinned_versions)
     if environ.get(STANDINS_VARIABLE) == "1":
-        if installed:
-            remove(list(installed))
+        if installed_versions:
+            remove(list(installed_versions))
         return f"launch and ros2: {describe_launch()}, as {STANDINS_VARIABLE}=1 asks"
-    if installed == pinned:
+    if installed_versions == pinned_versions:
         return f"launch and ros2: {describe_launch()}"
     try:
         install(find(), environ)
@@ -151,7 +151,7 @@ def set_up(environ: Mapping[str, str]) -> str:
 
 
 def _clone(sources: Sequence[Source], environ: Mapping[str, str], scratch: Path) -> dict[Source, Path]:
-    """Check that all sources respond, clone them in parallel, and return their folders in order."""
+    """Check that all sources respond, clone them in parallel, and return the folder of each, in order."""
     cwd = Path.cwd()  # a source may be a relative path
     locations = {source: source.location(environ) for source in sources}
     hints = {source: f"point {source.variable} at a clone that this machine reaches" for source in sources}
@@ -207,7 +207,7 @@ def _run(*steps: Step) -> list[str]:
     """Run steps in parallel and return their outputs. If a step fails or times out, the others are stopped."""
     outputs, start = [], time.monotonic()
     with ExitStack() as stack:
-        processes = [stack.enter_context(_process(step)) for step in steps]
+        processes = [stack.enter_context(_start_process(step)) for step in steps]
         for step, process in zip(steps, processes, strict=True):
             hint = f"; {step.hint}" if step.hint else ""
             try:
@@ -222,7 +222,7 @@ def _run(*steps: Step) -> list[str]:
 
 
 @contextmanager
-def _process(step: Step) -> Iterator[subprocess.Popen[str]]:
+def _start_process(step: Step) -> Iterator[subprocess.Popen[str]]:
     """Start a step's command in its own process group, and kill the group on exit."""
     environ = {**os.environ, "GIT_TERMINAL_PROMPT": "0", **(step.variables or {})}
     process = subprocess.Popen(
@@ -245,7 +245,7 @@ def _process(step: Step) -> Iterator[subprocess.Popen[str]]:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Install the real packages and print the result; return an exit code."""
+    """Install the real packages, print the result, and return an exit code."""
     parser = argparse.ArgumentParser(
         prog="real-launch",
         description="Install the real launch, launch_ros and ros2cli on top of the ROS 2 wheels.",

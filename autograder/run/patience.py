@@ -3,8 +3,9 @@
 A process runs one grading at a time. Outside a grading, as in a notebook, nothing is counted.
 
 Each wait for a program has its own limit. But a program that sleeps a little at each step, or that takes a minute to
-start for each check, exceeds none of them. It could delay a grading until its worker sandbox is stopped, without a
-result. So two limits apply to the sums of all waits. Exceeding one is a failure of the student's program.
+start for each check, exceeds none of these limits. It could delay a grading until the worker sandbox is stopped, and
+then there is no result. So two limits apply to the sums of all waits. Exceeding one is a failure of the student's
+program.
 """
 
 from __future__ import annotations
@@ -15,10 +16,10 @@ import time
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 
-# For the answers to all steps, without the time for which a busy machine kept the programs from running. The answers of
-# a reference take less than 40 s, on a machine with eight times the load that it can handle.
+# For the answers to all steps, except the time for which a busy machine kept the programs from running. The answers of
+# a reference take less than 40 s, even on a machine with eight times the load that it can handle.
 MAX_ANSWER_SECONDS = 180.0
-RESERVE = 1 / 15  # share of a worker sandbox's lifetime that is left for the grader after the programs' time is over
+RESERVE = 1 / 15  # share of a worker sandbox's lifetime that the grader still has when the programs' time is over
 
 
 class _Budget:
@@ -40,7 +41,7 @@ def add_answer_time(seconds: float) -> None:
 
 
 def is_too_slow(seconds: float = 0.0) -> bool:
-    """Return whether the answers of programs, the last one after `seconds`, took longer than allowed."""
+    """Return whether all answers of programs, and one more after `seconds`, have taken longer than allowed."""
     return math.isfinite(_Budget.deadline) and _Budget.answer_seconds + seconds > MAX_ANSWER_SECONDS
 
 

@@ -1,4 +1,4 @@
-"""Records the time of a grading: which programs ran in real time and why, and the delays by a busy machine."""
+"""Records which programs of a grading ran in real time, and why, and how long a busy machine delayed them."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ class TimeRecord:
     """The record of one grading. The workspace passes it to the harnesses, and the worker reads it at the end.
 
     Attributes:
-        unsteppable: for each harness's programs, the reason for each executable that cannot be stepped.
-        real_time: for each executable that ran in real time, the reason; empty if another program is the reason.
+        unsteppable: for the programs of each harness, why executables cannot be stepped.
+        real_time: why each of these executables ran in real time; empty if another program is the reason.
         longest_wait: the longest time in s for which a program or the grader could not run although it was ready.
     """
 
@@ -25,11 +25,11 @@ class TimeRecord:
     longest_wait: float = 0.0
 
     def add_wait(self, seconds: float) -> None:
-        """Record a waiting time in s if it is the longest one."""
+        """Record a waiting time in s if it is the longest so far."""
         self.longest_wait = max(self.longest_wait, seconds)
 
     def add_real_time(self, executables: Iterable[str], reasons: dict[str, str]) -> None:
-        """Record that programs run in real time together. `reasons` has the reason, a key of `UNSTEPPABLE`, of some."""
+        """Record that programs run in real time together. For some of them, `reasons` has a key of `UNSTEPPABLE`."""
         for executable in executables:
             self.real_time[executable] = reasons.get(executable) or self.real_time.get(executable, "")
 

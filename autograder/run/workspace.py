@@ -30,7 +30,7 @@ class Workspace:
     ros: RosEnvironment  # the ROS 2 installation with which it was built
     scratch: Path  # a writable folder for homes and logs, for sandboxes without their own /tmp
     domain: int = 0  # the `ROS_DOMAIN_ID` of its programs and the grader
-    # The time records of the harnesses; copies of a workspace share them.
+    # The record to which the harnesses add; copies of a workspace share it.
     time_record: TimeRecord = field(default_factory=TimeRecord, compare=False)
     exchanges: ExchangeLog = field(default_factory=ExchangeLog, compare=False)  # copies share it
 
@@ -45,12 +45,12 @@ class Workspace:
 
     @contextmanager
     def private_folder(self) -> Iterator[Path]:
-        """Create a temporary folder beside `scratch` and `root`, which none of its programs can ever write to."""
+        """Create a temporary folder beside `scratch` and `root`. No program of the workspace can ever write to it."""
         with TemporaryDirectory(prefix="apart-", dir=self.scratch.parent) as folder:
             yield Path(folder)
 
     def executable(self, package: str, name: str) -> Path:
-        """Return the path of an installed executable. A StudentError names the executables that exist."""
+        """Return the path of an installed executable. If it does not exist, a StudentError names those that do."""
         folder = self.install / package / "lib" / package
         path = folder / name
         if path.is_file():
@@ -91,7 +91,7 @@ class Workspace:
         }
 
     def sandbox(self, limits: Limits = NODE) -> Sandbox:
-        """Return the sandbox of a node of this workspace, which reads the install space and reaches peers over DDS."""
+        """Return a sandbox for a node of this workspace. It can read the install space and reach peers over DDS."""
         installed = (Mount(self.install),) if self.install.is_dir() else ()
         system = tuple(Mount(prefix) for prefix in self.ros.prefixes if self.ros.kind == "sourced")
         return Sandbox(

@@ -1,4 +1,4 @@
-"""Finds files of an exercise that still contain the stub of the release."""
+"""Finds the files of an exercise that still contain the released stub."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from pathlib import Path
 from autograder.diagnosis import Diagnosis, Kind
 
 STILL_TO_BE_WRITTEN = "this part of the exercise is still to be written"
-# The text that replaces an answer in a release. It is valid Python in any function. A node that runs it ends with this
-# sentence, which tells the student what to do.
+# The text that replaces an answer in a release. It is valid Python in any function. A node that runs it ends with the
+# sentence above, which tells the student what to do.
 CODE_STUB = f"# YOUR CODE HERE\nraise NotImplementedError('{STILL_TO_BE_WRITTEN}')"
 TEXT_STUB = "YOUR ANSWER HERE"
 MAX_BYTES = 256 * 1024  # more than any file of an exercise has
 
 # Files that colcon and rosidl read to build a package. A stub in any other file does not prevent the build.
-_BUILT_FROM = ("package.xml", "setup.py", "setup.cfg", "CMakeLists.txt", "msg/*.msg", "srv/*.srv", "action/*.action")
+_BUILD_FILES = ("package.xml", "setup.py", "setup.cfg", "CMakeLists.txt", "msg/*.msg", "srv/*.srv", "action/*.action")
 _DEPENDENCY = re.compile(r"<(?:\w+_)?depend\b[^<>]*>\s*(\w[\w-]{0,99})(?![\w.-])", re.ASCII)
 
 
@@ -26,7 +26,7 @@ def explain(diagnosis: Diagnosis, source: Path, *packages: str) -> Diagnosis:
     Args:
         diagnosis: the diagnosis of the build.
         source: the folder of the packages.
-        packages: packages that were not built. The packages in `source` that they depend on are also searched.
+        packages: the packages that were not built. Their dependencies in `source` are searched as well.
     """
     stubs = dict(_stubs(source, packages))
     if not stubs:
@@ -42,7 +42,7 @@ def explain(diagnosis: Diagnosis, source: Path, *packages: str) -> Diagnosis:
 
 
 def _stubs(source: Path, packages: tuple[str, ...]) -> Iterator[tuple[str, str]]:
-    """Yield each file that contains a stub, such as `src/robot/setup.py`, with the line of its first stub."""
+    """Yield the path of each file with a stub, and its first line with one: `src/robot/setup.py`, `line 9: ...`."""
     visited: set[str] = set()
     pending = [*reversed(packages)]
     while pending:
@@ -51,7 +51,7 @@ def _stubs(source: Path, packages: tuple[str, ...]) -> Iterator[tuple[str, str]]
             continue
         visited.add(name)
         pending += _DEPENDENCY.findall(_read(source / name / "package.xml"))
-        for pattern in _BUILT_FROM:
+        for pattern in _BUILD_FILES:
             for path in sorted((source / name).glob(pattern)):
                 lines = enumerate(_read(path).splitlines(), 1)
                 stub_lines = [f"line {number}: {line.strip()}" for number, line in lines if STILL_TO_BE_WRITTEN in line]
@@ -60,7 +60,7 @@ def _stubs(source: Path, packages: tuple[str, ...]) -> Iterator[tuple[str, str]]
 
 
 def _read(path: Path) -> str:
-    """Return the text of a regular file up to `MAX_BYTES`, or an empty string."""
+    """Return the first `MAX_BYTES` of a regular file as text, or an empty string if the path is anything else."""
     if path.is_symlink() or not path.is_file():
         return ""
     with path.open("rb") as file:

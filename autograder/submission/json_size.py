@@ -1,4 +1,4 @@
-"""Counts the values in a JSON text without parsing it, because three bytes of it can take sixty in memory."""
+"""Counts the values in a JSON text without parsing it, because three bytes of it can become sixty bytes in memory."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def outside_strings(data: bytes, max_quotes: int) -> bytes | None:
 def exceeds(data: bytes, max_values: int, max_quotes: int) -> bool:
     """Return whether a JSON text may have more values than `max_values`, or has more quotation marks than `max_quotes`.
 
-    Counts commas and brackets outside strings. A text has at most one more value than these.
+    It counts the commas and opening brackets outside strings. A text has at most one more value than that.
     """
-    outside = outside_strings(data, max_quotes)
-    return outside is None or sum(map(outside.count, (b",", b"[", b"{"))) > max_values
+    structure = outside_strings(data, max_quotes)
+    return structure is None or sum(map(structure.count, (b",", b"[", b"{"))) > max_values

@@ -15,7 +15,7 @@ from autograder.submission.reading import reading
 
 MANIFEST = "package.xml"
 MAX_MANIFEST = 64 * 1024  # bytes
-NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,99}")  # names that colcon accepts, and that can be the name of a folder
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,99}")  # a name that colcon accepts, and that a folder can have
 # Files that mark a folder in which colcon does not look for packages.
 IGNORED = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 COLCON_PKG = "colcon.pkg"
@@ -34,13 +34,14 @@ class Package:
 
 
 def read_package(manifest: Path, label: str = "") -> Package:
-    """Read the package of a package.xml. Raises StudentError, whose sentence names the file `label`."""
+    """Read the package that a package.xml describes. Raises a StudentError that calls the file `label`."""
     label = label or f"{manifest.parent.name}/{MANIFEST}"
     with reading(label, Kind.HALF_WRITTEN_PACKAGE, "Correct it for colcon."):
         if manifest.stat().st_size > MAX_MANIFEST:
             raise _manifest_error(f"{label} is larger than {MAX_MANIFEST // 1024} KiB: shorten it.")
         data = manifest.read_bytes()
-        if b"<!DOCTYPE" in data.replace(b"\0", b""):  # also in UTF-16; its entities can expand a small file to 8 MB
+        # UTF-16 has null bytes. The entities of a document type can expand a small file to 8 MB.
+        if b"<!DOCTYPE" in data.replace(b"\0", b""):
             raise _manifest_error(f"{label} has a <!DOCTYPE>, which no manifest needs: take it out.")
         try:
             root = ET.fromstring(data)
@@ -60,10 +61,10 @@ def read_package(manifest: Path, label: str = "") -> Package:
 
 
 def read_packages(source: Path) -> tuple[dict[str, Package], dict[Path, str]]:
-    """Return the packages below a folder by their names, and the errors of invalid ones by their folders.
+    """Return the valid packages below a folder by name, and the errors of the invalid ones by folder.
 
-    It looks where colcon looks: not in hidden folders, not below a marker such as COLCON_IGNORE, and not for packages
-    in packages. `building.colcon` gives colcon these folders, so that it builds the packages that are graded.
+    It looks where colcon looks: not in hidden folders, not below a marker such as COLCON_IGNORE, and not inside other
+    packages. `building.colcon` passes these folders to colcon, so that it builds the packages that are graded.
 
     Raises:
         StudentError: two packages have the same name, or the tree has too many.
@@ -93,7 +94,7 @@ def read_packages(source: Path) -> tuple[dict[str, Package], dict[Path, str]]:
 
 
 def find_packages(source: Path) -> tuple[dict[str, Path], dict[Path, str]]:
-    """Return the folders of the packages below a folder by their names, and the errors as in `read_packages`."""
+    """Return the folders of the valid packages by name, and the errors as `read_packages` does."""
     packages, broken = read_packages(source)
     return {name: package.folder for name, package in packages.items()}, broken
 
@@ -103,7 +104,7 @@ def _package_folders(source: Path) -> Iterator[Path]:
         folder = Path(here)
         if any(os.path.lexists(folder / marker) for marker in IGNORED):
             folders.clear()
-        # Reading a named pipe, which a set-up script may have made, would block forever.
+        # Reading a named pipe, which a set-up script may have created, would block forever.
         elif MANIFEST in files and not (folder / MANIFEST).is_symlink() and (folder / MANIFEST).is_file():
             folders.clear()
             yield folder

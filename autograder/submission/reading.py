@@ -1,13 +1,13 @@
-"""Assigns errors: an error while the student's data is read, converted or compared is the student's.
+"""Attributes errors to the student if they occur while the student's data is read, converted or compared.
 
-Code of the trusted process that reads such data is in a block::
+In the trusted process, code that reads such data belongs in a block::
 
     with reading("src/wheels/package.xml"):
         root = ET.fromstring(data)
 
 An exception in the block becomes a `StudentError` that names the data. `AutograderError` passes through, and so do
 errors that only a machine can cause. The block also records the data's name. If a check itself raises an exception,
-the check fails if any data was recorded. Otherwise it is a failure of the grader.
+the check fails if any data was recorded. Otherwise the grader has failed.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from autograder.exceptions import AutograderError, StudentError
 from autograder.plain_text import clean
 
 MAX_REASON = 200  # characters of an exception's text
-MAX_INT = 10**100  # larger ones overflow a float, or have too many digits to print
-MAX_DEPTH = 20  # of lists in lists
+MAX_INT = 10**100  # a larger int overflows a float, or has too many digits to print
+MAX_DEPTH = 20  # levels of nested lists, tuples and dictionaries
 MAX_VALUES = 100_000
 # Errors that no data can cause: a failing disk, a machine without free processes, memory or descriptors.
 _MACHINE_ERRNOS = frozenset(
     {errno.EIO, errno.EMFILE, errno.ENFILE, errno.EROFS, errno.ESTALE, errno.ENODEV, errno.EAGAIN, errno.ENOMEM}
 )
-# Errors of Python, its parsers and the fields of ROS messages for unexpected data.
+# Errors that Python, its parsers and the fields of ROS messages raise for unexpected data.
 _DATA_ERRORS = (
     *(ArithmeticError, AssertionError, AttributeError, LookupError, MemoryError, RecursionError, SyntaxError),
     *(TypeError, ValueError),
@@ -39,7 +39,7 @@ _FILE_ERRNOS = frozenset(
     | {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EINVAL, None}
 )
 
-_recorded: dict[str, None] = {}  # the names of the data, the latest last
+_recorded_names: dict[str, None] = {}  # keys: the names of the data, the latest last
 
 
 @contextmanager
@@ -68,22 +68,22 @@ def reading(label: str, kind: Kind = Kind.UNREADABLE, advice: str = "") -> Itera
 
 def record_data(label: str) -> None:
     """Record that the student's data was read, under a name that the student understands."""
-    _recorded.pop(label, None)
-    _recorded[label] = None
+    _recorded_names.pop(label, None)
+    _recorded_names[label] = None
 
 
 def recorded_data() -> tuple[str, ...]:
     """Return the names of the recorded data, the latest last."""
-    return tuple(_recorded)
+    return tuple(_recorded_names)
 
 
 def clear_recorded_data() -> None:
-    """Clear the record before code that has not read any data."""
-    _recorded.clear()
+    """Clear the record, so that it will contain only the data that later code reads."""
+    _recorded_names.clear()
 
 
 def is_machine_error(error: BaseException) -> bool:
-    """Return whether no data can cause an exception."""
+    """Return whether only the machine, and never the data, can have caused an exception."""
     return isinstance(error, OSError) and error.errno in _MACHINE_ERRNOS
 
 

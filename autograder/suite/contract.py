@@ -1,16 +1,16 @@
 """The contract of a chapter: the requirements that its notebook states, each with an id.
 
-A requirement is written where the student reads it. The metadata of its cell name it, or a part of it, word for word. A
-row of a table is named with its bars, and a wrapped line as one line:
+A requirement is written where the student reads it. The metadata of its cell quote it, or a part of it, word for word.
+A row of a table is quoted with its bars, and a sentence on several lines as one line:
 
     {"course": {"contract": {"stale-scan": "| the newest scan arrived more than 0.5 s ago, in ROS time | 0 | 0 |",
                              "keeps-pace": "always"},
                 "unchecked": {"keeps-pace": "why no check can cover it"},
                 "explains": ["- a row, a bullet or a docstring that requires nothing"]}}
 
-The same id in two cells is one requirement that is stated twice. A list of texts is a requirement in several sentences.
-A check names the ids that it covers. Feedback quotes the whole sentence or row, as it looks on the
-page (`autograder.suite.quotation`).
+If two cells use the same id, they state the same requirement. A list of texts is a requirement that consists of several
+sentences. A check names the ids that it covers. Feedback quotes the whole sentence or row, as it looks on the page
+(`autograder.suite.quotation`).
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Requirement:
     Attributes:
         id: its name in the chapter.
         text: the whole sentence, or the row of a table, as a student reads it.
-        unchecked: why no check covers it. It is empty if checks do.
+        unchecked: why no check covers it; empty if one does.
     """
 
     id: str
@@ -40,7 +40,7 @@ class Requirement:
 
 
 def contract(assignment: str) -> dict[str, Requirement]:
-    """Return a chapter's requirements by their ids, cell by cell.
+    """Return a chapter's requirements by their ids, in the order of the cells.
 
     Raises:
         UsageError: the chapter does not exist.
@@ -51,13 +51,13 @@ def contract(assignment: str) -> dict[str, Requirement]:
 
 def counts(assignments: Iterable[str]) -> dict[str, int]:
     """Count the requirements of some chapters, and those that no check covers."""
-    stated = [requirement for name in assignments for requirement in contract(name).values()]
-    unchecked = sum(bool(requirement.unchecked) for requirement in stated)
-    return {"contract_sentences": len(stated), "contract_unchecked": unchecked}
+    all_requirements = [requirement for name in assignments for requirement in contract(name).values()]
+    unchecked = sum(bool(requirement.unchecked) for requirement in all_requirements)
+    return {"contract_sentences": len(all_requirements), "contract_unchecked": unchecked}
 
 
 def requirements(cells: Iterable[Mapping[str, Any]]) -> dict[str, Requirement]:
-    """Return the requirements in the metadata of a notebook's cells. Of two cells with one id, the first counts."""
+    """Return the requirements in the metadata of a notebook's cells. If two cells use the same id, the first counts."""
     by_id: dict[str, Requirement] = {}
     for cell in cells:
         course = cell["metadata"].get("course", {})

@@ -1,7 +1,7 @@
-"""Finds the sentence of a notebook's cell that contains a text, rendered as a student reads it.
+"""Finds the sentence in a notebook's cell that contains a given text, and renders it as a student reads it.
 
-Authors name a requirement by its Markdown, or by a part of it. `quote` returns the text on the page: the row of the
-table, or the whole sentence, without markup.
+Authors quote the Markdown of a requirement, or a part of it. `quote` returns the text as it is on the page: the whole
+row of the table, or the whole sentence, without markup.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Row:
 
     Attributes:
         head: the names of the columns in the head of the table.
-        cells: the text of the columns, with markup.
+        cells: its text in each column, with marks.
         label: the first cell; if it is empty, the label of the row above.
     """
 
@@ -41,10 +41,10 @@ class Row:
 
     @property
     def text(self) -> str:
-        """The row in words. The head names the columns after the first, unless the table has only one."""
+        """The row in words: its label and the other cells. If there are several, their columns' names precede them."""
         heads = self.head[1:] if len(self.cells) > 2 else ("",)
         values = (f"{head} {cell}".strip() for head, cell in zip(heads, self.cells[1:], strict=False) if cell)
-        return _unmarked(": ".join(part for part in (self.label, ", ".join(values)) if part))
+        return _without_marks(": ".join(part for part in (self.label, ", ".join(values)) if part))
 
 
 def quote(cell: Mapping[str, Any], text: str) -> str | None:
@@ -60,25 +60,29 @@ def quote(cell: Mapping[str, Any], text: str) -> str | None:
         query, pieces = " ".join(text.split()), _code_pieces(source)
     elif text.startswith("|"):
         columns = [
-            _unmarked(_inline(column)) for column in _BAR.split(text.strip().removeprefix("|").removesuffix("|"))
+            _without_marks(_inline(column)) for column in _BAR.split(text.strip().removeprefix("|").removesuffix("|"))
         ]
         rows = (piece for piece in _pieces(source) if isinstance(piece, Row))
-        return next((row.text for row in rows if [_unmarked(column) for column in row.cells] == columns), None)
+        return next((row.text for row in rows if [_without_marks(column) for column in row.cells] == columns), None)
     else:
-        query, pieces = _unmarked(_inline(text.removeprefix("- "))), _pieces(source)
+        query, pieces = _without_marks(_inline(text.removeprefix("- "))), _pieces(source)
     return next((quoted for piece in pieces if (quoted := _quote_of(piece, query)) is not None), None)
 
 
 def _quote_of(piece: str | Row, query: str) -> str | None:
-    """Return a row that contains a text, or the sentences of a paragraph that do; None if it does not occur."""
+    """Return the text of a row, or the sentences of a paragraph, that contain `query`; None if it does not occur."""
     if isinstance(piece, Row):
-        return piece.text if any(query in _unmarked(cell) for cell in piece.cells) else None
-    plain = _unmarked(piece)
+        return piece.text if any(query in _without_marks(cell) for cell in piece.cells) else None
+    plain = _without_marks(piece)
     start = plain.find(query)
     if start < 0:
         return None
     end = start + len(query)
-    boundaries = [0, *(len(_unmarked(piece[: match.end()])) for match in _SENTENCE_GAP.finditer(piece)), len(plain)]
+    boundaries = [
+        0,
+        *(len(_without_marks(piece[: match.end()])) for match in _SENTENCE_GAP.finditer(piece)),
+        len(plain),
+    ]
     if not _AT_SENTENCE_END.search(plain[:start].rstrip()):
         start = max(boundary for boundary in boundaries if boundary <= start)
     if not _AT_SENTENCE_END.search(query):
@@ -88,7 +92,7 @@ def _quote_of(piece: str | Row, query: str) -> str | None:
 
 @cache
 def _pieces(source: str) -> tuple[str | Row, ...]:
-    """Return the paragraphs, bullets and rows of Markdown, with marks."""
+    """Return the paragraphs, bullets and rows of a Markdown text, with marks."""
     tokens, _ = _markdown.parse(source)
     return tuple(_blocks(tokens))  # type: ignore[arg-type]
 
@@ -105,7 +109,7 @@ def _blocks(tokens: Iterable[Token]) -> Iterator[str | Row]:
 
 def _rows(table: Token) -> Iterator[Row]:
     head, *bodies = table["children"]
-    head_cells, label = tuple(_unmarked(name) for name in _cells(head)), ""
+    head_cells, label = tuple(_without_marks(name) for name in _cells(head)), ""
     for row in (row for body in bodies for row in body["children"]):
         cells = _cells(row)
         label = cells[0] or label
@@ -147,5 +151,5 @@ def _code_pieces(source: str) -> list[str]:
     return [" ".join(block.split()) for block in blocks]
 
 
-def _unmarked(text: str) -> str:
+def _without_marks(text: str) -> str:
     return text.replace(MARK, "")

@@ -1,7 +1,7 @@
 """Temporal logic over recorded traces: how well a formula holds, and when it is first violated.
 
 Formulas are signal temporal logic in discrete time, evaluated by rtamt with quantitative semantics (robustness): the
-value is positive where the formula holds, and its size is the distance to the border in the signals' own units.
+value is positive where the formula holds, and its magnitude is the distance to a violation, in the signals' own units.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def always(condition: str, times: Sequence[float], signals: Mapping[str, Sequenc
     Args:
         condition: a formula of rtamt, such as `gap > 0.05` or `(blocked > 0) implies eventually[0:10] (turn > 0)`; its
             intervals count samples.
-        times: the times of the samples, in seconds and rising; at least two.
+        times: the times of the samples, in seconds, ascending; at least two.
         signals: for each name in the formula, one value per sample.
 
     Raises:

@@ -1,7 +1,7 @@
 """The simulator as a ROS 2 robot, which publishes `/scan`, `/odom` and `/clock` and subscribes to `/cmd_vel`.
 
 `sim.bridge.messages` converts messages, `sim.bridge.node` contains the node, and `Bridge` runs it beside the nodes of a
-notebook. `import sim.bridge` does not import ROS, but `Bridge` does: the caller has to make it importable before.
+notebook. `import sim.bridge` does not import ROS, but `Bridge` does: the caller has to make it importable first.
 """
 
 from typing import TYPE_CHECKING, Any

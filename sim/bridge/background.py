@@ -26,7 +26,7 @@ from sim.bridge.settings import SETTINGS
 from sim.exceptions import SpecError
 from sim.simulation import Simulation
 
-THREAD_TIMEOUT_SECONDS = 10.0  # until a call stops waiting for the node's thread
+THREAD_TIMEOUT_SECONDS = 10.0  # the longest time that a call waits for the node's thread
 
 
 class Bridge:
@@ -39,10 +39,10 @@ class Bridge:
     """
 
     def __init__(self, world: str | Path, *, domain_id: int | None = None, **settings: Any) -> None:
-        unknown = sorted(set(settings) - {setting.name for setting in SETTINGS})
-        if unknown:
-            known = ", ".join(setting.name for setting in SETTINGS)
-            raise SpecError(f"the simulator has no setting {unknown[0]!r}; it has {known}")
+        unknown_names = sorted(set(settings) - {setting.name for setting in SETTINGS})
+        if unknown_names:
+            known_names = ", ".join(setting.name for setting in SETTINGS)
+            raise SpecError(f"the simulator has no setting {unknown_names[0]!r}; it has {known_names}")
         overrides = [Parameter(name, value=value) for name, value in {"world": str(world), **settings}.items()]
         self._context = Context()
         rclpy.init(context=self._context, domain_id=domain_id, signal_handler_options=SignalHandlerOptions.NO)
@@ -63,7 +63,7 @@ class Bridge:
 
     @property
     def driver(self) -> Driver:
-        """The run, to inspect and not to step."""
+        """The run, which may be inspected but not stepped."""
         return self._node.driver
 
     @property
@@ -80,7 +80,7 @@ class Bridge:
         """Stop simulated time.
 
         Raises:
-            RuntimeError: the bridge has been stopped. `resume`, `step` and `reset` raise it, too.
+            RuntimeError: the bridge has been stopped. `resume`, `step` and `reset` also raise it.
         """
         self._on_thread(lambda: self._node.pause(True))
 
@@ -98,7 +98,7 @@ class Bridge:
 
     def stop(self) -> None:
         """Stop the node and its thread. A second call does nothing."""
-        if self.running:  # ends between two callbacks, because one that publishes would fail without its context
+        if self.running:  # end between two callbacks, because a callback that publishes would fail without its context
             self._executor.create_task(self._context.try_shutdown)
             self._thread.join(THREAD_TIMEOUT_SECONDS)
         self._context.try_shutdown()

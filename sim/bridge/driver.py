@@ -1,4 +1,4 @@
-"""Steps a simulation for the ROS node, and determines what to send after each tick. It imports no ROS."""
+"""Steps a simulation for the ROS node, and determines what to send after each tick, without importing ROS."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class TickOutput:
 class Driver:
     """Keeps the state of a run, and the commands received since the last tick.
 
-    A command is passed to the core once, at the next tick, from which the robot's watchdog counts simulated time.
-    `newest` contains each robot's last scan, and the robot's pose at that scan.
+    A command is passed to the core once, at the next tick. From then on, the robot's watchdog counts simulated time.
+    `newest_scans` contains each robot's last scan, and the robot's pose at that scan.
     """
 
     def __init__(self, simulation: Simulation, *, odometry_rate: float = 50.0) -> None:
@@ -33,7 +33,7 @@ class Driver:
         self.reset()
 
     def warm_up(self) -> None:
-        """Scan and step once, and drop the results, so that an engine compiles before time starts."""
+        """Scan and step once, and discard the results, so that an engine is compiled before time starts."""
         state = step(self.simulation, start(self.simulation))
         for spec in self.simulation.robots:
             if spec.lidar is not None:
@@ -47,12 +47,12 @@ class Driver:
     def reset(self) -> None:
         """Return to the start, and drop commands that have not been executed."""
         self._state = start(self.simulation)
-        self._pending: dict[str, Command] = {}
-        self.newest: dict[str, tuple[Scan, Pose]] = {}
+        self._pending_commands: dict[str, Command] = {}
+        self.newest_scans: dict[str, tuple[Scan, Pose]] = {}
 
     def command(self, robot: str, command: Command) -> None:
         """Store a command for `robot` until the next tick. A newer one replaces it."""
-        self._pending[robot] = command
+        self._pending_commands[robot] = command
 
     def ticks(self, seconds: float) -> int:
         """Return the number of whole ticks in `seconds` of simulated time."""
@@ -61,10 +61,10 @@ class Driver:
     def run(self, ticks: int) -> Iterator[TickOutput]:
         """Simulate `ticks` ticks, and yield the output of each."""
         for _ in range(ticks):
-            before = self._state.time_ns
-            commands, self._pending = self._pending, {}
+            before_ns = self._state.time_ns
+            commands, self._pending_commands = self._pending_commands, {}
             self._state = step(self.simulation, self._state, commands)
-            yield self._output(before)
+            yield self._output(before_ns)
 
     def _output(self, before_ns: int) -> TickOutput:
         state = self._state
@@ -74,7 +74,7 @@ class Driver:
                 scan = observe(self.simulation, state, spec.name)
                 if scan is not None:
                     scans[spec.name] = scan
-                    self.newest[spec.name] = (scan, state.robots[index].pose)
+                    self.newest_scans[spec.name] = (scan, state.robots[index].pose)
         names = tuple(spec.name for spec in self.simulation.robots)
         sends_odometry = due(before_ns, state.time_ns, self._odometry_rate)
         return TickOutput(state, names if sends_odometry else (), scans)

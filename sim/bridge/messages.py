@@ -42,7 +42,7 @@ def clock_to_msg(time_ns: int) -> Any:
 def scan_to_msg(scan: Scan, frame_id: str | None = None) -> Any:
     """Return `scan` as sensor_msgs/LaserScan; `frame_id`, if given, replaces the scan's frame.
 
-    The bits of ranges do not change, which includes the infinities and nan of REP 117.
+    The bits of the ranges do not change, including the infinities and nan of REP 117.
     """
     msg = LaserScan()
     msg.header.stamp = time_to_msg(scan.stamp_ns)
@@ -99,7 +99,7 @@ def truth_to_msg(robot: RobotState, time_ns: int, child_frame_id: str = "base_li
 
 
 def transform_to_msg(pose: Pose, time_ns: int, frame_id: str, child_frame_id: str) -> Any:
-    """Return geometry_msgs/TransformStamped for the pose of the child frame in the frame `frame_id`."""
+    """Return the pose of the child frame in the frame `frame_id` as geometry_msgs/TransformStamped."""
     msg = TransformStamped()
     msg.header.stamp = time_to_msg(time_ns)
     msg.header.frame_id = frame_id

@@ -1,6 +1,6 @@
 """The node `simulator`: one or more robots with the ROS topics of a lidar driver and a motor driver.
 
-Simulated time follows real time by the factor `speed`. It is counted in whole ticks, so the messages depend on the
+Simulated time passes `speed` times as fast as real time. It is counted in whole ticks, so the messages depend on the
 commands and the seed, and not on the times at which the timer fires.
 """
 
@@ -33,7 +33,7 @@ from sim.exceptions import SimError
 from sim.recording import Recorder
 
 RECORD_NS = 50_000_000
-"""Simulated time between two states of a recording, in ns. A state with an event or a scan is recorded in any case."""
+"""Simulated time between two states of a recording, in ns. A state with an event or a scan is always recorded."""
 
 CLOCK_QOS = QoSProfile(depth=1, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.RELIABLE)
 """Reliable, to match every subscription. The depth is one, because only the newest time is useful."""
@@ -43,7 +43,7 @@ RELIABLE_QOS = QoSProfile(depth=5, history=HistoryPolicy.KEEP_LAST, reliability=
 
 
 class SimulatorNode(Node):
-    """Publishes `scan`, `odom` and `/clock`, subscribes to `cmd_vel`, and has the services of a simulator.
+    """Publishes `scan`, `odom` and `/clock`, subscribes to `cmd_vel`, and lets services control time.
 
     The services are `~/pause`, `~/step` and `~/reset`. Frames, a map and the true pose are optional: see
     `sim.bridge.localization`.
@@ -62,14 +62,14 @@ class SimulatorNode(Node):
         self._recorder = self._new_recorder()
 
         self._clock_publisher = self.create_publisher(ClockMessage, "/clock", CLOCK_QOS)
-        self._scans: dict[str, Any] = {}
-        self._odometry: dict[str, Any] = {}
+        self._scan_publishers: dict[str, Any] = {}
+        self._odometry_publishers: dict[str, Any] = {}
         twist = TwistStamped if values["stamped_cmd_vel"] else Twist
         scan_qos = RELIABLE_QOS if values["scan_qos"] == "reliable" else qos_profile_sensor_data
         for spec in self._driver.simulation.robots:
             prefix = f"{spec.namespace}/" if spec.namespace else ""
-            self._scans[spec.name] = self.create_publisher(LaserScan, f"{prefix}scan", scan_qos)
-            self._odometry[spec.name] = self.create_publisher(Odometry, f"{prefix}odom", 10)
+            self._scan_publishers[spec.name] = self.create_publisher(LaserScan, f"{prefix}scan", scan_qos)
+            self._odometry_publishers[spec.name] = self.create_publisher(Odometry, f"{prefix}odom", 10)
             self.create_subscription(twist, f"{prefix}cmd_vel", self._command_callback(spec.name), 10)
         self._prefixes = {
             spec.name: f"{spec.namespace}/" if spec.namespace else "" for spec in self._driver.simulation.robots
@@ -86,11 +86,11 @@ class SimulatorNode(Node):
         self.add_post_set_parameters_callback(self._on_parameters)
         self.create_timer(PERIOD, self._on_timer, clock=Clock(clock_type=ClockType.STEADY_TIME))
         world = self._driver.simulation.world
-        self.get_logger().info(f"world {world.name!r}, {len(self._scans)} robot(s), speed {self._speed:g}")
+        self.get_logger().info(f"world {world.name!r}, {len(self._scan_publishers)} robot(s), speed {self._speed:g}")
 
     @property
     def driver(self) -> Driver:
-        """The run, to inspect and not to step."""
+        """The run, which may be inspected but not stepped."""
         return self._driver
 
     @property
@@ -126,8 +126,8 @@ class SimulatorNode(Node):
         return Recorder(self._driver.simulation, self._driver.state) if self._recording else None
 
     def _record(self, output: TickOutput) -> None:
-        state, due = output.state, output.state.time_ns - self._recorded_ns >= RECORD_NS
-        if self._recorder is not None and (due or state.events or output.scans):
+        state, is_due = output.state, output.state.time_ns - self._recorded_ns >= RECORD_NS
+        if self._recorder is not None and (is_due or state.events or output.scans):
             self._recorder.append(state)
             for robot, scan in output.scans.items():
                 self._recorder.scan(scan, robot)
@@ -149,16 +149,18 @@ class SimulatorNode(Node):
         for robot in output.state.robots:
             prefix = self._prefixes[robot.name]
             if robot.name in output.odometry:
-                self._odometry[robot.name].publish(odom_to_msg(robot, time_ns, f"{prefix}odom", f"{prefix}base_link"))
+                self._odometry_publishers[robot.name].publish(
+                    odom_to_msg(robot, time_ns, f"{prefix}odom", f"{prefix}base_link")
+                )
             scan = output.scans.get(robot.name)
             if scan is not None:
-                self._scans[robot.name].publish(scan_to_msg(scan, f"{prefix}{scan.frame_id}"))
+                self._scan_publishers[robot.name].publish(scan_to_msg(scan, f"{prefix}{scan.frame_id}"))
         for event in output.state.events:
-            sentence = f"{event.robot}: {event.kind}, {event.what}"
+            text = f"{event.robot}: {event.kind}, {event.what}"
             if event.kind == "collision":  # a robot that keeps pushing collides in each tick
-                self.get_logger().warning(sentence, throttle_duration_sec=1.0)
+                self.get_logger().warning(text, throttle_duration_sec=1.0)
             else:
-                self.get_logger().warning(sentence)
+                self.get_logger().warning(text)
 
     def pause(self, paused: bool) -> None:
         """Stop simulated time, or continue it."""

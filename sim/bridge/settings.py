@@ -21,11 +21,11 @@ LIDARS = {"lds_01": LDS_01, "rplidar_a1": RPLIDAR_A1, "utm_30lx": UTM_30LX}
 
 @dataclass(frozen=True)
 class Setting:
-    """A parameter. `low` and `high` are the inclusive range of a number. Only a `live` one may change at run time."""
+    """A parameter. `low` and `high` are the inclusive range of a number. If it is `live`, it may change at run time."""
 
     name: str
     default: Any
-    sentence: str
+    description: str
     low: float | None = None
     high: float | None = None
     choices: tuple[str, ...] = ()
@@ -33,7 +33,7 @@ class Setting:
 
     def descriptor(self) -> ParameterDescriptor:
         """Return the description that `ros2 param describe` shows."""
-        descriptor = ParameterDescriptor(description=self.sentence, read_only=not self.live)
+        descriptor = ParameterDescriptor(description=self.description, read_only=not self.live)
         if self.choices:
             descriptor.additional_constraints = f"one of: {', '.join(self.choices)}"
         if isinstance(self.default, float) and self.low is not None and self.high is not None:
@@ -97,8 +97,8 @@ def declare(node: Node) -> dict[str, Any]:
     """Declare every setting on `node` and return the values.
 
     Raises:
-        InvalidParameterValueException: a value is out of range (of rclpy).
-        InvalidParameterTypeException: a value has another type (of rclpy).
+        rclpy.exceptions.InvalidParameterValueException: a value is out of range.
+        rclpy.exceptions.InvalidParameterTypeException: a value has the wrong type.
         SpecError: a value is not one of the choices.
     """
     values = {}

@@ -1,4 +1,4 @@
-"""Drives a robot by the keys of a terminal: the simulator's, or a real one that subscribes to cmd_vel."""
+"""Drives a robot with the keys of a terminal: a simulated robot, or a real one that subscribes to cmd_vel."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def drive(namespace: str = "", *, stamped: bool = False, step: float = 0.05, tur
     finally:
         if rclpy.ok():
             publish(0.0, 0.0)
-            publisher.wait_for_all_acked(Duration(seconds=1.0))  # before this process ends
+            publisher.wait_for_all_acked(Duration(seconds=1.0))  # otherwise, this process could end first
         print()
         node.destroy_node()
         rclpy.try_shutdown()

@@ -1,4 +1,4 @@
-"""The array engine: a scan in about sixty numpy calls, with the same bits as the loops.
+"""The array engine: it computes a scan in about sixty numpy calls, with the same bits as the loops.
 
 The (wall, beam) pairs that meet are put in one flat list, about two for each beam, in which their inverse ranges are
 computed and reduced. The scalar code, which is exact, computes the few hard walls: those in line with the sensor, those
@@ -27,11 +27,11 @@ Float32s = NDArray[np.float32]
 
 __all__ = ["advance_free", "advance_near", "fan", "gap", "nearest", "rays", "to_readings"]
 
-# The maximum error in radians of numpy's arctan2 and the arithmetic after it, with a wide margin.
+# An upper bound, with a wide margin, on the error of numpy's arctan2 and the arithmetic after it, in radians.
 BEARING_ERROR = 1e-12
-# With more walls, it is faster to remove those that are out of reach first.
+# With more walls than this, it is faster to remove those that are out of reach first.
 MAX_WALLS_UNFILTERED = 200
-# The beams of a wall are also looked for a turn earlier, because they may continue after the end of a turn.
+# The beams of a wall are searched for on two laps, because they may continue past the end of a turn.
 LAPS = np.array(((0.0,), (1.0,)))
 
 
@@ -46,7 +46,7 @@ def fan(
     per_radian: float,
     reach: float,
 ) -> Floats:
-    """Return the ranges of a fan, with the arguments and the bits of `loops.fan`."""
+    """Return the ranges of a fan. Arguments and results are those of `loops.fan`, bit for bit."""
     s, c = sincos(yaw)
     directions = c * table
     dx, dy = directions
@@ -57,9 +57,9 @@ def fan(
     best.fill(NOTHING)
     if walls.shape[1] > MAX_WALLS_UNFILTERED:
         x1, x2, y1, y2 = walls[:4]
-        out_of_reach = (np.maximum(x1, x2) < ox - reach) | (np.minimum(x1, x2) > ox + reach)
-        out_of_reach |= (np.maximum(y1, y2) < oy - reach) | (np.minimum(y1, y2) > oy + reach)
-        walls = walls[:, ~out_of_reach]
+        is_out_of_reach = (np.maximum(x1, x2) < ox - reach) | (np.minimum(x1, x2) > ox + reach)
+        is_out_of_reach |= (np.maximum(y1, y2) < oy - reach) | (np.minimum(y1, y2) > oy + reach)
+        walls = walls[:, ~is_out_of_reach]
     if walls.shape[1]:
         _walls_into(best, directions, walls, ox, oy, yaw + angle_min, per_radian, reach)
     if len(circles):
@@ -72,7 +72,7 @@ def _walls_into(
     best: Floats, directions: Floats, walls: Floats, ox: float, oy: float, zero: float, per_radian: float, reach: float
 ) -> None:
     edge, length = walls[4:6], walls[6]
-    ends = walls[:4] - np.array((ox, ox, oy, oy)).reshape(4, 1)  # from the sensor
+    ends = walls[:4] - np.array((ox, ox, oy, oy)).reshape(4, 1)  # relative to the sensor
     cross = ends[::2] * edge
     h = cross[0] - cross[1]
     extents = np.abs(ends)
@@ -83,7 +83,7 @@ def _walls_into(
     near += far
     near *= far
     near *= length
-    hard = near >= LIMIT * np.abs(h)
+    is_hard = near >= LIMIT * np.abs(h)
 
     # Bearings and runs are in turns at first, so that a lap is 1.0.
     count, size = len(best), len(h)
@@ -97,32 +97,32 @@ def _walls_into(
     low += bearings[0]
     low -= zero / TAU - doubt
     low -= np.floor(low)
-    # The start, and the distance from the end to the last beam, on each lap, with a margin.
+    # On each lap: the number of beams before the run and after it, not yet rounded, with a margin.
     runs = np.empty((2, 2, size))
-    begins, rests = runs
-    np.subtract(low, LAPS, out=begins)
-    np.add(begins, np.abs(swing), out=rests)
-    np.subtract((count - 1) / full + 2.0 * doubt, rests, out=rests)
+    beams_before, beams_after = runs
+    np.subtract(low, LAPS, out=beams_before)
+    np.add(beams_before, np.abs(swing), out=beams_after)
+    np.subtract((count - 1) / full + 2.0 * doubt, beams_after, out=beams_after)
     runs *= full
     inner = np.ceil(runs)
-    unsure = inner - runs > 1.0 - 2.0 * doubt * full
+    is_unsure = inner - runs > 1.0 - 2.0 * doubt * full
 
     outside = np.maximum(inner, 0.0).astype(np.intp)  # the numbers of beams before and after the run
     starts = outside[0]
     lengths = count - starts
     lengths -= outside[1]
     np.maximum(lengths, 0, out=lengths)
-    suspects = (unsure | hard).ravel().nonzero()[0]
+    suspects = (is_unsure | is_hard).ravel().nonzero()[0]
     if len(suspects):
         for k in {place % size for place in suspects.tolist()}:
             # A hard wall that no beam meets is skipped, unless the sensor may be on it.
             is_met = lengths[0, k] or lengths[1, k] or abs(swing[k]) > 0.4 or h[k] == 0.0
-            if is_met or unsure[:, :, k].any():
+            if is_met or is_unsure[:, :, k].any():
                 lengths[:, k] = 0
                 px, qx, py, qy, ey, ex, _ = walls[:, k].tolist()
                 wall_into(best, directions, ox, oy, (px, py, qx, qy, ex, ey), zero, per_radian)
     h += NOTHING
-    factors = np.empty((2, 2, size))  # for x and y, the same on both laps
+    factors = np.empty((2, 2, size))  # for x and y; both laps have the same factors
     np.divide(edge[:, None], h, out=factors)
     lengths, shifts = lengths.ravel(), starts.ravel()
     shifts += lengths
@@ -148,11 +148,11 @@ def _circles_into(best: Floats, directions: Floats, circles: Floats, ox: float, 
         along, s = along[circle_indices, beams], s[circle_indices, beams]
         radius, squared = radius[circle_indices, 0], squared[circle_indices, 0]
         gap = (radius - s) * (radius + s)
-        tangent = np.abs(gap) <= TANGENT * (radius * radius) * squared
-        meets = (gap > 0.0) & (along > 0.0)
-        distance = along - np.sqrt(np.where(meets, gap, 0.0))
-        inverse = np.where(meets, 1.0 / np.where(meets & (distance > NOTHING), distance, NOTHING), 0.0)
-        for at in np.flatnonzero(tangent).tolist():
+        is_tangent = np.abs(gap) <= TANGENT * (radius * radius) * squared
+        is_met_ahead = (gap > 0.0) & (along > 0.0)
+        distance = along - np.sqrt(np.where(is_met_ahead, gap, 0.0))
+        inverse = np.where(is_met_ahead, 1.0 / np.where(is_met_ahead & (distance > NOTHING), distance, NOTHING), 0.0)
+        for at in np.flatnonzero(is_tangent).tolist():
             (cx, cy, r), beam = circles[circle_indices[at]].tolist(), beams[at]
             inverse[at] = circle_inverse(float(dx[beam]), float(dy[beam]), ox, oy, cx, cy, r)
         inverse[squared <= radius * radius] = 0.0
@@ -162,7 +162,7 @@ def _circles_into(best: Floats, directions: Floats, circles: Floats, ox: float, 
 
 
 def rays(walls: Floats, circles: Floats, origins: Floats, directions: Floats) -> Floats:
-    """Return the ranges of single beams, with the arguments and the bits of `traverse.rays`."""
+    """Return the ranges of single beams. Arguments and results are those of `traverse.rays`, bit for bit."""
     best = np.full(len(origins), NOTHING)
     batch = max(1, 200_000 // max(1, walls.shape[1]))
     for at in range(0, len(origins), batch):
@@ -182,21 +182,21 @@ def _rays_into(best: Floats, walls: Floats, origins: Floats, directions: Floats)
     ox, oy = origins[:, 0:1], origins[:, 1:2]
     dx, dy = directions[:, 0:1], directions[:, 1:2]
     vx, vy = x1 - ox, y1 - oy
-    one, two = dx * vy, dy * vx
-    before = one - two
-    unsure = np.abs(before) <= ERROR_BOUND * (np.abs(one) + np.abs(two))
-    one, two = dx * (y2 - oy), dy * (x2 - ox)
-    after = one - two
-    unsure |= np.abs(after) <= ERROR_BOUND * (np.abs(one) + np.abs(two))
-    one, two = vx * ey, vy * ex
-    h = one - two
-    unsure |= np.abs(h) <= 2.0 * ERROR_BOUND * (np.abs(one) + np.abs(two))
-    hit = ((before > 0.0) != (after > 0.0)) & ((h > 0.0) == (after > 0.0)) & ~unsure
+    left_term, right_term = dx * vy, dy * vx
+    before = left_term - right_term
+    is_unsure = np.abs(before) <= ERROR_BOUND * (np.abs(left_term) + np.abs(right_term))
+    left_term, right_term = dx * (y2 - oy), dy * (x2 - ox)
+    after = left_term - right_term
+    is_unsure |= np.abs(after) <= ERROR_BOUND * (np.abs(left_term) + np.abs(right_term))
+    left_term, right_term = vx * ey, vy * ex
+    h = left_term - right_term
+    is_unsure |= np.abs(h) <= 2.0 * ERROR_BOUND * (np.abs(left_term) + np.abs(right_term))
+    is_hit = ((before > 0.0) != (after > 0.0)) & ((h > 0.0) == (after > 0.0)) & ~is_unsure
     inverse = dx * (ey / (h + NOTHING)) - dy * (ex / (h + NOTHING))
     m = np.abs(vx) + np.abs(vy)
-    plain = (inverse > 0.0) & (length * (m * inverse + 1.0) <= LIMIT * np.abs(h) * (inverse * inverse))
-    np.maximum(best, np.where(hit & plain, inverse, 0.0).max(axis=1, initial=0.0), out=best)
-    for beam, k in np.argwhere(unsure | (hit & ~plain)).tolist():
+    is_double_enough = (inverse > 0.0) & (length * (m * inverse + 1.0) <= LIMIT * np.abs(h) * (inverse * inverse))
+    np.maximum(best, np.where(is_hit & is_double_enough, inverse, 0.0).max(axis=1, initial=0.0), out=best)
+    for beam, k in np.argwhere(is_unsure | (is_hit & ~is_double_enough)).tolist():
         (o_x, o_y), (d_x, d_y) = origins[beam].tolist(), directions[beam].tolist()
         px, qx, py, qy, e_y, e_x, _ = walls[:, k].tolist()
         best[beam] = max(best[beam], wall_hit(d_x, d_y, o_x, o_y, px, py, qx, qy, e_x, e_y))

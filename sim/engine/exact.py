@@ -62,7 +62,7 @@ def sign_of_sum(terms: NDArray[np.float64]) -> int:
 def add_product(
     terms: NDArray[np.float64], at: int, a: float, a_low: float, b: float, b_low: float, sign: float
 ) -> None:
-    """Write the eight exact parts of sign * (a + a_low) * (b + b_low) to `terms` from `at` on."""
+    """Write the eight exact parts of sign * (a + a_low) * (b + b_low) to `terms`, from index `at` on."""
     terms[at], terms[at + 1] = two_product(sign * a, b)
     terms[at + 2], terms[at + 3] = two_product(sign * a, b_low)
     terms[at + 4], terms[at + 5] = two_product(sign * a_low, b)
@@ -100,7 +100,7 @@ def orientation(ox: float, oy: float, px: float, py: float, qx: float, qy: float
 
 
 def double_product(a: float, a_low: float, b: float, b_low: float) -> tuple[float, float]:
-    """Return (a + a_low)(b + b_low) as a double-double, to about 2**-104 of its size."""
+    """Return (a + a_low)(b + b_low) as a double-double, with a relative error of about 2**-104."""
     product, error = two_product(a, b)
     error += a * b_low + a_low * b
     return two_sum(product, error)

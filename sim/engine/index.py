@@ -1,4 +1,4 @@
-"""The walls of a world in the form that the engines need: as columns, and more than 300 also in a grid of cells."""
+"""The walls of a world in the form that engines need: as columns and, if there are many, also in a grid of cells."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def grid_of(walls: Floats) -> Grid:
     left = np.clip(((np.minimum(x1, x2) - MARGIN - west) / cell).astype(np.int64), 0, columns - 1)
     right = np.clip(((np.maximum(x1, x2) + MARGIN - west) / cell).astype(np.int64), 0, columns - 1)
     wall, column = _expand_ranges(left, right)
-    # The range of y of the wall in this column; for a nearly vertical wall, that of its ends.
+    # The wall's range of y in this column. A nearly vertical wall has the range between its ends.
     ex, ey = x2 - x1, y2 - y1
     is_vertical = np.abs(ex) <= 1e-3
     slope = np.divide(ey, ex, out=np.zeros_like(ex), where=~is_vertical)

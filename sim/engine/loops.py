@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 # The maximum error of `bearing` in radians. Beams within this angle of a wall's end are decided exactly.
 BEARING_ERROR = 4e-9
-# Makes even the smallest wall a hard one if its ends are in line with the sensor, apart from rounding.
+# Makes even the smallest wall a hard case if, apart from rounding, its ends are in line with the sensor.
 SMALL = 1e-9
 
 
@@ -54,9 +54,9 @@ def wall_into(
     zero: float,
     per_radian: float,
 ) -> None:
-    """Raise the inverse ranges `best` (beams,) to those of one wall where it is nearer. All beams are decided exactly.
+    """Raise the inverse ranges `best` (beams,) to those of a wall where it is nearer. Each beam is decided exactly.
 
-    `directions` is (2, beams), `zero` the bearing of the first beam in the map, `per_radian` the beams in a radian.
+    `directions` is (2, beams), `zero` the bearing of the first beam in the map, and `per_radian` the beams per radian.
     """
     px, py, qx, qy, ex, ey = wall
     vx = px - ox
@@ -108,7 +108,7 @@ def circle_into(
     zero: float,
     per_radian: float,
 ) -> None:
-    """Raise the inverse ranges `best` (beams,) to those of one solid circle where it is nearer."""
+    """Raise the inverse ranges `best` (beams,) to those of a solid circle where the circle is nearer."""
     cx, cy, radius = circle
     vx = cx - ox
     vy = cy - oy
@@ -187,14 +187,14 @@ def fan(
         width = plan[1, k]
         a = plan[2, k]
         b = plan[3, k]
-        hard = plan[4, k] != 0.0
+        is_hard = plan[4, k] != 0.0
         for lap in range(2):
             low = first - lap * full
             high = low + width
             start = math.ceil(low + doubt)
             stop = math.floor(high - doubt)
-            hard = hard or math.ceil(low - doubt) != start or math.floor(high + doubt) != stop
-        if hard:
+            is_hard = is_hard or math.ceil(low - doubt) != start or math.floor(high + doubt) != stop
+        if is_hard:
             wall = (walls[0, k], walls[2, k], walls[1, k], walls[3, k], walls[5, k], walls[4, k])
             wall_into(best, directions, ox, oy, wall, zero, per_radian)
             continue

@@ -17,17 +17,17 @@ from sim.engine.trig import sinc, sincos, wrap
 
 Floats = NDArray[np.float64]
 
-# A contact is a gap of two skins, which sliding may reduce to one. No motion makes a gap smaller than one skin.
+# The gap at a contact is two skins (m). Sliding may reduce it to one, but no motion makes a gap smaller than that.
 SKIN = 1e-6
-# The minimum distance that a robot moves between two computations of the gap.
+# The minimum distance that a robot moves between two computations of the gap, in metres.
 STRIDE = 1e-3
 # The number of bisections of an interval that contains a contact.
 HALVINGS = 39
-# If a robot has no gap at these shares of the interval, it leans on the obstacle, and is stopped without bisection.
+# If the gap is too small at all these shares of the interval, the robot leans on the obstacle and stops at once.
 LEANING_SHARES = (0.5**39, 0.5**26, 0.5**13)
 
 Motion = tuple[float, float, float, float]
-"""Speeds v, m/s, and w, rad/s, along an arc, and a slip in x and in y, m/s."""
+"""The speeds along an arc, v in m/s and w in rad/s, and the slip in x and in y, in m/s."""
 
 
 def approach(value: float, target: float, max_change: float) -> float:
@@ -51,8 +51,8 @@ def measure(robot: Floats, ds: float, turn: float, drift: Floats, noise: Floats)
     """
     distance_variance = drift[0] * abs(ds)
     turn_variance = drift[1] * abs(turn) + drift[2] * abs(ds)
-    noisy = distance_variance + turn_variance > 0.0
-    if noisy:
+    has_noise = distance_variance + turn_variance > 0.0
+    if has_noise:
         ds += math.sqrt(distance_variance) * noise[0]
         turn += math.sqrt(turn_variance) * noise[1]
     s, c = sincos(robot[7] + 0.5 * turn)
@@ -100,37 +100,37 @@ def sweep(
 ) -> float:
     """Move `pose` (x, y, theta) until it meets an obstacle; return the share of `dt` until then, 1 if it meets none.
 
-    The gap to the obstacles does not fall below `min_gap`, or below its value at the start. `body` is as in
-    `shapes.gap`, which fills `touch`.
+    The gap to the obstacles does not fall below `min_gap` or, if that is smaller, its initial value. `body` is the same
+    as in `shapes.gap`, which fills `touch`.
     """
     x, y, theta = pose[0], pose[1], pose[2]
     current_gap = gap(x, y, theta, body, walls, circles, touch)
     min_gap = min(min_gap, current_gap)
     max_distance = (abs(motion[0]) + abs(motion[2]) + abs(motion[3]) + abs(motion[1]) * body[0, 1]) * dt
-    done = 0.0
-    while done < 1.0 and max_distance > 0.0:
-        high = min(done + max(current_gap - SKIN, STRIDE) / max_distance, 1.0)
+    completed_share = 0.0
+    while completed_share < 1.0 and max_distance > 0.0:
+        high = min(completed_share + max(current_gap - SKIN, STRIDE) / max_distance, 1.0)
         a, b, c = pose_after(x, y, theta, motion, high * dt)
         current_gap = gap(a, b, c, body, walls, circles, touch)
         if current_gap >= min_gap:
             pose[0], pose[1], pose[2] = a, b, c
-            done = high
+            completed_share = high
             continue
         obstacle = touch[0]
         is_leaning = True
         for share in LEANING_SHARES:
-            a, b, c = pose_after(x, y, theta, motion, (done + share * (high - done)) * dt)
+            a, b, c = pose_after(x, y, theta, motion, (completed_share + share * (high - completed_share)) * dt)
             is_leaning = is_leaning and gap(a, b, c, body, walls, circles, touch) < min_gap and touch[0] == obstacle
         for _ in range(0 if is_leaning else HALVINGS):
-            share = 0.5 * (done + high)
+            share = 0.5 * (completed_share + high)
             a, b, c = pose_after(x, y, theta, motion, share * dt)
             if gap(a, b, c, body, walls, circles, touch) >= min_gap:
                 pose[0], pose[1], pose[2] = a, b, c
-                done = share
+                completed_share = share
             else:
                 high = share
         gap(pose[0], pose[1], pose[2], body, walls, circles, touch)
-        return done
+        return completed_share
     return 1.0
 
 
@@ -150,9 +150,9 @@ def advance_near(
 ) -> bool:
     """Advance `robot` by one tick if an obstacle is near; return whether it was in contact.
 
-    After a contact, a robot that stops continues to turn in place, and one that slides keeps the part of its motion
-    along the obstacle. `touch` then describes the contact (see `shapes.gap`), and its sixth number is the speed of the
-    impact.
+    After a contact, a robot that does not slide stops, but continues to turn in place. A robot that slides keeps the
+    part of its motion along the obstacle. `touch` then describes the contact (see `shapes.gap`), and its sixth number
+    is the speed of the impact.
     """
     robot[3] = approach(robot[3], min(max(v, -limits[0]), limits[0]), limits[2] * dt)
     robot[4] = approach(robot[4], min(max(w, -limits[1]), limits[1]), limits[3] * dt)
@@ -171,25 +171,25 @@ def advance_near(
         measure(robot, v * dt, w * dt, drift, noise)
         return False
     ds, turn = v * dt * share, w * dt * share
-    remaining = dt * (1.0 - share)
+    remaining_time = dt * (1.0 - share)
     nx, ny = touch[3], touch[4]
     s, c = sincos(pose[2])
     sx = 0.0
     sy = 0.0
     if slide:
-        into = min(v * (c * nx + s * ny), 0.0)
-        sx = v * c - into * nx
-        sy = v * s - into * ny
+        inward_speed = min(v * (c * nx + s * ny), 0.0)
+        sx = v * c - inward_speed * nx
+        sy = v * s - inward_speed * ny
     unused_touch = np.empty(6)
-    further_share = sweep(pose, (0.0, w, sx, sy), remaining, SKIN, body, walls, circles, unused_touch)
+    further_share = sweep(pose, (0.0, w, sx, sy), remaining_time, SKIN, body, walls, circles, unused_touch)
     if further_share < 1.0 and slide:  # in a corner, only the turn remains
         further_share = sweep(
-            pose, (0.0, w, 0.0, 0.0), remaining * (1.0 - further_share), SKIN, body, walls, circles, unused_touch
+            pose, (0.0, w, 0.0, 0.0), remaining_time * (1.0 - further_share), SKIN, body, walls, circles, unused_touch
         )
         sx = 0.0
         sy = 0.0
     robot[3] = v if slide else 0.0
     robot[4] = w if further_share == 1.0 else 0.0
-    measure(robot, ds + (c * sx + s * sy) * remaining, turn + robot[4] * remaining, drift, noise)
+    measure(robot, ds + (c * sx + s * sy) * remaining_time, turn + robot[4] * remaining_time, drift, noise)
     touch[5] = abs(v)
     return True

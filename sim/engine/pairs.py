@@ -1,4 +1,4 @@
-"""The range of one beam to one wall or one pillar, which every engine has to compute in the same order.
+"""The range of one beam to one wall or one pillar, which every engine computes with the same operations in one order.
 
 A beam from o along the unit vector d meets a wall from p to q at r = ((p - o) x e) / (d x e), e = q - p. Its inverse is
 linear in d: 1/r = dx A - dy B with A = ey / h, B = ex / h and h = (p - o) x e. So the inner loops need no division, and
@@ -16,8 +16,10 @@ import math
 from sim.engine.exact import ERROR_BOUND, circle_distance, line_distance, orientation, side
 
 LIMIT = 1000.0
+# A beam counts as nearly tangent to a circle if |R² - s²| is below this share of R² |c - o|².
 TANGENT = 1e-6
 TOUCHING = 1e300
+# The inverse range of a beam that meets nothing. It also keeps quotients finite.
 NOTHING = 1e-300
 
 
@@ -78,7 +80,7 @@ def wall_hit(
     ex: float,
     ey: float,
 ) -> float:
-    """Return the inverse range of a wall, or 0 if the beam misses it, which is decided exactly."""
+    """Return the inverse range of a wall, or 0 if the beam misses it. Whether it does is decided exactly."""
     before = side(dx, dy, ox, oy, px, py)
     after = side(dx, dy, ox, oy, qx, qy)
     if before * after > 0:

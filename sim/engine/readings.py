@@ -1,4 +1,4 @@
-"""Converts exact distances to a lidar's readings, with noise, the codes of REP 117, single precision, intensities."""
+"""Converts exact distances to a lidar's readings: float32 ranges with noise and REP 117's codes, and intensities."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ STRENGTH = 1000.0
 def to_readings(
     ranges: Floats, noise: Floats, sigma: float, range_min: float, range_max: float, strengths: bool
 ) -> tuple[Float32s, Float32s]:
-    """Return the ranges and the intensities (beams,) of distances (beams,) in metres.
+    """Convert distances (beams,) in metres to ranges and intensities (beams,).
 
     `noise` is empty, or contains a standard normal number for each beam, which is scaled by `sigma` metres. By REP 117,
-    a range is `+inf` beyond `range_max` and `-inf` below `range_min`. Without `strengths`, the intensities are empty.
+    a range is `+inf` beyond `range_max` and `-inf` below `range_min`. If not `strengths`, the intensities are empty.
     """
     count = len(ranges)
     result = np.empty(count, dtype=np.float32)
@@ -37,6 +37,6 @@ def to_readings(
         reading = np.float32(distance)
         result[beam] = reading
         if strengths:
-            measured = np.float64(reading)
-            returns[beam] = np.float32(STRENGTH / (1.0 + measured * measured)) if measured >= 0.0 else np.float32(0.0)
+            value = np.float64(reading)
+            returns[beam] = np.float32(STRENGTH / (1.0 + value * value)) if value >= 0.0 else np.float32(0.0)
     return result, returns

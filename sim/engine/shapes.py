@@ -31,7 +31,7 @@ def nearest_on(px: float, py: float, qx: float, qy: float, x: float, y: float) -
 
 
 def distance(ax: float, ay: float, bx: float, by: float) -> float:
-    """Return the distance of two points, without a library's hypot, whose rounding may differ."""
+    """Return the distance between two points, without a library's hypot, whose rounding may differ."""
     x = bx - ax
     y = by - ay
     return math.sqrt(x * x + y * y)
@@ -50,7 +50,7 @@ def nearest(walls: Floats, circles: Floats, x: float, y: float) -> float:
 
 
 def gap(x: float, y: float, theta: float, body: Floats, walls: Floats, circles: Floats, touch: Floats) -> float:
-    """Return the distance in metres from the footprint at a pose to the nearest obstacle, below 0 inside one.
+    """Return the distance in metres from the footprint at a pose to the nearest obstacle, below 0 inside an obstacle.
 
     The obstacle's number (walls first, then circles), its nearest point, and the direction from this point to the
     footprint are written to `touch` (6,).
@@ -85,7 +85,7 @@ def gap(x: float, y: float, theta: float, body: Floats, walls: Floats, circles: 
 
 
 def polygon_gap(x: float, y: float, theta: float, body: Floats, walls: Floats, circles: Floats, touch: Floats) -> float:
-    """Return the gap, as `gap` does, of a convex polygon."""
+    """Return the gap of a convex polygon, and fill `touch`, as `gap` does."""
     s, c = sincos(theta)
     count = len(body) - 1
     corners = np.empty((count + 1, 2))
@@ -138,7 +138,7 @@ def polygon_to_point(corners: Floats, px: float, py: float, contact: Floats) -> 
 
 
 def polygon_to_wall(corners: Floats, px: float, py: float, qx: float, qy: float, contact: Floats) -> float:
-    """Return the distance of a wall from a convex polygon; below 0, the depth by which they overlap."""
+    """Return the distance of a wall from a convex polygon or, if they overlap, the negative depth of the overlap."""
     # The separating axes are the normals of the polygon and of the wall.
     overlap = FAR
     for i in range(len(corners)):
@@ -152,9 +152,9 @@ def polygon_to_wall(corners: Floats, px: float, py: float, qx: float, qy: float,
             ny /= size
             low, high = FAR, -FAR
             for j in range(len(corners) - 1):
-                at = corners[j, 0] * nx + corners[j, 1] * ny
-                low = min(low, at)
-                high = max(high, at)
+                projection = corners[j, 0] * nx + corners[j, 1] * ny
+                low = min(low, projection)
+                high = max(high, projection)
             first, second = px * nx + py * ny, qx * nx + qy * ny
             forth = high - min(first, second)
             back = max(first, second) - low

@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 MARGIN = 1e-6
-FLAT = 1e-12  # a beam so nearly parallel to an axis stays in its column or row, within the margin
+FLAT = 1e-12  # with a smaller component of its direction, a beam stays in its column or row, within the margin
 NEVER = 1e300
 
 
@@ -66,31 +66,31 @@ def follow_beam(
     width, height = cell * columns, cell * rows
     per_x = 1.0 / dx if abs(dx) >= FLAT else 0.0
     per_y = 1.0 / dy if abs(dy) >= FLAT else 0.0
-    enter = 0.0
+    entry = 0.0
     if x < 0.0 or x > width or y < 0.0 or y > height:  # outside the grid: start where the beam enters it
-        leave = reach
+        departure = reach
         for o, per, size in ((x, per_x, width), (y, per_y, height)):
             if per != 0.0:
                 a, b = -o * per, (size - o) * per
-                enter = max(enter, min(a, b))
-                leave = min(leave, max(a, b))
+                entry = max(entry, min(a, b))
+                departure = min(departure, max(a, b))
             elif o < -MARGIN or o > size + MARGIN:
                 return best
-        if enter > leave + MARGIN:
+        if entry > departure + MARGIN:
             return best
     per_cell = 1.0 / cell
-    column = min(max(int((x + enter * dx) * per_cell), 0), columns - 1)
-    row = min(max(int((y + enter * dy) * per_cell), 0), rows - 1)
+    column = min(max(int((x + entry * dx) * per_cell), 0), columns - 1)
+    row = min(max(int((y + entry * dy) * per_cell), 0), rows - 1)
     doubt = 4.0 * ERROR_BOUND * (abs(x) + abs(y) + width + height)
     column_step = 1 if dx > 0.0 else -1
     row_step = 1 if dy > 0.0 else -1
-    across = (cell * (column + (column_step + 1) // 2) - x) * per_x if per_x != 0.0 else NEVER
-    up = (cell * (row + (row_step + 1) // 2) - y) * per_y if per_y != 0.0 else NEVER
+    next_column = (cell * (column + (column_step + 1) // 2) - x) * per_x if per_x != 0.0 else NEVER
+    next_row = (cell * (row + (row_step + 1) // 2) - y) * per_y if per_y != 0.0 else NEVER
     per_x = cell * abs(per_x)
     per_y = cell * abs(per_y)
     while True:
-        place = row * columns + column
-        for index in range(starts[place], starts[place + 1]):
+        cell_index = row * columns + column
+        for index in range(starts[cell_index], starts[cell_index + 1]):
             k = members[index]
             px, qx, py, qy = walls[0, k], walls[1, k], walls[2, k], walls[3, k]
             vx = px - ox
@@ -106,15 +106,15 @@ def follow_beam(
                 best = max(best, wall_hit(dx, dy, ox, oy, px, py, qx, qy, ex, ey))
             elif (h > 0.0) == (after > 0.0):
                 best = max(best, wall_inverse(dx, dy, ox, oy, px, py, qx, qy, ex, ey))
-        next_cell = min(across, up)
+        next_cell = min(next_column, next_row)
         if next_cell > reach or next_cell * best > 1.0 + MARGIN * best:
             return best
-        if across < up:
+        if next_column < next_row:
             column += column_step
-            across += per_x
+            next_column += per_x
         else:
             row += row_step
-            up += per_y
+            next_row += per_y
         if column < 0 or column >= columns or row < 0 or row >= rows:
             return best
 
@@ -137,7 +137,7 @@ def fan_in_grid(
     per_radian: float,
     reach: float,
 ) -> Floats:
-    """Return the ranges of a fan, as `loops.fan` does, with the grid of `index.Grid`."""
+    """Return the ranges of a fan, as `loops.fan` does, but with the walls sorted into an `index.Grid`."""
     s, c = sincos(yaw)
     count = table.shape[1]
     directions = np.empty((2, count))

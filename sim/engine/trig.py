@@ -1,4 +1,4 @@
-"""Sine and cosine, computed only with correctly rounded operations, so that every machine has the same bits.
+"""Sine and cosine, computed only with correctly rounded operations, so that every machine computes the same bits.
 
 The sin and cos of a C library may differ in the last bit between processors with and without fused multiply-add.
 Addition, multiplication and flooring of doubles are the same everywhere (IEEE 754), and the functions in this module
@@ -92,5 +92,5 @@ def wrap(angle: float) -> float:
     """Return `angle` as the same heading in [-pi, pi)."""
     if -PI <= angle < PI:
         return angle
-    wrapped = angle - TAU * math.floor((angle + PI) / TAU)
-    return wrapped if wrapped < PI else -PI
+    wrapped_angle = angle - TAU * math.floor((angle + PI) / TAU)
+    return wrapped_angle if wrapped_angle < PI else -PI

@@ -24,8 +24,8 @@ def to_gif(recording: Recording, path: str | Path, *, speed: float = 1.0, fps: f
     Args:
         recording: the run.
         path: the path of the GIF.
-        speed: simulated seconds in a second.
-        fps: frames a second.
+        speed: simulated seconds per second.
+        fps: frames per second.
 
     Raises:
         ExportError: the speed or the frame rate is invalid, or a GIF would have too many frames.
@@ -41,8 +41,8 @@ def to_mp4(recording: Recording, path: str | Path, *, speed: float = 1.0, fps: f
     Args:
         recording: the run.
         path: the path of the MP4.
-        speed: simulated seconds in a second.
-        fps: frames a second.
+        speed: simulated seconds per second.
+        fps: frames per second.
 
     Raises:
         ExportError: ffmpeg is not installed or fails, or the speed or the frame rate is invalid.

@@ -1,4 +1,4 @@
-"""Writes a rosbag2 folder with one mcap file, without ROS, with the library `rosbags`."""
+"""Writes a rosbag2 folder with one mcap file, using the library `rosbags` instead of ROS."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from sim.state import RobotState
 PLANAR = (0, 1, 5)  # x, y and yaw among the six axes of a covariance
 
 Row = tuple[int, int, str, str, Any]
+"""The time in ns, the order among rows of the same time, the topic, the type, and the value of a message."""
 
 
 def write_bag(recording: Recording, path: Path) -> Path:
@@ -33,7 +34,7 @@ def write_bag(recording: Recording, path: Path) -> Path:
     if folder.exists():
         raise ExportError(f"{folder}: there is something already: remove it, or give another name")
     store = get_typestore(Stores.LATEST)  # these messages are the same in each distribution since ROS 2 Foxy
-    infinite = QosTime(2147483647, 4294967295)
+    infinite_time = QosTime(2147483647, 4294967295)
 
     def qos(reliability: Any, depth: int) -> Any:
         return Qos(
@@ -41,10 +42,10 @@ def write_bag(recording: Recording, path: Path) -> Path:
             depth=depth,
             reliability=reliability,
             durability=QosDurability.VOLATILE,
-            deadline=infinite,
-            lifespan=infinite,
+            deadline=infinite_time,
+            lifespan=infinite_time,
             liveliness=QosLiveliness.AUTOMATIC,
-            liveliness_lease_duration=infinite,
+            liveliness_lease_duration=infinite_time,
             avoid_ros_namespace_conventions=False,
         )
 
@@ -63,7 +64,7 @@ def write_bag(recording: Recording, path: Path) -> Path:
 
 
 def _rows(recording: Recording) -> Iterator[Row]:
-    """Yield all messages in the order of their times; at the same time, clock, command, odometry, scan."""
+    """Yield all messages, ordered by time. Those of one time are in the order clock, command, odometry, scan."""
     return heapq.merge(*_streams(recording), key=lambda row: row[:2])
 
 

@@ -1,4 +1,4 @@
-"""The exception of exports, a SimError, so that one `except` catches all exceptions of the simulator."""
+"""The exception that exports raise: a SimError, so that one `except` catches all exceptions of the simulator."""
 
 from sim.exceptions import SimError
 

@@ -17,7 +17,7 @@ from sim.view.theme import LIGHT
 
 
 def require_pace(recording: Recording, path: Path, speed: float, fps: float, *, max_frames: int) -> None:
-    """Raise an ExportError if the speed or the frame rate is invalid, or the frames are more than `max_frames`."""
+    """Raise an ExportError if the speed or the frame rate is invalid, or if there are more than `max_frames` frames."""
     if not (0.0 < speed <= 1000.0 and 0.0 < fps <= 50.0):
         raise ExportError(
             f"a speed of {speed} at {fps} frames/s makes no sense: give a speed above 0, up to 50 frames/s"

@@ -1,6 +1,6 @@
-"""Writes an HTML file with the player of `sim.view` for a run.
+"""Writes an HTML file in which the player of `sim.view` shows a run.
 
-The page loads nothing, so that it can be opened from a disk or an e-mail. It does not start to play by itself.
+The page loads nothing, so that it can be opened from a disk or an e-mail. The run does not start to play by itself.
 """
 
 from __future__ import annotations

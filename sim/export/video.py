@@ -35,7 +35,7 @@ def write_video(recording: Recording, path: Path, speed: float, fps: float) -> P
                 encoder.stdin.write(image.tobytes())
             encoder.stdin.close()
         except BrokenPipeError:
-            pass  # its error output says why
+            pass  # ffmpeg has ended; its error output explains why
         reason = encoder.stderr.read().decode(errors="replace").strip()
     if encoder.returncode != 0:
         raise ExportError(f"{path}: ffmpeg ended with status {encoder.returncode}: {reason}")

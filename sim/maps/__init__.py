@@ -1,9 +1,9 @@
-"""Reads ROS maps, the YAML file and picture of nav2's map_server, as worlds. The picture is traced into walls.
+"""Reads ROS maps (a YAML file and a picture for nav2's map_server) as worlds. The picture is traced into walls.
 
     >>> from sim.maps import load_map
     >>> world = load_map("assets/worlds/office.yaml")
 
-The outlines follow the cells exactly. With a `tolerance`, they have fewer walls, and slanted walls are not stepped.
+The outlines follow the cells exactly. With a `tolerance`, they consist of fewer walls, and slanted walls have no steps.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from sim.world import Goal, World
 from sim.worldfile import load_world
 
 MAX_EDGES = 400_000
-"""The maximum number of unit edges of an outline. A photograph or noise has more, a floor plan does not."""
+"""The maximum number of unit edges of an outline. A floor plan has fewer; a photograph or noise has more."""
 
 __all__ = ["MAX_EDGES", "MapFile", "load", "load_map", "read_map_file"]
 
@@ -44,7 +44,7 @@ def load_map(
     """Read a map_server YAML file and its picture, and trace the occupied cells into segments, in metres, frame `map`.
 
     A cell is occupied if its shade is above `occupied_thresh` or, in the mode `raw`, if its value, 0 to 100, is at
-    least 100 times that. Unknown cells are not walls.
+    least 100 times that threshold. Unknown cells are not walls.
 
     Args:
         path: the path of the YAML file.
@@ -85,14 +85,14 @@ def _classify_cells(map_file: MapFile, picture: Shades) -> tuple[npt.NDArray[np.
     """Return the masks of occupied and of free cells, (H, W), row 0 the lowest."""
     if map_file.mode == "raw":
         level = np.rint(picture.shade * 255.0)
-        known = level <= 100.0
-        occupied = known & (level >= 100.0 * map_file.occupied_thresh)
-        free = known & (level < 100.0 * map_file.free_thresh)
+        is_known = level <= 100.0
+        occupied = is_known & (level >= 100.0 * map_file.occupied_thresh)
+        free = is_known & (level < 100.0 * map_file.free_thresh)
     else:
         occupancy = picture.shade if map_file.negate else 1.0 - picture.shade
-        known = picture.known if map_file.mode == "scale" else np.ones_like(picture.known)
-        occupied = known & (occupancy > map_file.occupied_thresh)
-        free = known & (occupancy < map_file.free_thresh)
+        is_known = picture.known if map_file.mode == "scale" else np.ones_like(picture.known)
+        occupied = is_known & (occupancy > map_file.occupied_thresh)
+        free = is_known & (occupancy < map_file.free_thresh)
     return occupied[::-1], free[::-1]
 
 

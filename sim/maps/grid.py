@@ -55,7 +55,7 @@ def grid_of(world: World, resolution: float = 0.05) -> Grid:
     grid = Grid(np.full((rows, columns), UNKNOWN, dtype=np.int8), resolution, x, y)
     for x1, y1, x2, y2 in world.segments.reshape(-1, 4).tolist():
         cuts = np.unique(np.concatenate([[0.0, 1.0], _cuts(x1, x2, x, resolution), _cuts(y1, y2, y, resolution)]))
-        shares = (cuts[1:] + cuts[:-1]) / 2  # one in each cell that the wall passes through
+        shares = (cuts[1:] + cuts[:-1]) / 2  # the middle of the part of the wall in each cell that it passes through
         _occupy(grid, x1 + shares * (x2 - x1), y1 + shares * (y2 - y1))
     for centre_x, centre_y, radius in world.circles.tolist():
         count = 8 + math.ceil(4 * math.tau * radius / resolution)
@@ -82,7 +82,7 @@ def _occupy(grid: Grid, x: npt.NDArray[np.float64], y: npt.NDArray[np.float64]) 
 
 
 def _mark_free(cells: npt.NDArray[np.int8], start: tuple[int, int]) -> None:
-    """Mark all cells as free that can be reached from a cell without a diagonal step."""
+    """Mark as free all cells that can be reached from `start` without a diagonal step."""
     rows, columns = cells.shape
     pending = deque([start])
     while pending:

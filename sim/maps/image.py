@@ -61,23 +61,23 @@ def _read_pgm(path: Path, data: bytes) -> npt.NDArray[np.float64]:
     header = _PGM_HEADER.match(data)
     if header is None:
         raise _error(path, "the PGM's header is broken", "Write P2 or P5, then width, height and the largest value")
-    width, height, largest = (int(number) for number in header.groups())
-    if not 1 <= largest <= 65535:
-        raise _error(path, f"the PGM's largest value is {largest}", "Give one between 1 and 65535")
+    width, height, max_value = (int(number) for number in header.groups())
+    if not 1 <= max_value <= 65535:
+        raise _error(path, f"the PGM's largest value is {max_value}", "Give one between 1 and 65535")
     _check_size(path, width, height)
     if data.startswith(b"P2"):
         values = _plain_values(path, data[header.end() - 1 :], width * height)
     else:
-        sample = np.dtype(np.uint8 if largest < 256 else ">u2")
+        sample = np.dtype(np.uint8 if max_value < 256 else ">u2")
         body, size = data[header.end() :], width * height * sample.itemsize
         if len(body) < size:
             raise _error(
                 path, f"the PGM is cut short: it needs {size} bytes of pixels, it has {len(body)}", _SAVE_AGAIN
             )
         values = np.frombuffer(body, dtype=sample, count=width * height).astype(np.float64)
-    if values.max() > largest:
-        raise _error(path, f"a pixel is {values.max():.0f}, above the PGM's largest value {largest}", _SAVE_AGAIN)
-    return (values / largest).reshape(height, width)
+    if values.max() > max_value:
+        raise _error(path, f"a pixel is {values.max():.0f}, above the PGM's largest value {max_value}", _SAVE_AGAIN)
+    return (values / max_value).reshape(height, width)
 
 
 def _plain_values(path: Path, body: bytes, count: int) -> npt.NDArray[np.float64]:

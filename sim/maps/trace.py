@@ -25,42 +25,43 @@ _STEP = ((1, 0), (0, 1), (-1, 0), (0, -1))
 
 def count_edges(occupied: Grid) -> int:
     """Return the number of unit edges in the outline of `occupied` (H, W)."""
-    padded = np.pad(occupied, 1)
-    return int((padded[1:] != padded[:-1]).sum() + (padded[:, 1:] != padded[:, :-1]).sum())
+    padded_cells = np.pad(occupied, 1)
+    return int((padded_cells[1:] != padded_cells[:-1]).sum() + (padded_cells[:, 1:] != padded_cells[:, :-1]).sum())
 
 
 def trace_loops(occupied: Grid) -> list[Loop]:
     """Return the closed outlines of the occupied cells, as corners.
 
     `occupied` is (H, W), row 0 the lowest (y grows with the row). Each loop is (K, 2) float64 corners in cells, x then
-    y, without a repetition of the first. Two cells that touch only at a corner are in separate loops.
+    y, without repeating the first. Two cells that touch only at a corner belong to separate loops.
     """
     edges = _directed_edges(occupied)
-    remaining = {(corner, direction) for corner, directions in edges.items() for direction in directions}
+    remaining_edges = {(corner, direction) for corner, directions in edges.items() for direction in directions}
     loops = []
     for corner, directions in edges.items():
         for direction in directions:
-            if (corner, direction) in remaining:
+            if (corner, direction) in remaining_edges:
                 loop = list(_walk(edges, (corner, direction)))
-                remaining.difference_update(loop)
+                remaining_edges.difference_update(loop)
                 loops.append(_corners(loop))
     return loops
 
 
 def simplify(loop: Loop, tolerance: float) -> Loop:
-    """Drop corners that move the outline by at most `tolerance` (same unit as the loop).
+    """Drop the corners whose removal moves the outline by at most `tolerance` (in the unit of the loop).
 
     The method is that of Ramer (1972) and of Douglas and Peucker (1973), for the two halves of the loop between its
     first corner and the corner farthest from it. A loop that would lose its area is returned unchanged.
     """
     if tolerance <= 0.0 or len(loop) < 4:
         return loop
-    far = int(np.argmax(np.hypot(*(loop - loop[0]).T)))
-    closed = np.vstack([loop, loop[:1]])
+    farthest = int(np.argmax(np.hypot(*(loop - loop[0]).T)))
+    closed_loop = np.vstack([loop, loop[:1]])
     indices = sorted(
-        set(_significant(closed, 0, far, tolerance)) | set(_significant(closed, far, len(loop), tolerance))
+        set(_significant(closed_loop, 0, farthest, tolerance))
+        | set(_significant(closed_loop, farthest, len(loop), tolerance))
     )
-    corners = closed[[index for index in indices if index < len(loop)]]
+    corners = closed_loop[[index for index in indices if index < len(loop)]]
     return corners if len(corners) >= 3 else loop
 
 
@@ -98,9 +99,9 @@ def roomiest_point(free: Grid) -> tuple[float, float] | None:
 
 def _directed_edges(occupied: Grid) -> Edges:
     """Map each corner (x, y) to the directions of the unit edges that leave it, occupied side on the left."""
-    padded = np.pad(occupied, 1)
-    below, above = padded[:-1, 1:-1], padded[1:, 1:-1]
-    left, right = padded[1:-1, :-1], padded[1:-1, 1:]
+    padded_cells = np.pad(occupied, 1)
+    below, above = padded_cells[:-1, 1:-1], padded_cells[1:, 1:-1]
+    left, right = padded_cells[1:-1, :-1], padded_cells[1:-1, 1:]
     edges: Edges = {}
     for mask, direction, dx, dy in (
         (above & ~below, _EAST, 0, 0),
@@ -124,8 +125,8 @@ def _walk(edges: Edges, first: Edge) -> Iterator[Edge]:
         yield edge
         (x, y), heading = edge
         corner = (x + _STEP[heading][0], y + _STEP[heading][1])
-        outgoing = edges[corner]
-        turn = next(d for d in ((heading + 1) % 4, heading, (heading - 1) % 4) if d in outgoing)
+        outgoing_directions = edges[corner]
+        turn = next(d for d in ((heading + 1) % 4, heading, (heading - 1) % 4) if d in outgoing_directions)
         edge = (corner, turn)
         if edge == first:
             return
@@ -133,13 +134,13 @@ def _walk(edges: Edges, first: Edge) -> Iterator[Edge]:
 
 def _corners(loop: list[Edge]) -> Loop:
     """Return the points at which the direction changes."""
-    preceding = [loop[-1], *loop[:-1]]
-    points = [edge[0] for edge, last in zip(loop, preceding, strict=True) if edge[1] != last[1]]
+    previous_edges = [loop[-1], *loop[:-1]]
+    points = [edge[0] for edge, last in zip(loop, previous_edges, strict=True) if edge[1] != last[1]]
     return np.array(points, dtype=np.float64)
 
 
 def _significant(points: Loop, first: int, last: int, tolerance: float) -> list[int]:
-    """Return the indices to keep from `first` to `last`, both included. A stack is used, because loops can be long."""
+    """Return the indices to keep from `first` to `last`, both included. It does not recurse, as loops can be long."""
     indices, stack = [first, last], [(first, last)]
     while stack:
         a, b = stack.pop()

@@ -37,12 +37,12 @@ from sim.view.theme import Theme
 from sim.world import World
 
 
-def area(name: str, theme: Theme, own: str = "") -> dict[str, Any]:
-    """Return the style of a patch. `own` is the robot's colour."""
+def area(name: str, theme: Theme, robot_colour: str = "") -> dict[str, Any]:
+    """Return the style of a patch. Marks of a robot need `robot_colour`."""
     mark = MARKS[name]
     return {
-        "facecolor": _colour(mark.fill, theme, own),
-        "edgecolor": _colour(mark.line, theme, own),
+        "facecolor": _colour(mark.fill, theme, robot_colour),
+        "edgecolor": _colour(mark.line, theme, robot_colour),
         "linewidth": mark.width,
         "linestyle": (0, mark.dash) if mark.dash else "-",
         "alpha": mark.alpha,
@@ -50,11 +50,11 @@ def area(name: str, theme: Theme, own: str = "") -> dict[str, Any]:
     }
 
 
-def line(name: str, theme: Theme, own: str = "") -> dict[str, Any]:
-    """Return the style of a line. `own` is the robot's colour."""
+def line(name: str, theme: Theme, robot_colour: str = "") -> dict[str, Any]:
+    """Return the style of a line. Marks of a robot need `robot_colour`."""
     mark = MARKS[name]
     return {
-        "color": _colour(mark.line, theme, own),
+        "color": _colour(mark.line, theme, robot_colour),
         "linewidth": mark.width,
         "linestyle": (0, mark.dash) if mark.dash else "-",
         "alpha": mark.alpha,
@@ -62,28 +62,28 @@ def line(name: str, theme: Theme, own: str = "") -> dict[str, Any]:
     }
 
 
-def symbol(name: str, theme: Theme, own: str = "", marker: str = "o") -> dict[str, Any]:
-    """Return the style of a symbol, which has the same size in every world. `own` is the robot's colour."""
+def symbol(name: str, theme: Theme, robot_colour: str = "", marker: str = "o") -> dict[str, Any]:
+    """Return the style of a symbol, which has the same size in every world. Marks of a robot need `robot_colour`."""
     mark = MARKS[name]
     return {
         "linestyle": "none",
         "marker": marker,
         "markersize": mark.size,
-        "color": _colour(mark.fill or mark.line, theme, own),
-        "markerfacecolor": _colour(mark.fill, theme, own),
-        "markeredgecolor": _colour(mark.line, theme, own),
+        "color": _colour(mark.fill or mark.line, theme, robot_colour),
+        "markerfacecolor": _colour(mark.fill, theme, robot_colour),
+        "markeredgecolor": _colour(mark.line, theme, robot_colour),
         "markeredgewidth": mark.width,
         "alpha": mark.alpha,
         "zorder": mark.layer,
     }
 
 
-def _colour(name: str, theme: Theme, own: str) -> str:
-    return own if name == OWN else str(getattr(theme, name)) if name else "none"
+def _colour(name: str, theme: Theme, robot_colour: str) -> str:
+    return robot_colour if name == OWN else str(getattr(theme, name)) if name else "none"
 
 
 def set_stage(ax: Axes, world: World, theme: Theme) -> None:
-    """Set the world's limits, a grid in metres and unobtrusive ticks."""
+    """Set the limits of the Axes to those of the world, and add a grid in metres and unobtrusive ticks."""
     left, low, right, high = world.bounds
     margin = margin_of(world)
     ax.set_xlim(left - margin, right + margin)
@@ -121,7 +121,7 @@ def draw_walls(ax: Axes, world: World, theme: Theme) -> list[Artist]:
 
 
 def _collection_style(style: dict[str, Any]) -> dict[str, Any]:
-    """Convert the style of a line to that of a collection of lines."""
+    """Convert the style of a line to the style of a collection of lines."""
     return {"colors": style.pop("color"), "linewidths": style.pop("linewidth"), **style}
 
 
@@ -143,7 +143,7 @@ def draw_places(ax: Axes, world: World, theme: Theme, *, radius: float = 0.105, 
 
 
 def mover_patch(x: float, y: float, radius: float, theme: Theme) -> Circle:
-    """Return a moving obstacle: a translucent disc with a rim."""
+    """Return the patch of a moving obstacle: a translucent disc with a rim."""
     return Circle((x, y), radius, **area("mover", theme))
 
 
@@ -158,19 +158,19 @@ def draw_robot(ax: Axes, spec: RobotSpec, pose: Pose, theme: Theme, colour: str)
 
 
 def name_text(ax: Axes, name: str, theme: Theme) -> Any:
-    """Return the text with the name of a robot, whose `xy` has to be set to `name_place`."""
-    text = ax.annotate(name, (0, 0), (0, 4), textcoords="offset points", ha="center", va="bottom", **words(theme))
+    """Return the text with the name of a robot. Its `xy` has to be set to `anchor_of_name`."""
+    text = ax.annotate(name, (0, 0), (0, 4), textcoords="offset points", ha="center", va="bottom", **text_style(theme))
     text.set_clip_on(True)
     return text
 
 
-def name_place(spec: RobotSpec, pose: Pose) -> tuple[float, float]:
-    """Return the point below a robot's name: the upper edge of the circle that it can cover."""
+def anchor_of_name(spec: RobotSpec, pose: Pose) -> tuple[float, float]:
+    """Return the point below a robot's name: the top of the circle that the robot covers as it turns."""
     return pose.x, pose.y + float(np.hypot(*body_outline(spec).T).max())
 
 
-def words(theme: Theme) -> dict[str, Any]:
-    """Return the style of text on the floor, with an outline in the colour of paper, readable on any background."""
+def text_style(theme: Theme) -> dict[str, Any]:
+    """Return the style of text on the floor. Its outline in the paper's colour makes it readable on any background."""
     mark = MARKS["words"]
     return {
         "fontsize": mark.size,
@@ -180,29 +180,29 @@ def words(theme: Theme) -> dict[str, Any]:
     }
 
 
-def chosen_beams(hit: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
-    """Return the indices of the beams to draw as lines: of about `BEAMS` regular ones, those that hit something."""
-    is_candidate = np.zeros(len(hit), dtype=bool)
-    is_candidate[:: max(1, round(len(hit) / BEAMS))] = True
-    return np.flatnonzero(is_candidate & hit)
+def chosen_beams(has_hit: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
+    """Return the indices of the beams to draw as lines: about `BEAMS` at equal angles, but none that hit nothing."""
+    is_candidate = np.zeros(len(has_hit), dtype=bool)
+    is_candidate[:: max(1, round(len(has_hit) / BEAMS))] = True
+    return np.flatnonzero(is_candidate & has_hit)
 
 
 def draw_scan(ax: Axes, ranges: npt.NDArray[Any], lidar: LidarSpec, pose: Pose, theme: Theme) -> list[Artist]:
     """Draw thin beams, the free area of the scan, and a point for each hit."""
-    mount, ends, hit = beam_ends(ranges, lidar, pose)
+    mount, ends, has_hit = beam_ends(ranges, lidar, pose)
     outline = ends if is_full_turn(lidar) else np.vstack([mount, ends])
     free_area = Polygon(outline, closed=True, **area("seen", theme))
     ax.add_patch(free_area)
     rays = LineCollection(
-        [np.vstack([mount, end]) for end in ends[chosen_beams(hit)]], **_collection_style(line("ray", theme))
+        [np.vstack([mount, end]) for end in ends[chosen_beams(has_hit)]], **_collection_style(line("ray", theme))
     )
     ax.add_collection(rays, autolim=False)
-    (points,) = ax.plot(*ends[hit].T, **symbol("hit", theme))
+    (points,) = ax.plot(*ends[has_hit].T, **symbol("hit", theme))
     return [free_area, rays, points]
 
 
 def draw_track(ax: Axes, points: Floats, values: Floats, colours: Any, limits: tuple[float, float]) -> LineCollection:
-    """Draw a track (K, 2) in the colours of `values` (K,) between `limits`."""
+    """Draw a track (K, 2), coloured by `values` (K,) between `limits`."""
     pieces = np.stack([points[:-1], points[1:]], axis=1)
     mark = MARKS["track"]
     track = LineCollection(list(pieces), cmap=colours, linewidths=mark.width, capstyle="round", zorder=mark.layer)
@@ -213,7 +213,7 @@ def draw_track(ax: Axes, points: Floats, values: Floats, colours: Any, limits: t
 
 
 def draw_crosses(ax: Axes, places: Sequence[tuple[float, float]], theme: Theme) -> list[Artist]:
-    """Mark collisions."""
+    """Mark collisions with crosses."""
     if not places:
         return []
     x, y = zip(*places, strict=True)
@@ -230,7 +230,7 @@ def draw_moment(ax: Axes, moment: Moment, world: World, theme: Theme) -> None:
         ax.plot((moment.x, near.x), (moment.y, near.y), **line(mark_name, theme))
         ax.plot(near.x, near.y, **symbol(f"{mark_name} end", theme))
     if not moment.marked:
-        style = {"textcoords": "offset points", "ha": "left", "va": "center", **words(theme)}
+        style = {"textcoords": "offset points", "ha": "left", "va": "center", **text_style(theme)}
         ax.annotate(moment.words, moment.spot, (7, 0), annotation_clip=True, **style)
         return
     ax.plot(moment.x, moment.y, **symbol("instant", theme))

@@ -10,7 +10,7 @@ from sim.pose import Command
 from sim.view.session import Source
 
 LINEAR, ANGULAR = 0.22, 0.9
-"""The command of an arrow of the pad, in m/s and rad/s."""
+"""The speeds that an arrow of the pad commands, in m/s and rad/s."""
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 5.0)
 
@@ -18,7 +18,7 @@ _CODE_DRIVES = "your code drives"
 
 
 class Player(Protocol):
-    """The interface that the buttons control, such as `sim.view.LiveView`."""
+    """The interface of the view that the buttons control, such as `sim.view.LiveView`."""
 
     @property
     def playing(self) -> bool:
@@ -46,7 +46,7 @@ class Player(Protocol):
         """Return control of the first robot to the callback or to the node that drives it."""
 
     def set_speed(self, speed: float) -> None:
-        """Set the number of simulated seconds in a second."""
+        """Set the number of simulated seconds per second."""
 
 
 class Controls:
@@ -83,14 +83,14 @@ class Controls:
         time_row = [self._play, step, *([reset] if source.growing else []), self._slider]
         if source.paced:
             time_row.append(self._speed)
-        timing = widgets.HBox(time_row, layout={"max_width": f"{width}px", "align_items": "center"})
-        rows: list[Any] = [self._output, self._image, timing]
+        time_box = widgets.HBox(time_row, layout={"max_width": f"{width}px", "align_items": "center"})
+        rows: list[Any] = [self._output, self._image, time_box]
         if source.growing:
             rows.append(self._pad(source.can_be_released))
         self.box = widgets.VBox(rows)
 
     def show(self, jpeg: bytes, now: float, end: float) -> None:
-        """Show a frame and move the slider, without a reaction to the slider's change."""
+        """Show a frame and move the slider, without reacting to the slider's change."""
         self._is_updating = True
         self._image.value = jpeg
         # A slider that moves forty times a second cannot be grabbed. So it moves only four times a second, and can be
@@ -102,7 +102,7 @@ class Controls:
         self._is_updating = False
 
     def set_playing(self, playing: bool) -> None:
-        """Label the button with the action that it would execute."""
+        """Label the button with the action that a click would start."""
         self._is_updating = True
         self._play.value = playing
         self._play.description = self._play.tooltip = "Pause" if playing else "Play"
@@ -110,7 +110,7 @@ class Controls:
         self._is_updating = False
 
     def set_command(self, command: Command | None) -> None:
-        """Show a manual command, or, if it is None, that the callback drives."""
+        """Show a manual command or, if it is None, that the callback drives."""
         if command is None:
             self._driver_label.value = _CODE_DRIVES
         else:

@@ -1,4 +1,4 @@
-"""Static pictures: `show` draws a world, and `plot` a recording, without a kernel, a widget or a backend."""
+"""Static pictures: `show` draws a world, and `plot` a recording. They need no kernel, widget or backend."""
 
 from __future__ import annotations
 
@@ -94,13 +94,13 @@ def plot(
     indices = _robot_indices(simulation, robot)
     moment = moment_of(recording, indices, mark, note)
     row = None if mark is None else row_at(recording, mark)
-    now = len(recording) - 1 if row is None else row
+    shown_row = len(recording) - 1 if row is None else row
     with matplotlib.rc_context(STYLE):  # type: ignore[arg-type]
         ax = ax or new_axes(world, scheme)
         prepare(ax, world, scheme, title or _heading(world), _summary(recording, indices, nearest=len(indices) == 1))
-        _draw_world(ax, simulation, int(recording.times_ns[now]), scheme, names)
+        _draw_world(ax, simulation, int(recording.times_ns[shown_row]), scheme, names)
         for index in reversed(indices):
-            _draw_robot_run(ax, recording, index, colour, scheme, now, scan=row is None or index == indices[0])
+            _draw_robot_run(ax, recording, index, colour, scheme, shown_row, scan=row is None or index == indices[0])
         _add_scale(ax, recording, indices[0], colour, scheme)
         if moment is not None:
             artists.draw_moment(ax, moment, world, scheme)
@@ -124,7 +124,7 @@ def _draw_world(ax: Axes, simulation: Simulation, time_ns: int, theme: Theme, na
 
 
 def _draw_robot_run(
-    ax: Axes, recording: Recording, index: int, colour: str, theme: Theme, now: int, *, scan: bool
+    ax: Axes, recording: Recording, index: int, colour: str, theme: Theme, shown_row: int, *, scan: bool
 ) -> None:
     points, robot_colour = recording.poses[:, index, :2], theme.robot_colour(index)
     if colour == "time":
@@ -135,9 +135,9 @@ def _draw_robot_run(
     spec = recording.simulation.robots[index]
     events = [event for event in recording.events if event.kind == "collision" and event.robot == spec.name]
     if scan:
-        _draw_last_scan(ax, recording, index, now, theme)
+        _draw_last_scan(ax, recording, index, shown_row, theme)
     artists.draw_crosses(ax, [(event.x, event.y) for event in events], theme)
-    pose = Pose(*recording.poses[now, index].tolist())
+    pose = Pose(*recording.poses[shown_row, index].tolist())
     artists.draw_robot(ax, spec, pose, theme, robot_colour)
     _name_robot(ax, recording.simulation, index, pose, theme)
 
@@ -146,7 +146,7 @@ def _name_robot(ax: Axes, simulation: Simulation, index: int, pose: Pose, theme:
     """Write a robot's name beside it, if there are several."""
     if len(simulation.robots) > 1:
         spec = simulation.robots[index]
-        artists.name_text(ax, spec.name, theme).xy = artists.name_place(spec, pose)
+        artists.name_text(ax, spec.name, theme).xy = artists.anchor_of_name(spec, pose)
 
 
 def _add_scale(ax: Axes, recording: Recording, index: int, colour: str, theme: Theme) -> None:
@@ -191,7 +191,7 @@ def _size(world: World) -> str:
 
 
 def _summary(recording: Recording, indices: list[int], *, nearest: bool = True) -> str:
-    """Summarise the run of each robot. With several, a heading has no room for the nearest distances."""
+    """Summarise the run of each robot. For several robots, a heading has no room for the nearest distances."""
     seconds = f"{recording.times[-1] - recording.times[0]:.1f} s"
     if len(indices) == 1:
         return " · ".join([seconds, *_run_facts(recording, indices[0], nearest)])
@@ -203,10 +203,10 @@ def _run_facts(recording: Recording, index: int, nearest: bool) -> list[str]:
     """Return a robot's distance, its collisions and, if `nearest`, its smallest clearance, as texts."""
     length = float(np.hypot(*np.diff(recording.poses[:, index, :2], axis=0).T).sum())
     name, clearances = recording.simulation.robots[index].name, recording.clearances[:, index]
-    hits = sum(event.kind == "collision" and event.robot == name for event in recording.events)
+    collision_count = sum(event.kind == "collision" and event.robot == name for event in recording.events)
     parts = [f"{length:.1f} m driven"]
-    if hits:
-        parts.append(f"{hits} collision{'s' if hits > 1 else ''}")
+    if collision_count:
+        parts.append(f"{collision_count} collision{'s' if collision_count > 1 else ''}")
     elif nearest and np.isfinite(clearances).any():
         parts.append(f"never nearer than {max(0.0, float(np.nanmin(clearances))):.2f} m")
     return parts

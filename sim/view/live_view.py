@@ -1,8 +1,8 @@
 """The live view for JupyterLab: an image, a row of buttons, and a task in the kernel's event loop.
 
-It is a task and not a thread, so that the student's callback runs in the same thread as other cells, and never during
-one. So variables do not change while a cell runs, and no lock is needed. While a long cell runs, the picture waits, and
-simulated time too, so that nothing is missed. The task returns to the loop after each frame.
+It is a task and not a thread, so that the student's callback runs in the same thread as the cells, and never while one
+of them runs. So variables do not change during a cell, and no lock is needed. While a long cell runs, both the picture
+and simulated time wait, so that nothing is missed. The task returns to the loop after each frame.
 
 Under a grader (the environment variable AUTOGRADER_GRADING is set) `live` starts nothing and returns a picture.
 """
@@ -39,7 +39,7 @@ FPS = 40.0
 """The intended number of frames a second."""
 
 MAX_FRAME_SECONDS = 0.1
-"""The maximum time that a frame adds, so that simulated time waits while a long cell runs."""
+"""The most real time that one frame accounts for, in s, so that simulated time waits while a long cell runs."""
 
 _PACKAGE = Path(__file__).parents[1]
 
@@ -55,11 +55,11 @@ def live(
 ) -> LiveView | Player | Picture:
     """Show a moving world, simulation, recording or ROS bridge, with buttons to play, pause, seek and drive.
 
-    The page itself plays a recording, also while the kernel is busy, and in an exported notebook.
+    A recording is played by the page itself, even while the kernel is busy, and in an exported notebook.
 
     `controller` is called with each new scan of the first robot, and returns a `Command`, or None to keep the last one.
-    Without a controller, the pad drives the robot. `speed` is in simulated seconds a second. If `controller` raises an
-    exception, the view pauses and prints it. Without a running event loop, as in a plain script, the view does not
+    Without a controller, the pad drives the robot. `speed` is in simulated seconds per second. If `controller` raises
+    an exception, the view pauses and prints it. Without a running event loop, as in a plain script, the view does not
     move.
 
     Raises:
@@ -110,7 +110,7 @@ class LiveView:
 
     @property
     def fps(self) -> float:
-        """The frames a second of the last sixty frames, or 0 if there are fewer than two."""
+        """The frame rate over the last sixty frames, or 0 if there are fewer than two."""
         if len(self._frame_times) < 2:
             return 0.0
         return (len(self._frame_times) - 1) / max(1e-9, self._frame_times[-1] - self._frame_times[0])
@@ -121,12 +121,12 @@ class LiveView:
         return self._source.recording()
 
     def play(self) -> None:
-        """Let time advance, from the displayed instant on."""
+        """Let time advance from the displayed instant."""
         if self.playing:
             return
         try:
             loop = asyncio.get_running_loop()
-        except RuntimeError:  # a script without a loop, in which no second frame can be shown
+        except RuntimeError:  # in a script without a loop, no second frame can be shown
             self._controls.set_playing(False)
             return
         self._frame_times.clear()
@@ -140,7 +140,7 @@ class LiveView:
             self._task.cancel()
             self._task = None
         self._source.set_paused(True)
-        if not self._source.paced:  # it has advanced until it was paused
+        if not self._source.paced:  # the source has advanced until now
             self._now_ns = self._source.end_ns
         self._controls.set_playing(False)
         self._render()
@@ -174,7 +174,7 @@ class LiveView:
         self._controls.set_command(None)
 
     def set_speed(self, speed: float) -> None:
-        """Set the number of simulated seconds in a second."""
+        """Set the number of simulated seconds per second."""
         self._speed = speed
 
     async def _run(self) -> None:
@@ -188,10 +188,10 @@ class LiveView:
                 self._controls.set_playing(False)
                 return
 
-    def _advance(self, by_ns: int) -> bool:
-        """Advance the displayed instant by `by_ns`; return whether it can advance further."""
+    def _advance(self, duration_ns: int) -> bool:
+        """Advance the displayed instant by `duration_ns`; return whether it can advance further."""
         try:
-            self._now_ns = self._source.advance(self._now_ns + by_ns)
+            self._now_ns = self._source.advance(self._now_ns + duration_ns)
         except Exception as error:  # the student's callback may raise any exception, which is shown to the student
             self._now_ns = self._source.end_ns
             self._render()
@@ -234,7 +234,7 @@ def _still_picture(source: World | Simulation | Recording | Bridge, theme: Theme
 
 
 def _callback_traceback(error: BaseException) -> str:
-    """Return the traceback with the student's frames, without those of this package."""
+    """Return the traceback of the student's code, without the frames of this package."""
     frames = traceback.extract_tb(error.__traceback__)
     student_frames = [frame for frame in frames if _PACKAGE not in Path(frame.filename).parents]
     lines = ["Traceback (most recent call last):\n", *traceback.format_list(student_frames)] if student_frames else []

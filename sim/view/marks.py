@@ -68,19 +68,19 @@ MARKS: Mapping[str, Mark] = {
     "gap end": Mark(12.0, fill="alarm", size=4.5),
     "words": Mark(14.0, fill="ink", line="paper", width=3.0, size=8.5),
 }
-"""The styles by the names of the kinds."""
+"""The style of each kind of object, by its name."""
 
 MIDDLE = 0.18
 """The radius of the dot in a goal, as a share of the goal's radius."""
 
 POINTER = 2.6
-"""The end of the line in front of a start pose, in radii of the robot."""
+"""The length of the line that shows the heading of a start pose, in radii of the robot."""
 
 BEAMS = 90
 """The approximate number of beams of a scan that are drawn as lines. Each hit is drawn as a point."""
 
 PIECES = 48
-"""The number of pieces, each of one colour, in which a moving track is drawn."""
+"""The number of pieces in which a moving track is drawn, each in one colour."""
 
 _STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 
@@ -95,7 +95,7 @@ def spacing_of(extent: float) -> float:
 
 def to_json() -> str:
     """Return the styles as JSON, for the player."""
-    shared = {
+    look = {
         "marks": {name: asdict(mark) for name, mark in MARKS.items()},
         "grid": GRID,
         "middle": MIDDLE,
@@ -104,4 +104,4 @@ def to_json() -> str:
         "pieces": PIECES,
         "others": len(LIGHT.others),
     }
-    return json.dumps(shared, separators=(",", ":"))
+    return json.dumps(look, separators=(",", ":"))

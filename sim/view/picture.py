@@ -1,4 +1,4 @@
-"""A finished figure that a notebook displays, and that can be converted to PNG, SVG or HTML.
+"""A finished figure, which a notebook displays and which can be converted to PNG, SVG or HTML.
 
 It uses `matplotlib.figure.Figure` without pyplot: nothing is registered, no backend is chosen, and the result is the
 same in a notebook, in a test and in the grader. The same drawing gives the same bytes.
@@ -61,14 +61,14 @@ class Picture:
 
     def html(self, dpi: int = DPI) -> str:
         """Return the picture as an HTML element, with its alternative text."""
-        encoded = base64.b64encode(self.png(dpi)).decode("ascii")
+        encoded_png = base64.b64encode(self.png(dpi)).decode("ascii")
         width = round(self.figure.get_figwidth() * 96)
         text = html.escape(self.alt, quote=True)
-        return f'<img alt="{text}" width="{width}" style="max-width:100%" src="data:image/png;base64,{encoded}">'
+        return f'<img alt="{text}" width="{width}" style="max-width:100%" src="data:image/png;base64,{encoded_png}">'
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> tuple[dict[str, Any], dict[str, Any]]:
         """Return HTML, which contains the alternative text, and PNG for viewers that remove images from HTML."""
-        encoded = base64.b64encode(self.png()).decode("ascii")
+        encoded_png = base64.b64encode(self.png()).decode("ascii")
         width = round(self.figure.get_figwidth() * 96)
-        bundle = {"text/html": self.html(), "image/png": encoded, "text/plain": self.alt}
+        bundle = {"text/html": self.html(), "image/png": encoded_png, "text/plain": self.alt}
         return bundle, {"image/png": {"alt": self.alt, "width": width}}

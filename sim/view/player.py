@@ -45,15 +45,15 @@ class Player:
         play: bool = False,
         note: str = "",
     ) -> None:
-        """Prepare the run.
+        """Encode the run.
 
         Args:
             recording: the run.
             margins: the rules for the run, each shown as a time line.
-            still: the picture shown where the player cannot run, by default the track.
-            theme: "light", "dark", or "auto", the reader's choice.
-            speed: the initial number of simulated seconds in a second: 0.25, 0.5, 1, 2 or 4.
-            play: whether it plays once when it becomes visible. A run that broke a rule shows that instant instead.
+            still: the picture that is shown where the player cannot run, by default the track.
+            theme: "light", "dark", or "auto" to follow the reader's settings.
+            speed: the initial number of simulated seconds per second: 0.25, 0.5, 1, 2 or 4.
+            play: whether the run plays once when it becomes visible. If it broke a rule, that instant is shown instead.
             note: the text for the instant at which a rule was broken.
         """
         self.recording = recording

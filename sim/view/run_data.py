@@ -1,4 +1,4 @@
-"""Encodes a recording as text for the player: numbers rounded, delta-coded and compressed, 300 kB at most.
+"""Encodes a recording for the player: at most 300 kB of text, with rounded, delta-coded and compressed numbers.
 
 Each table is rounded to whole steps, and each row is replaced by its difference from the previous one. Then the four
 bytes of each number are put in separate planes, deflated and encoded as base64. Neighbouring rows hardly differ, so
@@ -34,18 +34,18 @@ from sim.view.shapes import (
 from sim.world import World
 
 MAX_BYTES = 300_000
-MAX_LOG_BYTES = 60_000  # of these for the output of the programs
+MAX_LOG_BYTES = 60_000  # the part of `MAX_BYTES` that the output of the programs may use
 LADDER = ((3000, 360), (3000, 120), (1500, 60), (750, 30), (400, 10))
-"""The maximum numbers of rows and of beams in a scan. The first pair with a text that is short enough is used."""
+"""Pairs of the maximum numbers of rows and of beams in a scan. The first that makes the text short enough is used."""
 
 CENTIMETRE, MILLI = 0.01, 0.001
 NO_RETURN, NO_READING = -1.0, 0.0
-"""The codes for a range of +inf, and for one that is invalid or too near to be measured."""
+"""The codes for a range of +inf, and for a range that is invalid or too short to be measured."""
 
 
 @dataclass(frozen=True)
 class Margin:
-    """The distance of a rule from being broken, over time.
+    """How far a rule is from being broken, over time.
 
     Attributes:
         rule: the text of the rule, with the unit of its values.
@@ -69,15 +69,15 @@ def encode(
         recording: the run.
         alt: the alternative text.
         margins: the rules for the run.
-        mark: the instant, in seconds, that the player shows first. If it is None, this is the first at which a rule was
-            broken, or the end of the run.
+        mark: the time in seconds of the instant that the player shows first. If it is None, that is the first instant
+            at which a rule was broken, or the end of the run.
         note: the text for the instant.
 
     Raises:
         ValueError: `mark` is not finite.
     """
-    broken = [margin.broken_at for margin in margins if margin.broken_at is not None]
-    mark = min(broken, default=None) if mark is None else mark
+    broken_times = [margin.broken_at for margin in margins if margin.broken_at is not None]
+    mark = min(broken_times, default=None) if mark is None else mark
     moment = moment_of(recording, list(range(len(recording.simulation.robots))), mark, note)
     title, summary = heading(recording)
     text = ""
@@ -103,11 +103,11 @@ def pack(values: npt.ArrayLike, step: float) -> dict[str, Any]:
     """Return a table of numbers, (rows, columns) or (rows,), in whole steps, delta-coded and compressed."""
     table = np.atleast_2d(np.asarray(values, dtype=np.float64))
     table = table.T if np.ndim(values) == 1 else table
-    whole = np.round(table / step).astype(np.int64)
-    change = np.diff(whole, axis=0, prepend=np.zeros((1, whole.shape[1]), dtype=np.int64))
-    zigzag = np.where(change < 0, -2 * change - 1, 2 * change).astype("<u4")
+    steps = np.round(table / step).astype(np.int64)
+    differences = np.diff(steps, axis=0, prepend=np.zeros((1, steps.shape[1]), dtype=np.int64))
+    zigzag = np.where(differences < 0, -2 * differences - 1, 2 * differences).astype("<u4")
     planes = zigzag.reshape(-1, 1).view(np.uint8).T.tobytes()
-    return {"columns": whole.shape[1], "step": step, "data": _deflate(planes)}
+    return {"columns": steps.shape[1], "step": step, "data": _deflate(planes)}
 
 
 def _deflate(data: bytes) -> str:
@@ -129,10 +129,10 @@ def _encode_moment(moment: Moment) -> dict[str, Any]:
 def _encode_world(world: World) -> dict[str, Any]:
     room, solid = outlines(world)
     left, low, right, high = world.bounds
-    edge = margin_of(world)
+    margin = margin_of(world)
     return {
         "name": world.name,
-        "bounds": [round(side, 3) for side in (left - edge, low - edge, right + edge, high + edge)],
+        "bounds": [round(side, 3) for side in (left - margin, low - margin, right + margin, high + margin)],
         "inside": [round(side, 3) for side in (left, low, right, high)],
         "room": pack(room, MILLI),
         "solid": [pack(loop, MILLI) for loop in solid],
@@ -173,7 +173,7 @@ def _encode_run(recording: Recording, max_rows: int, max_beams: int) -> dict[str
 
 
 def _selected_rows(count: int, limit: int) -> npt.NDArray[np.int64]:
-    """Return the indices of `count` rows, or of `limit` of them, which makes no visible difference."""
+    """Return the indices of all `count` rows or, if there are more than `limit`, of `limit` evenly spaced ones."""
     return np.unique(np.linspace(0, count - 1, min(count, limit)).round().astype(np.int64))
 
 
@@ -187,8 +187,8 @@ def _encode_commands(recording: Recording, index: int, rows: npt.NDArray[np.int6
     has_command = ~np.isnan(recording.commands[:, index, 0])
     if not has_command.any():
         return None
-    newest = np.maximum.accumulate(np.where(has_command, np.arange(len(recording)), 0))
-    latest_commands = np.nan_to_num(recording.commands[newest, index], posinf=0.0, neginf=0.0)
+    newest_rows = np.maximum.accumulate(np.where(has_command, np.arange(len(recording)), 0))
+    latest_commands = np.nan_to_num(recording.commands[newest_rows, index], posinf=0.0, neginf=0.0)
     first = float(recording.times[int(np.argmax(has_command))])
     return {"first": round(first, 3), **pack(latest_commands[rows], MILLI)}
 
@@ -215,10 +215,10 @@ def _encode_scans(recording: Recording, index: int, max_rows: int, max_beams: in
 def _encode_log(lines: tuple[Line, ...]) -> dict[str, Any] | None:
     """Return the output of the programs, shortened to `MAX_LOG_BYTES`; None if there is none."""
     limit = len(lines)
-    while selected := shorten(lines, limit):
-        data = _deflate(json.dumps([text for _, text in selected]).encode())
+    while selected_lines := shorten(lines, limit):
+        data = _deflate(json.dumps([text for _, text in selected_lines]).encode())
         if len(data) <= MAX_LOG_BYTES:
-            return {"times": pack([seconds for seconds, _ in selected], MILLI), "texts": data}
+            return {"times": pack([seconds for seconds, _ in selected_lines], MILLI), "texts": data}
         limit //= 2
     return None
 

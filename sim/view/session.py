@@ -1,4 +1,4 @@
-"""The run of a live view, which is simulated while it is shown, and whose past can be shown again.
+"""The run of a live view: it is simulated while it is shown, and its past can be shown again.
 
 It uses no widget and no clock: the caller of `advance` determines the simulated time, so tests are fast.
 """
@@ -61,7 +61,7 @@ class Source(Protocol):
         """Whether a callback or a node drives when the pad does not."""
 
     def at(self, time_ns: int) -> Frame:
-        """Return the last frame that is not later than `time_ns` (the first one, if all are)."""
+        """Return the last frame that is not later than `time_ns` (the first one if all are later)."""
 
     def trail(self, time_ns: int) -> NDArray[np.float64]:
         """Return the track of the first robot up to `time_ns`, (K, 2) in metres."""
@@ -70,7 +70,7 @@ class Source(Protocol):
         """Run until `until_ns`; return the instant to show."""
 
     def set_paused(self, paused: bool) -> None:
-        """React to a pause of the view, or to its end."""
+        """React when the view is paused or continued."""
 
     def reset(self) -> None:
         """Return to the start, and drop the recorded states."""
@@ -110,7 +110,7 @@ class Session:
 
     @property
     def growing(self) -> bool:
-        """Whether the run can continue. It is limited, so that a forgotten view does not fill the memory."""
+        """Whether the run can continue. Its length is limited, so that a forgotten view does not fill the memory."""
         return self.end_ns < MAX_NS
 
     @property
@@ -119,7 +119,7 @@ class Session:
         return self.controller is not None
 
     def at(self, time_ns: int) -> Frame:
-        """Return the last frame that is not later than `time_ns` (the first one, if all are)."""
+        """Return the last frame that is not later than `time_ns` (the first one if all are later)."""
         return self.frames[max(0, bisect.bisect_right(self._times, time_ns) - 1)]
 
     def trail(self, time_ns: int) -> NDArray[np.float64]:
@@ -155,12 +155,12 @@ class Session:
         return self._recorder.recording()
 
     def _append(self, state: State, scans: tuple[tuple[Scan, Pose] | None, ...]) -> None:
-        first = not self._times
-        if not first:
+        is_first = not self._times
+        if not is_first:
             self._recorder.append(state, {self.simulation.robots[0].name: self.command})
         newest_scans = list(scans)
         for index, spec in enumerate(self.simulation.robots):
-            if spec.lidar is not None and (first or due(self._times[-1], state.time_ns, spec.lidar.rate)):
+            if spec.lidar is not None and (is_first or due(self._times[-1], state.time_ns, spec.lidar.rate)):
                 scan = observe(self.simulation, state, spec.name)
                 self._recorder.scan(scan, spec.name)
                 if scan is not None:

@@ -25,7 +25,7 @@ from sim.world import World
 Floats = npt.NDArray[np.float64]
 
 MARGIN = 0.035
-"""The margin around the world's bounds, for the names of the outer walls, as a share of its larger side."""
+"""The margin around the world, in which the names of outer walls are written, as a share of its larger side."""
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,8 @@ class Moment:
         time: the time in seconds.
         x, y: the position of the robot's centre.
         near: the obstacle nearest to the robot.
-        words: the text beside it.
-        marked: whether the user has chosen the moment. If not, it is that of the smallest clearance.
+        words: the text beside the mark.
+        marked: whether the user has chosen the moment. Otherwise, it is the one with the smallest clearance.
     """
 
     time: float
@@ -50,21 +50,21 @@ class Moment:
     @property
     def spot(self) -> tuple[float, float]:
         """The place for the text: the robot at a chosen moment, otherwise the middle of the gap to the obstacle."""
-        gap, whole = max(0.0, self.near.distance), math.hypot(self.x - self.near.x, self.y - self.near.y)
-        if self.marked or whole == 0.0:
+        gap, centre_distance = max(0.0, self.near.distance), math.hypot(self.x - self.near.x, self.y - self.near.y)
+        if self.marked or centre_distance == 0.0:
             return self.x, self.y
-        share = min(1.0, gap / whole) / 2
+        share = min(1.0, gap / centre_distance) / 2
         return self.near.x + share * (self.x - self.near.x), self.near.y + share * (self.y - self.near.y)
 
 
 def moment_of(recording: Recording, indices: list[int], mark: float | None, note: str) -> Moment | None:
-    """Return the moment to mark: the chosen one, or the one of the smallest clearance.
+    """Return the moment to mark: the chosen one, or the one with the smallest clearance.
 
     With several robots, or after a collision, which has its own symbol, only a chosen moment is marked.
 
     Args:
         recording: the run.
-        indices: the indices of the robots that are drawn. The moment is that of the first.
+        indices: the indices of the robots that are drawn. The moment belongs to the run of the first one.
         mark: the time of the chosen moment, in seconds.
         note: the text for the chosen moment.
 
@@ -78,8 +78,8 @@ def moment_of(recording: Recording, indices: list[int], mark: float | None, note
         words = f"t = {recording.times[row]:.1f} s" + (f"\n{note}" if note else "")
     else:
         distances = recording.clearances[:, index]
-        collided = any(event.kind == "collision" and event.robot == spec.name for event in recording.events)
-        if len(indices) > 1 or collided or not np.isfinite(distances).any():
+        has_collided = any(event.kind == "collision" and event.robot == spec.name for event in recording.events)
+        if len(indices) > 1 or has_collided or not np.isfinite(distances).any():
             return None
         row = int(np.nanargmin(distances))
         words = f"{max(0.0, float(distances[row])):.2f} m"
@@ -98,21 +98,21 @@ def outlines(world: World) -> tuple[Floats, list[Floats]]:
     """Return the outline of the room in which the robot starts, and those of solid objects, each (K, 2).
 
     An outline is a closed sequence of segments, each of which starts at the end of the previous one. The room is the
-    smallest around the start pose, or the world's bounds if there is none. It is not a solid object, unless an odd
-    number of others surround it: then it is the inner face of a thick wall.
+    smallest one around the start pose, or the world's bounds if none surrounds it. It is not a solid object, unless an
+    odd number of others surround it: then it is the inner face of a thick wall.
     """
     loops = _closed_loops(world.segments)
     start = (world.starts[0].x, world.starts[0].y)
-    surrounding = sorted(
+    surrounding_indices = sorted(
         (index for index, loop in enumerate(loops) if Path(loop).contains_point(start)),
         key=lambda index: float(np.ptp(loops[index], axis=0).prod()),
     )
-    if not surrounding:
+    if not surrounding_indices:
         left, low, right, high = world.bounds
         return np.array([[left, low], [right, low], [right, high], [left, high]]), loops
-    room = loops[surrounding[0]]
-    if len(surrounding) % 2:
-        del loops[surrounding[0]]
+    room = loops[surrounding_indices[0]]
+    if len(surrounding_indices) % 2:
+        del loops[surrounding_indices[0]]
     return room, loops
 
 
@@ -152,15 +152,15 @@ def place(outline: Floats, pose: Pose) -> Floats:
 def beam_ends(ranges: npt.NDArray[Any], lidar: LidarSpec, pose: Pose) -> tuple[Floats, Floats, npt.NDArray[np.bool_]]:
     """Return the sensor's position (2,), each beam's end (N, 2) in metres, and whether the beam hit something (N,).
 
-    A beam without a return ends at `range_max`. An invalid one, or one that is too close, ends at the sensor.
+    A beam without a return ends at `range_max`. One whose range is invalid or too short ends at the sensor.
     """
     mount = place(np.array([[lidar.mount.x, lidar.mount.y]]), pose)[0]
     angles = pose.theta + lidar.mount.theta + lidar.angle_min + np.arange(lidar.beams) * lidar.angle_increment
     ranges = np.asarray(ranges, dtype=np.float64)
-    hit = np.isfinite(ranges)
-    length = np.where(hit, ranges, np.where(ranges == math.inf, lidar.range_max, 0.0))
+    has_hit = np.isfinite(ranges)
+    length = np.where(has_hit, ranges, np.where(ranges == math.inf, lidar.range_max, 0.0))
     ends = mount + length[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
-    return mount, ends, hit
+    return mount, ends, has_hit
 
 
 def is_full_turn(lidar: LidarSpec) -> bool:

@@ -16,15 +16,17 @@ from sim.world import World
 
 WIDTH = 7.6
 HEIGHT = 5.4
+"""The maximum size of a picture in inches."""
+
 _LEFT, _RIGHT, _BOTTOM, _TOP = 0.42, 0.16, 0.34, 0.60
 """The margins around the axes in inches."""
 
 MIN_RADIUS_FOR_NAME = 0.5
-"""The minimum radius in metres of a pillar with its name inside."""
+"""The minimum radius of a pillar whose name is written inside it, in metres."""
 
 
 def new_axes(world: World, theme: Theme) -> Axes:
-    """Return the Axes of a new Figure that has the world's proportions, within `WIDTH` x `HEIGHT` inches."""
+    """Return the Axes of a new Figure of at most `WIDTH` x `HEIGHT` inches, in the proportions of the world."""
     left, low, right, high = world.bounds
     margin = 2 * margin_of(world)
     across, up = max(right - left, 0.1) + margin, max(high - low, 0.1) + margin
@@ -63,7 +65,7 @@ def add_scale(ax: Axes, colours: Any, limits: tuple[float, float], unit: str, la
 
 
 def write_names(ax: Axes, world: World, theme: Theme) -> None:
-    """Write the names of walls along them, of furniture inside it, and of pillars and goals beside them."""
+    """Write names: along walls, inside furniture and large pillars, and beside other pillars and goals."""
     style: dict[str, Any] = {"fontsize": 7.5, "color": theme.muted, "zorder": 7, "annotation_clip": False}
     for name in dict.fromkeys(filter(None, world.segment_names)):
         rows = world.segments[[index for index, other in enumerate(world.segment_names) if other == name]]
@@ -114,5 +116,5 @@ def _name_wall(ax: Axes, name: str, wall: npt.NDArray[Any], world: World, style:
 
 
 def _is_closed(rows: npt.NDArray[Any]) -> bool:
-    """Return whether the segments, in their order, form a closed outline, as of a piece of furniture."""
+    """Return whether the segments, in their order, form a closed outline, such as that of a piece of furniture."""
     return len(rows) > 2 and bool(np.allclose(rows[:, 2:], np.roll(rows[:, :2], -1, axis=0)))

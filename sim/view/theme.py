@@ -1,8 +1,8 @@
 """The colours and fonts of all pictures: a light and a dark `Theme`.
 
-The hues are those of Okabe and Ito (2008), which differ for all common kinds of colour blindness. No meaning depends
-only on colour: a goal is a ring, a collision a cross, and the robot has a nose. Lines and letters are large enough for
-a projector.
+The hues are those of Okabe and Ito (2008), which people with any common kind of colour blindness can tell apart. No
+meaning depends only on colour: a goal is a ring, a collision a cross, and the robot has a nose. Lines and letters are
+large enough for a projector.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Theme:
     near_far: tuple[str, str, str]
 
     def time_colours(self, index: int) -> LinearSegmentedColormap:
-        """Return the colours from early to late in the hue of a robot. The lightness represents the time."""
+        """Return the colours of a robot's track from early to late. They share a hue, and lightness represents time."""
         return LinearSegmentedColormap.from_list(f"{self.name}-time-{index}", list(self.time_hues(index)))
 
     def time_hues(self, index: int) -> tuple[str, str, str]:
@@ -73,7 +73,7 @@ class Theme:
 
 
 def _mix(colour: str, other: str, share: float) -> str:
-    """Mix `colour` with a share of another one; return a hexadecimal string."""
+    """Mix `colour` with a `share` of the colour `other`; return a hexadecimal string."""
     red, green, blue = (1 - share) * np.array(to_rgb(colour)) + share * np.array(to_rgb(other))
     return to_hex((red, green, blue))
 
@@ -121,7 +121,7 @@ DARK = Theme(
 THEMES: Mapping[str, Theme] = {"light": LIGHT, "dark": DARK}
 
 STYLE: Mapping[str, Any] = {
-    "font.family": "DejaVu Sans",  # comes with matplotlib: the same letters on every machine
+    "font.family": "DejaVu Sans",  # comes with matplotlib, so letters are the same on every machine
     "font.size": 10.0,
     "svg.hashsalt": "sim",
     "svg.fonttype": "path",

@@ -50,7 +50,7 @@ class Watch:
         return np.array([(pose.x, pose.y) for pose in places])
 
     def advance(self, until_ns: int) -> int:
-        """Read a frame of the bridge; return its time, the instant to show.
+        """Read a frame from the bridge; return its time, which is the instant to show.
 
         A bridge that the view has paused is stepped until `until_ns`.
         """
@@ -74,7 +74,7 @@ class Watch:
         self._clear()
 
     def drive(self, command: Command | None) -> None:
-        """Repeat a command for the first robot, like messages on cmd_vel. None ends this."""
+        """Repeat a command to the first robot, like messages on cmd_vel. None ends the repetition."""
         self._manual_command = command
 
     def recording(self) -> Recording:
@@ -92,8 +92,8 @@ class Watch:
 
     def _read_frame(self) -> Frame:
         driver = self._bridge.driver
-        newest = dict(driver.newest)
-        return Frame(driver.state, tuple(newest.get(spec.name) for spec in self.simulation.robots))
+        newest_scans = dict(driver.newest_scans)
+        return Frame(driver.state, tuple(newest_scans.get(spec.name) for spec in self.simulation.robots))
 
     def _clear(self) -> None:
         frame = self._read_frame()

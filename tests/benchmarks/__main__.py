@@ -40,16 +40,16 @@ def main() -> None:
     """Run the chosen benchmarks; print and write their figures."""
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks", description="Run the benchmarks.")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"which to run, all by default: {', '.join(names())}")
-    chosen = parser.parse_args().names or names()
-    if unknown := sorted(set(chosen) - set(names())):
-        parser.error(f"unknown benchmark: {', '.join(unknown)}; choose from {', '.join(names())}")
+    chosen_names = parser.parse_args().names or names()
+    if unknown_names := sorted(set(chosen_names) - set(names())):
+        parser.error(f"unknown benchmark: {', '.join(unknown_names)}; choose from {', '.join(names())}")
     figures: dict[str, float] = {}
-    for name in chosen:
+    for name in chosen_names:
         results = importlib.import_module(f"tests.benchmarks.bench_{name}").figures()
         for figure, value in results.items():
             print(f"{figure:32} {value:12.4g}", flush=True)
         figures |= results
-    if set(chosen) != set(names()) and TARGET.exists():  # keep the figures of the benchmarks that did not run
+    if set(chosen_names) != set(names()) and TARGET.exists():  # keep the figures of the benchmarks that did not run
         figures = {**json.loads(TARGET.read_text(encoding="utf-8"))["figures"], **figures}
     TARGET.parent.mkdir(exist_ok=True)
     TARGET.write_text(json.dumps({"figures": figures, "machine": machine()}, indent=2) + "\n", encoding="utf-8")

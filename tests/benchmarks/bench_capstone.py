@@ -15,7 +15,7 @@ ASSIGNMENT = "08_capstone"
 
 
 def figures() -> dict[str, float]:
-    """Return `grade.capstone_core_s`; a first grading, not measured, fills the caches."""
+    """Return `grade.capstone_core_s`. A first grading, which is not measured, fills the caches."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         write_reference(suites.hidden(ASSIGNMENT).packages, folder / "reference")

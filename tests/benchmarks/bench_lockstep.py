@@ -1,7 +1,7 @@
 """Measure the steps per second in lockstep, with one node and with three that exchange messages.
 
 The single node is the reference controller at 10 Hz, which gets a scan of 360 beams in each step. The three nodes pass
-each step's message on to the next node, and at last to the grader. The nodes run in sandboxes, and the grader in a
+each step's message on to the next node, and finally to the grader. The nodes run in sandboxes, and the grader in a
 worker sandbox, as in a grading.
 """
 

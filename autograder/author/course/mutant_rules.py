@@ -40,24 +40,26 @@ def broken_mutants(folder: Path, checks: Collection[str] | None, sources: Collec
 
 
 def unproven_checks(folder: Path, checks: Collection[str]) -> Iterator[Finding]:
-    """Yield a finding for each hidden check without a mutant that was written for it or is recorded to fail it."""
+    """Yield a finding for each hidden check if no mutant was written for it and none is recorded to fail it."""
     file = _read_mutants(folder)
     entries = [entry for _, entry in _entries(file)]
-    proven = {str(entry.get("check")) for entry in entries}
+    proven_checks = {str(entry.get("check")) for entry in entries}
     if (folder / SNAPSHOT).is_file():
         snapshot = read_yaml(folder / SNAPSHOT)
         rows = {} if snapshot.findings else snapshot.data or {}
-        proven |= {check for entry in entries for check in _recorded_failures(rows.get(entry.get("id"), ()), checks)}
+        proven_checks |= {
+            check for entry in entries for check in _recorded_failures(rows.get(entry.get("id"), ()), checks)
+        }
     for check in checks:
-        if check not in proven:
+        if check not in proven_checks:
             yield file.finding((), f"no mutant fails the check `{check}`: add one with an error that it finds")
 
 
 def _read_mutants(folder: Path) -> YamlFile:
     if (path := folder / MUTANTS).is_file():
         return read_yaml(path)
-    missing = Finding(display_path(path), None, "is missing: it contains flawed versions of the reference", 1)
-    return YamlFile(missing.file, None, {}, (missing,))
+    missing_file = Finding(display_path(path), None, "is missing: it contains flawed versions of the reference", 1)
+    return YamlFile(missing_file.file, None, {}, (missing_file,))
 
 
 def _entries(file: YamlFile) -> Iterator[tuple[KeyPath, dict[str, Any]]]:
@@ -70,8 +72,8 @@ def _entries(file: YamlFile) -> Iterator[tuple[KeyPath, dict[str, Any]]]:
 
 def _recorded_failures(row: Any, checks: Collection[str]) -> Collection[str]:
     """Return the failed checks in a row of the snapshot."""
-    failed = row["fails"] if isinstance(row, dict) else row
-    return checks if failed == "all" else failed
+    failed_checks = row["fails"] if isinstance(row, dict) else row
+    return checks if failed_checks == "all" else failed_checks
 
 
 def _broken_edits(file: YamlFile, path: KeyPath, entry: dict[str, Any], sources: Collection[str]) -> Iterator[Finding]:

@@ -20,9 +20,10 @@ from autograder.exceptions import UsageError
 
 TEMPLATES = course_paths.ROOT / "assets" / "new"
 NAME = re.compile(r"\d\d_(.+)")
-OBJECTIVES = "objectives:\n"
-NODE = "nearest"
-IMPORTED_CLASSES = {"Node", "LaserScan", "Float32", "ExternalShutdownException"}  # by the reference of a new chapter
+OBJECTIVES = "objectives:\n"  # the line of a syllabus below which its objectives are listed
+NODE = "nearest"  # the default name of a new chapter's node
+# The classes that the reference of a new chapter imports.
+IMPORTED_CLASSES = {"Node", "LaserScan", "Float32", "ExternalShutdownException"}
 
 
 def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple[Path, ...]:
@@ -30,7 +31,7 @@ def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple
 
     Args:
         assignment: two digits and a name, such as `10_mapping`.
-        package: the name of the students' package, by default the chapter's without its number.
+        package: the name of the students' package; by default the chapter's name without its number.
         node: the name of the package's node, of its executable and of its module.
 
     Raises:
@@ -97,17 +98,17 @@ def _require_new(*folders: Path) -> None:
 
 
 def _write(template: Path, folder: Path, placeholders: Mapping[str, str]) -> None:
-    """Copy a folder of text files, with placeholders replaced by their values in names and texts."""
+    """Copy a folder of text files, and replace the placeholders in their names and texts by values."""
 
-    def substituted(text: str) -> str:
+    def substitute(text: str) -> str:
         for placeholder, value in placeholders.items():
             text = text.replace(placeholder, value)
         return text
 
     for source in sorted(path for path in template.rglob("*") if path.is_file() and "__pycache__" not in path.parts):
-        target = folder / substituted(str(source.relative_to(template)))
+        target = folder / substitute(str(source.relative_to(template)))
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(substituted(source.read_text(encoding="utf-8")), encoding="utf-8")
+        target.write_text(substitute(source.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 def _complete(chapter: Chapter) -> None:

@@ -19,13 +19,13 @@ def broken_packages(packages: Collection[str]) -> Iterator[Finding]:
     for name in packages:
         folder = course_paths.SOLUTIONS / name
         if (folder / MANIFEST).is_file():
-            yield from _manifest(folder / MANIFEST, name)
+            yield from _broken_manifest(folder / MANIFEST, name)
         for path in sorted(folder.rglob("*.py")):
             yield from read_python(path).findings
 
 
 def broken_python(folder: Path) -> Iterator[Finding]:
-    """Yield a finding for each unparsable Python file of a chapter's checks, except the suites' own files."""
+    """Yield a finding for each Python file of a chapter's checks that cannot be parsed, except the suites' modules."""
     for path in sorted([*folder.glob("*.py"), *folder.glob("support/**/*.py"), *folder.glob("*/conftest.py")]):
         yield from read_python(path).findings
 
@@ -39,7 +39,7 @@ def broken_variants(folder: Path, packages: Collection[str]) -> Iterator[Finding
                 yield Finding(display_path(variant / package), None, message)
 
 
-def _manifest(path: Path, package: str) -> Iterator[Finding]:
+def _broken_manifest(path: Path, package: str) -> Iterator[Finding]:
     try:
         name = ET.parse(path).getroot().findtext("name")
     except ET.ParseError as error:

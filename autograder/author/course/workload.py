@@ -16,10 +16,10 @@ from autograder.author.course.cells import is_solution
 from autograder.author.course.findings import Finding
 from autograder.author.course.solution_markers import BEGIN, END
 
-WORDS_A_MINUTE = 120.0  # of a technical text, for a reader whose second language is English
-FLUENT_WORDS_A_MINUTE = 200.0  # for the limit of `longest_reading`
-MINUTES_A_CELL = 1.0  # read a code cell, run it, and look at its output
-MINUTES_A_LINE = 1.2  # think, write and correct
+WORDS_A_MINUTE = 120.0  # how fast somebody whose second language is English reads a technical text
+FLUENT_WORDS_A_MINUTE = 200.0  # how fast a fluent reader reads a text; `longest_reading` uses this speed
+MINUTES_A_CELL = 1.0  # to read a code cell, run it, and look at its output
+MINUTES_A_LINE = 1.2  # to think about a line, write it and correct it
 MAX_SHOWN_IN_MINUTES = 100.0
 _ANSWER = re.compile(f"{BEGIN}\n(.*?){END}", re.DOTALL)
 
@@ -63,7 +63,7 @@ def effort(source: NotebookNode) -> Effort:
 
 
 def time_sentence(work: Effort) -> str:
-    """Return the sentence about the required time for the first cell of a chapter."""
+    """Return the sentence for the first cell of a chapter that tells students how long the chapter takes."""
     return f"{duration_text(work.reading)} to read and run, {duration_text(work.writing)} for the exercises"
 
 

@@ -33,10 +33,10 @@ class YamlFile:
     findings: tuple[Finding, ...] = ()
 
     def finding(self, path: KeyPath, message: str) -> Finding:
-        """Return a finding at a key path, or at the innermost part around it that the file has."""
-        enclosing = (path[:length] for length in range(len(path), 0, -1))
+        """Return a finding at a key path, or at the innermost enclosing part if the file lacks this path."""
+        enclosing_paths = (path[:length] for length in range(len(path), 0, -1))
         return Finding(
-            self.label, None, message, next((self.lines[part] for part in enclosing if part in self.lines), 1)
+            self.label, None, message, next((self.lines[part] for part in enclosing_paths if part in self.lines), 1)
         )
 
 
@@ -60,7 +60,7 @@ def read_yaml(path: Path, *, label: str = "", schema: str = "") -> YamlFile:
         context = f", {error.context}" if error.context else ""
         message = f"cannot be read as YAML: {error.problem}{context}"
         return YamlFile(label, None, {}, (Finding(label, None, message, mark.line + 1 if mark else 1),))
-    except (yaml.YAMLError, ValueError) as error:  # a character that YAML forbids, or an invalid date
+    except (yaml.YAMLError, ValueError) as error:  # for example, a character that YAML forbids or an invalid date
         return YamlFile(label, None, {}, (Finding(label, None, f"cannot be read as YAML: {error}", 1),))
     lines: dict[KeyPath, int] = {}
     duplicates = [] if root is None else list(_walk(root, (), lines))

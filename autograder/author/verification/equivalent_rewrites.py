@@ -27,9 +27,9 @@ from autograder.author.verification.python_operators import (
 )
 
 MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
-# Operands that bind tighter than a comparison.
+# Operands that bind more tightly than a comparison.
 TIGHT_OPERANDS = (ast.Attribute, ast.BinOp, ast.Call, ast.Constant, ast.Name, ast.Subscript, ast.UnaryOp)
-MAX_COLUMNS = 99  # of a line, the limit of the ROS linters
+MAX_COLUMNS = 99  # the longest line that the ROS linters accept
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -55,17 +55,17 @@ def formatted(text: str) -> str:
 
 
 def rewrites() -> Mapping[str, Callable[[str], str]]:
-    """Return the available rewrites by name. `formatted` needs ruff, which is only installed for developers."""
+    """Return the available rewrites by name. `formatted` needs ruff, which is installed only for developers."""
     return {"rewritten": rewritten, "formatted": formatted} if find_spec("ruff") else {"rewritten": rewritten}
 
 
 def _only_fitting(
     rewriting: Callable[[Source, list[NodeInContext]], Iterator[Replacement]],
 ) -> Callable[[Source, list[NodeInContext]], Iterator[Replacement]]:
-    """Keep only replacements that do not overlap, stay within one line, and do not make it too long."""
+    """Keep only the replacements that do not overlap, stay within one line, and do not make the line too long."""
 
     @functools.wraps(rewriting)
-    def filtered(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
+    def filter_replacements(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
         last_end = -1
         for start, end, new in sorted(rewriting(source, nodes), key=lambda change: (change[0], -change[1])):
             first, last = source.data.rfind(b"\n", 0, start) + 1, source.data.find(b"\n", end)
@@ -74,7 +74,7 @@ def _only_fitting(
                 yield start, end, new
                 last_end = end
 
-    return filtered
+    return filter_replacements
 
 
 @_only_fitting
@@ -85,7 +85,7 @@ def mirrored_comparisons(source: Source, nodes: list[NodeInContext]) -> Iterator
         if isinstance(node, ast.Compare) and len(node.ops) == 1:
             sides = (node.left, node.comparators[0])
             symbol = MIRRORED.get(SYMBOLS[type(node.ops[0])])
-            if symbol and not all(_calls(side) for side in sides):
+            if symbol and not all(_contains_call(side) for side in sides):
                 left, right = (_operand(source, side) for side in sides)
                 yield (*source.span(node), f"{right} {symbol} {left}")
 
@@ -102,7 +102,7 @@ def inverted_conditions(source: Source, nodes: list[NodeInContext]) -> Iterator[
 
 @_only_fitting
 def expanded_increments(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
-    """Yield `x = x + 1` for `x += 1`, for numbers only: with a list, it would create a new list."""
+    """Yield `x = x + 1` for `x += 1` if a constant is added. For a list, the rewrite would create a new list."""
     for context in nodes:
         node = context.node
         if isinstance(node, ast.AugAssign) and isinstance(node.op, ast.Add) and isinstance(node.value, ast.Constant):
@@ -118,9 +118,9 @@ def renamed_variables(source: Source, nodes: list[NodeInContext]) -> Iterator[Re
         if not isinstance(function, FUNCTIONS) or any(isinstance(outer, FUNCTIONS) for outer in context.ancestors):
             continue
         new_names = {name: f"{name[:-1]}_" for name in _variables(function) if len(name) > 1}
-        unique = {name for name, count in Counter(new_names.values()).items() if count == 1} - used_names
+        unique_names = {name for name, count in Counter(new_names.values()).items() if count == 1} - used_names
         for node in ast.walk(function):
-            if isinstance(node, ast.Name) and new_names.get(node.id) in unique:
+            if isinstance(node, ast.Name) and new_names.get(node.id) in unique_names:
                 yield (*source.span(node), new_names[node.id])
 
 
@@ -130,9 +130,9 @@ def reordered_methods(source: Source, nodes: list[NodeInContext]) -> Iterator[Re
         methods = [method for method in node.body if isinstance(method, FUNCTIONS) and method.name != "__init__"]
         names = {method.name for method in methods}
         decorators = [ast.walk(decorator) for method in methods for decorator in method.decorator_list]
-        needed = {part.id for walk in decorators for part in walk if isinstance(part, ast.Name)}
-        if len(names) == len(methods) and not needed & names:
-            spans = [_with_decorators(source, method) for method in methods]
+        needed_names = {part.id for walk in decorators for part in walk if isinstance(part, ast.Name)}
+        if len(names) == len(methods) and not needed_names & names:
+            spans = [_span_with_decorators(source, method) for method in methods]
             for (start, end), (first, last) in zip(spans, reversed(spans), strict=True):
                 yield start, end, source.data[first:last].decode()
 
@@ -159,7 +159,7 @@ def postponed_annotations(source: Source, nodes: list[NodeInContext]) -> Iterato
         yield end, end, "\n\nfrom __future__ import annotations"
 
 
-def _calls(node: ast.AST) -> bool:
+def _contains_call(node: ast.AST) -> bool:
     return any(isinstance(part, ast.Call | ast.Await) for part in ast.walk(node))
 
 
@@ -173,16 +173,16 @@ def _variables(function: Function) -> set[str]:
     Before Python 3.12, `ast` reports wrong positions inside f-strings.
     """
     nodes = list(ast.walk(function))
-    assigned = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
-    excluded = {node.arg for node in nodes if isinstance(node, ast.arg)}
-    excluded |= {name for node in nodes if isinstance(node, ast.Global | ast.Nonlocal) for name in node.names}
-    excluded |= {node.name for node in nodes if isinstance(node, ast.ExceptHandler) and node.name}
+    assigned_names = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    excluded_names = {node.arg for node in nodes if isinstance(node, ast.arg)}
+    excluded_names |= {name for node in nodes if isinstance(node, ast.Global | ast.Nonlocal) for name in node.names}
+    excluded_names |= {node.name for node in nodes if isinstance(node, ast.ExceptHandler) and node.name}
     for outer in (node for node in nodes if isinstance(node, ast.JoinedStr | ast.ClassDef)):
-        excluded |= {node.id for node in ast.walk(outer) if isinstance(node, ast.Name)}
-    return assigned - excluded
+        excluded_names |= {node.id for node in ast.walk(outer) if isinstance(node, ast.Name)}
+    return assigned_names - excluded_names
 
 
-def _with_decorators(source: Source, function: Function) -> tuple[int, int]:
+def _span_with_decorators(source: Source, function: Function) -> tuple[int, int]:
     start, end = source.span(function)
     for decorator in function.decorator_list[:1]:
         start = source.data.rindex(b"@", 0, source.span(decorator)[0])

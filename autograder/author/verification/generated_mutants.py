@@ -26,7 +26,7 @@ from autograder.author.verification.ros_operators import is_queue_length, multi_
 from autograder.author.verification.text_operators import text_mutations
 from autograder.suite import suites
 
-PAIRS = 20  # second-order mutants in a chapter
+PAIRS = 20  # the maximum number of second-order mutants in a chapter
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class GeneratedMutant:
     """A mutant of the reference.
 
     Attributes:
-        id: names the file, the function, the operator and a digest of the change; stable when other code changes.
+        id: names the file, the function, the operator and a digest of the change. It is stable when other code changes.
         operator: the operator's name; "pair" for a second-order mutant.
         function: the qualified name of the changed function, or "".
         changes: the replacements in each file, whose path is relative to `solutions/`.
@@ -73,7 +73,7 @@ class GeneratedMutant:
 
 @dataclass(frozen=True)
 class GeneratedMutants:
-    """A chapter's mutants, with second-order ones last, and how many were omitted as equivalent or duplicate."""
+    """A chapter's mutants, the second-order ones last, and how many were omitted as equivalents or duplicates."""
 
     mutants: tuple[GeneratedMutant, ...]
     omitted: int
@@ -82,36 +82,37 @@ class GeneratedMutants:
 def generated_mutants(assignment: str) -> GeneratedMutants:
     """Return the mutants of a chapter. They depend only on its reference."""
     mutants: dict[str, GeneratedMutant] = {}
-    omitted = 0
+    omitted_count = 0
     for file, functions, provided_lines in written_by_students(assignment):
         text = (course_paths.SOLUTIONS / file).read_text(encoding="utf-8")
-        meanings = {_meaning(file, text)}
+        meanings = {_meaning_key(file, text)}
         for function, (operator, changes) in mutations(file, text, functions):
-            if provided_lines.issuperset(_lines(text.encode(), changes)):
+            if provided_lines.issuperset(_changed_lines(text.encode(), changes)):
                 continue
-            meaning = _meaning(file, replaced(text.encode(), changes).decode())
+            meaning = _meaning_key(file, replaced(text.encode(), changes).decode())
             if meaning in meanings:
-                omitted += 1
+                omitted_count += 1
                 continue
             meanings.add(meaning)
             mutant = _named(file, function, operator, changes, text)
             assert mutant.id not in mutants, f"two mutants are called {mutant.id}"
             mutants[mutant.id] = mutant
-    return GeneratedMutants((*mutants.values(), *_pairs(list(mutants.values()))), omitted)
+    return GeneratedMutants((*mutants.values(), *_pairs(list(mutants.values()))), omitted_count)
 
 
 def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None, frozenset[bytes]]]:
     """Yield (path, functions, provided lines) for each file that students write or correct.
 
-    The functions are those that students write; None means all. The provided lines are those of the faulty version.
+    The functions are those that students write; None means all. The provided lines are the lines of the faulty version
+    that students get.
     """
     packages, chapter = suites.hidden(assignment).sources, Chapter(course_paths.chapter(assignment))
-    copies = [(cell, copied) for cell in chapter.read().cells if (copied := copied_file(cell))]
-    for cell, copied in copies:
-        if is_solution(cell) and copied.source.parts[0] in packages:
-            yield str(copied.source), frozenset(copied.hidden_functions) or None, frozenset()
+    copies = [(cell, copy) for cell in chapter.read().cells if (copy := copied_file(cell))]
+    for cell, copy in copies:
+        if is_solution(cell) and copy.source.parts[0] in packages:
+            yield str(copy.source), frozenset(copy.hidden_functions) or None, frozenset()
     source_folder = chapter.folder / "ws" / "src"
-    written_packages = {copied.source.parts[0] for _, copied in copies}
+    written_packages = {copy.source.parts[0] for _, copy in copies}
     for package in set(packages) - written_packages:  # students get a faulty version and correct it
         for path in sorted((source_folder / package).rglob("*")):
             correct = course_paths.SOLUTIONS / path.relative_to(source_folder)
@@ -120,7 +121,7 @@ def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] |
 
 
 def mutations(file: str, text: str, functions: frozenset[str] | None) -> Iterator[tuple[str, Mutation]]:
-    """Yield (name of the changed function, mutation) for a file."""
+    """Yield (name of the changed function, mutation) for each mutation of a file."""
     if not file.endswith(".py"):
         yield from (("", mutation) for mutation in text_mutations(file, text))
         return
@@ -138,7 +139,7 @@ def mutations(file: str, text: str, functions: frozenset[str] | None) -> Iterato
 
 
 def _named(file: str, function: str, operator: str, changes: tuple[Replacement, ...], text: str) -> GeneratedMutant:
-    """Name a mutant after the context of its change, so that its name is stable when other lines move."""
+    """Return a mutant whose id depends on the lines around its change, so that it stays the same when lines move."""
     data = text.encode()
     name_digest = hashlib.sha256(f"{file} {function} {operator}".encode())
     for start, end, new in changes:
@@ -151,36 +152,36 @@ def _named(file: str, function: str, operator: str, changes: tuple[Replacement, 
 
 
 def _pairs(mutants: list[GeneratedMutant]) -> Iterator[GeneratedMutant]:
-    """Yield second-order mutants: pseudo-random pairs of mutants that do not overlap."""
-    ranked = sorted(mutants, key=lambda mutant: hashlib.sha256(mutant.id.encode()).digest())
-    for first, second in itertools.islice(zip(ranked[::2], ranked[1::2], strict=False), PAIRS):
+    """Yield second-order mutants: pseudo-random pairs of mutants whose changes do not overlap."""
+    shuffled_mutants = sorted(mutants, key=lambda mutant: hashlib.sha256(mutant.id.encode()).digest())
+    for first, second in itertools.islice(zip(shuffled_mutants[::2], shuffled_mutants[1::2], strict=False), PAIRS):
         changes = dict(first.changes)
         for file, replacements in second.changes:
-            combined = sorted((*changes.get(file, ()), *replacements))
-            if any(before[1] > after[0] for before, after in itertools.pairwise(combined)):
+            combined_replacements = sorted((*changes.get(file, ()), *replacements))
+            if any(before[1] > after[0] for before, after in itertools.pairwise(combined_replacements)):
                 break
-            changes[file] = tuple(combined)
+            changes[file] = tuple(combined_replacements)
         else:
             yield GeneratedMutant(f"{first.id} + {second.id}", "pair", first.function, tuple(changes.items()))
 
 
-def _lines(data: bytes, changes: tuple[Replacement, ...]) -> Iterator[bytes]:
+def _changed_lines(data: bytes, changes: tuple[Replacement, ...]) -> Iterator[bytes]:
     """Yield the lines that contain replacements."""
     for start, end, _ in changes:
         last = start + len(data[start:end].rstrip())
         yield from data[data.rfind(b"\n", 0, start) + 1 : data.find(b"\n", last)].splitlines()
 
 
-def _meaning(file: str, text: str) -> object:
-    """Return a key that is equal for texts with the same meaning to the interpreter or the build."""
+def _meaning_key(file: str, text: str) -> object:
+    """Return a key that is equal for texts that the interpreter or the build treats alike."""
     if file.endswith(".py"):
-        return _code(compile(text, file, "exec", optimize=0))
+        return _code_key(compile(text, file, "exec", optimize=0))
     return "\n".join(filter(None, (line.split("#")[0].strip() for line in text.splitlines())))
 
 
-def _code(code: CodeType) -> tuple[object, ...]:
+def _code_key(code: CodeType) -> tuple[object, ...]:
     constants = tuple(
-        _code(constant) if isinstance(constant, CodeType) else (type(constant), repr(constant))
+        _code_key(constant) if isinstance(constant, CodeType) else (type(constant), repr(constant))
         for constant in code.co_consts
     )
     exception_table = getattr(code, "co_exceptiontable", b"")  # since Python 3.11

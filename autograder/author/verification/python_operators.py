@@ -1,6 +1,6 @@
 """Mutation operators for Python.
 
-They change the text at the positions that `ast` reports, and preserve the rest of it. cosmic-ray and mutmut have only
+They change the text at the positions that `ast` reports, and leave the rest unchanged. cosmic-ray and mutmut have only
 the classic operators, and depend on a parser and a dozen other packages. The ROS operators in `ros_operators.py` need
 the positions from `ast` in any case.
 """
@@ -24,7 +24,7 @@ TEXT_ARGUMENTS = {"description", "additional_constraints", "reason", "msg", "mai
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 Replacement = tuple[int, int, str]  # start and end of the replaced part in UTF-8 bytes, and the new text
-Mutation = tuple[str, tuple[Replacement, ...]]  # the operator and its replacements
+Mutation = tuple[str, tuple[Replacement, ...]]  # the operator, and the replacements that it makes
 NodeMutation = tuple[str, ast.AST, str]  # the operator, the replaced node, and the new text
 
 
@@ -55,7 +55,7 @@ class Source:
 
 
 def replaced(data: bytes, changes: Iterable[Replacement]) -> bytes:
-    """Return a text with some non-overlapping parts replaced."""
+    """Return a text in which some parts, which must not overlap, are replaced."""
     for start, end, new in sorted(changes, reverse=True):
         data = data[:start] + new.encode() + data[end:]
     return data
@@ -79,32 +79,32 @@ def nodes_in_context(source: Source, functions: frozenset[str] | None) -> Iterat
     """
 
     def walk(node: ast.AST, name: str, context: NodeInContext) -> Iterator[tuple[str, NodeInContext]]:
-        inner = NodeInContext(node, (context.node, *context.ancestors), context.function)
+        inner_context = NodeInContext(node, (context.node, *context.ancestors), context.function)
         if isinstance(node, (*FUNCTIONS, ast.ClassDef)):
             name = f"{name}.{node.name}".lstrip(".")
             function = node if isinstance(node, FUNCTIONS) else None
-            inner = NodeInContext(node, inner.ancestors, function or context.function)
+            inner_context = NodeInContext(node, inner_context.ancestors, function or context.function)
             if (
                 function
                 and functions is not None
-                and not any(f"{name}.".startswith(f"{written}.") for written in functions)
+                and not any(f"{name}.".startswith(f"{written_function}.") for written_function in functions)
             ):
                 return
         elif _is_not_mutated(node, context):
             return
-        yield name, inner
+        yield name, inner_context
         for field, value in ast.iter_fields(node):
             if field not in ("annotation", "returns", "ctx"):
                 for child in value if isinstance(value, list) else [value]:
                     if isinstance(child, ast.AST):
-                        yield from walk(child, name, inner)
+                        yield from walk(child, name, inner_context)
 
     for statement in source.tree.body:
         yield from walk(statement, "", NodeInContext(source.tree, (), None))
 
 
 def _is_not_mutated(node: ast.AST, context: NodeInContext) -> bool:
-    """Return whether a node does not affect execution, or only contains text for people."""
+    """Return whether a node does not affect execution, or contains only text for people."""
     if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
         return True  # a docstring
     if isinstance(node, ast.Import | ast.ImportFrom | ast.JoinedStr):
@@ -128,11 +128,11 @@ def classic_mutations(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
 def _operators(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     if isinstance(node, ast.Compare):
         operands = [source.text(operand) for operand in (node.left, *node.comparators)]
-        for changed, old in enumerate(node.ops):
+        for changed_index, old in enumerate(node.ops):
             for name, table in (("boundary", BOUNDARY), ("negated", OPPOSITE)):
                 symbols = [SYMBOLS[type(op)] for op in node.ops]
                 if (symbol := SYMBOLS[type(old)]) in table:
-                    symbols[changed] = table[symbol]
+                    symbols[changed_index] = table[symbol]
                     pairs = (f" {symbol} {operand}" for symbol, operand in zip(symbols, operands[1:], strict=True))
                     yield name, node, f"({operands[0]}{''.join(pairs)})"
     elif isinstance(node, ast.BinOp) and type(node.op) in ARITHMETIC:
@@ -143,8 +143,8 @@ def _operators(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     elif isinstance(node, ast.BoolOp):
         word = " or " if isinstance(node.op, ast.And) else " and "
         yield "boolean", node, f"({word.join(f'({source.text(value)})' for value in node.values)})"
-        for removed in range(len(node.values)):
-            operands = [f"({source.text(value)})" for index, value in enumerate(node.values) if index != removed]
+        for removed_index in range(len(node.values)):
+            operands = [f"({source.text(value)})" for index, value in enumerate(node.values) if index != removed_index]
             word = " and " if isinstance(node.op, ast.And) else " or "
             yield "boolean", node, f"({word.join(operands)})"
 
@@ -224,16 +224,21 @@ def _arguments(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
         yield "log level", node, f"{level}({', '.join(positional + keywords)})"
     elif not any(isinstance(argument, ast.Starred) for argument in node.args):
         for index in range(len(positional) - 1):
-            swapped = [*positional[:index], positional[index + 1], positional[index], *positional[index + 2 :]]
-            yield "arguments", node, f"{function}({', '.join(swapped + keywords)})"
+            swapped_arguments = [
+                *positional[:index],
+                positional[index + 1],
+                positional[index],
+                *positional[index + 2 :],
+            ]
+            yield "arguments", node, f"{function}({', '.join(swapped_arguments + keywords)})"
 
 
 def _elements(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     if isinstance(node, ast.Tuple) and isinstance(node.ctx, ast.Load):
         elements = [source.text(element) for element in node.elts]
         for index in range(len(elements)):
-            remaining = "".join(f"{element}, " for element in elements[:index] + elements[index + 1 :])
-            yield "element", node, f"({remaining})"
+            remaining_elements = "".join(f"{element}, " for element in elements[:index] + elements[index + 1 :])
+            yield "element", node, f"({remaining_elements})"
 
 
 def removal_mutations(source: Source, node: ast.AST) -> Iterator[Mutation]:

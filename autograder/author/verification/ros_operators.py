@@ -72,7 +72,7 @@ def _calls(source: Source, node: ast.Call, context: NodeInContext) -> Iterator[N
 
 
 def is_queue_length(context: NodeInContext) -> bool:
-    """Return whether a node is a queue length, for which the operator "qos" makes the relevant mutations."""
+    """Return whether a node is a queue length. The operator "qos" makes the relevant mutations of queue lengths."""
     outer = context.ancestors[0]
     if isinstance(outer, ast.keyword):
         return outer.arg == "depth"
@@ -96,7 +96,7 @@ def multi_node_mutations(source: Source, context: NodeInContext) -> Iterator[Mut
 
 
 def wall_time(source: Source, nodes: list[ast.AST]) -> Iterator[Mutation]:
-    """Yield a mutation that replaces the ROS clock with the machine's clock in all of these nodes of a module."""
+    """Yield a mutation that replaces the ROS clock with the machine's clock wherever these nodes use it."""
     clocks = [node for node in nodes if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "get_clock"]
     if clocks:
         yield "wall time", tuple((*source.span(node), SYSTEM_CLOCK) for node in clocks)

@@ -1,6 +1,6 @@
 """Counts and reports the results of generated mutants. Survivors, which no check kills, need a reason.
 
-`survivors.yaml` contains the reasons, of two kinds. The report lists all survivors, with or without a reason.
+`survivors.yaml` contains two kinds of reasons. The report lists all survivors, with or without a reason.
 
     - equivalent: why no input can reveal a difference from the reference
       mutants: [the ids]
@@ -23,7 +23,7 @@ from autograder.exceptions import GraderError
 from autograder.suite import suites
 
 KINDS = ("equivalent", "outside")
-MIN_KILLED, MIN_KILLED_OF_ALL = 0.95, 0.97  # mutation scores of a chapter, and of all chapters
+MIN_KILLED, MIN_KILLED_OF_ALL = 0.95, 0.97  # the lowest acceptable scores of one chapter, and of all chapters together
 HEAD = """# Generated mutants
 
 Each operator is applied wherever it matches in the files that students write, and each mutant is graded until a check
@@ -33,7 +33,7 @@ count as not killed. Mutants omitted before grading, because they are equivalent
 
 @dataclass(frozen=True)
 class ChapterMutationResult:
-    """A chapter's generated mutants, the reasons of its survivors, and the results."""
+    """A chapter's generated mutants, the reasons why mutants may survive, and the results."""
 
     assignment: str
     generated: GeneratedMutants
@@ -70,8 +70,8 @@ def reasons(assignment: str, generated: GeneratedMutants) -> dict[str, str]:
     """Return the reasons why generated mutants of a chapter may survive, by their ids.
 
     Raises:
-        CourseError: the file is not YAML, or breaks its schema.
-        GraderError: a mutant does not exist, or has two reasons.
+        CourseError: `survivors.yaml` is not YAML, or violates its schema.
+        GraderError: `survivors.yaml` names a mutant that does not exist, or gives two reasons for one mutant.
     """
     path = suites.hidden(assignment).folder / "survivors.yaml"
     entries = (load_yaml(path) if path.is_file() else None) or []
@@ -85,16 +85,16 @@ def reasons(assignment: str, generated: GeneratedMutants) -> dict[str, str]:
         pair_reasons = [by_mutant[name] for name in pair.split(" + ") if name in by_mutant]
         if len(pair_reasons) == 2:  # then the pair may also survive; "outside" outweighs "equivalent"
             by_mutant.setdefault(pair, max(pair_reasons, key=lambda reason: reason.startswith("outside")))
-    if outdated := by_mutant.keys() - {mutant.id for mutant in generated.mutants}:
-        raise GraderError(f"{path}: these mutants no longer exist: {', '.join(sorted(outdated))}")
+    if outdated_mutants := by_mutant.keys() - {mutant.id for mutant in generated.mutants}:
+        raise GraderError(f"{path}: these mutants no longer exist: {', '.join(sorted(outdated_mutants))}")
     return by_mutant
 
 
 def faults(chapters: Sequence[ChapterMutationResult]) -> list[str]:
-    """Return a sentence for each mutant without a result or a reason, and for each score that is too low.
+    """Return a sentence for each mutant on which the grader failed, each unexplained survivor, and each low score.
 
-    A diff follows the sentence of a mutant without a reason, because the id does not show the change. A score is only
-    judged if all mutants of the chapter, or of all chapters, were graded.
+    The diff of an unexplained survivor follows its sentence, because the id does not show the change. A score is judged
+    only if all mutants of the chapter, or of all chapters, were graded.
     """
     sentences = [
         f"{chapter.assignment}: the grader failed on {name}: {error}"
@@ -107,20 +107,23 @@ def faults(chapters: Sequence[ChapterMutationResult]) -> list[str]:
             f"{chapter.assignment}: {name} survives without a reason\n{textwrap.indent(diffs[name](), '    ')}"
             for name in chapter.unexplained
         ]
-    complete = [chapter for chapter in chapters if len(chapter.results) == len(chapter.generated.mutants)]
-    scores = [(chapter.assignment, chapter.killed, chapter.killable, MIN_KILLED) for chapter in complete]
-    if {chapter.assignment for chapter in complete} == set(suites.graded_assignments()):
-        killed, killable = sum(chapter.killed for chapter in complete), sum(chapter.killable for chapter in complete)
+    complete_chapters = [chapter for chapter in chapters if len(chapter.results) == len(chapter.generated.mutants)]
+    scores = [(chapter.assignment, chapter.killed, chapter.killable, MIN_KILLED) for chapter in complete_chapters]
+    if {chapter.assignment for chapter in complete_chapters} == set(suites.graded_assignments()):
+        killed, killable = (
+            sum(chapter.killed for chapter in complete_chapters),
+            sum(chapter.killable for chapter in complete_chapters),
+        )
         scores.append(("all chapters", killed, killable, MIN_KILLED_OF_ALL))
     return sentences + [
-        f"{name}: {killed} of {killable} mutants fail a check, but at least {required:.0%} must"
-        for name, killed, killable, required in scores
-        if killed < required * killable
+        f"{name}: {killed} of {killable} mutants fail a check, but at least {min_score:.0%} must"
+        for name, killed, killable, min_score in scores
+        if killed < min_score * killable
     ]
 
 
 def mutant_counts(chapters: Iterable[ChapterMutationResult]) -> dict[str, dict[str, list[int]]]:
-    """Return the counts [killed, all] by chapter and operator."""
+    """Return the counts [killed mutants, all mutants] for each operator of each chapter."""
     counts: dict[str, dict[str, list[int]]] = {}
     for chapter in chapters:
         operators = {mutant.id: mutant.operator for mutant in chapter.generated.mutants}
@@ -134,8 +137,8 @@ def mutant_counts(chapters: Iterable[ChapterMutationResult]) -> dict[str, dict[s
 
 def report(chapters: Sequence[ChapterMutationResult]) -> str:
     """Return a Markdown table of chapters and operators, followed by all survivors with their diffs."""
-    omitted = sum(chapter.generated.omitted for chapter in chapters)
-    return "\n".join([f"{HEAD}{omitted}.\n", *_table(chapters), *_survivors(chapters)])
+    omitted_count = sum(chapter.generated.omitted for chapter in chapters)
+    return "\n".join([f"{HEAD}{omitted_count}.\n", *_table(chapters), *_survivors(chapters)])
 
 
 def _table(chapters: Sequence[ChapterMutationResult]) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""A pool of grading workers. Each is a fork server in a sandbox that starts on first use and again after a failure."""
+"""A pool of workers that grade. Each is a fork server in a sandbox, started on first use and after each failure."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ from autograder.run.sandbox.process import ExitReason
 from autograder.run.sandbox.spec import View
 from autograder.run.sandbox.worker_sandbox import WorkerReport, copy_submission, in_worker_sandbox
 
-_EXIT_TIMEOUT = 5.0  # s to wait for the exit of a server that no longer replies
+_EXIT_TIMEOUT = 5.0  # s; how long a server that no longer replies may take to exit
 
 
 class WorkerPool:
     """Grades submissions with a fixed number of workers. Each worker grades many submissions in one sandbox.
 
-    A pool is a context manager and has the call signature of `own_sandbox.run_in_own_sandbox`. Use it only for
-    submissions that the course itself contains; see `fork_server`.
+    A pool is a context manager, and is called like `own_sandbox.run_in_own_sandbox`. Use it only for submissions that
+    the course itself contains; see `fork_server`.
 
     Args:
         isolation: the isolation level of each worker sandbox.
-        count: number of workers, which is also the number of submissions graded at the same time.
+        count: the number of workers, which is also how many submissions are graded at the same time.
 
     Raises:
         IsolationError: this machine does not support the isolation level.
@@ -82,8 +82,8 @@ class _Worker:
         self._stack = ExitStack()
         own_end, server_end = Pipe()
         self._server, self._isolation = self._stack.enter_context(own_end), isolation
-        # The sandbox sees later files only in a folder that is mounted from the start, and its user must be able to
-        # read them.
+        # Files that are written after the sandbox has started appear in it only if their folder was mounted from the
+        # start. The sandbox's user must be able to read them.
         self._shared = Path(self._stack.enter_context(TemporaryDirectory(prefix="verification-shared-")))
         self._shared.chmod(0o755)
 
@@ -107,7 +107,7 @@ class _Worker:
             path = Path(folder, job.path.name)
             copy_submission(job.path, path)
             prebuilt = job.options.prebuilt
-            options = replace(job.options, prebuilt=prebuilt and str(self._share(Path(prebuilt))))
+            options = replace(job.options, prebuilt=prebuilt and str(self._copy_to_shared(Path(prebuilt))))
             remote_job = replace(job, path=path, options=options, scratch=scratch, out=self._scratch / OUT)
             try:
                 self._server.send_bytes(remote_job.to_json().encode())
@@ -117,11 +117,11 @@ class _Worker:
                 files, reply = {}, {}
         return WorkerReport(ExitReason.EXITED, reply["status"], reply["output"], files) if reply else self._stop()
 
-    def _share(self, built: Path) -> Path:
-        """Copy a built workspace to the shared folder, once for many jobs, and return the copy."""
-        copy = self._shared / f"built-{hashlib.sha256(str(built).encode()).hexdigest()[:16]}"
+    def _copy_to_shared(self, built_workspace: Path) -> Path:
+        """Copy a built workspace to the shared folder unless an earlier job did, and return the path of the copy."""
+        copy = self._shared / f"built-{hashlib.sha256(str(built_workspace).encode()).hexdigest()[:16]}"
         if not copy.exists():
-            shutil.copytree(built, copy, symlinks=True)
+            shutil.copytree(built_workspace, copy, symlinks=True)
         return copy
 
     def _stop(self) -> WorkerReport:

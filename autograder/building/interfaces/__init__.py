@@ -1,8 +1,8 @@
-"""Loads message packages of students as plain classes, and builds those of ROS's tutorials as real packages.
+"""Loads students' interface packages as plain classes, and builds those of ROS's tutorials as real packages.
 
 `load_interfaces` reads a package of a student's workspace for the trusted process. It does not compile or import
-anything, and does not run the package's CMake or Python code. `prefix.build` builds a package of this project from its
-definitions with rosidl's generators.
+anything, and does not run the package's CMake or Python code. `prefix.build` builds a package from definitions of this
+project with rosidl's generators.
 """
 
 from autograder.building.interfaces.cache import Cache

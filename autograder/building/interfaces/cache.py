@@ -1,4 +1,4 @@
-"""A content-addressed cache of built folders. Each is built once and added atomically, and their size is limited.
+"""A content-addressed cache of built folders. Each is built once and added atomically. Their total size is limited.
 
 An entry is a folder named after its key, beside a lock file. Processes that use, build or evict the entry hold the
 lock. The kernel releases locks when a process dies, and a half-built folder never has an entry's name. If the entries
@@ -19,20 +19,20 @@ from pathlib import Path
 
 from autograder.run.sandbox.limits import MIB
 
-LIMIT = 512 * MIB
+LIMIT = 512 * MIB  # for all entries together
 _KEY = re.compile(r"[0-9a-f]{16,64}")
 
 
 class Cache:
-    """A cache in a private folder of this user. `limit` bounds the bytes of its entries."""
+    """A cache in a private folder of this user. `limit` is the maximum number of bytes in all its entries."""
 
     def __init__(self, root: Path, limit: int = LIMIT) -> None:
         self.root, self._limit = root, limit
 
     @classmethod
     def default(cls, name: str) -> Cache:
-        """Return this user's cache with a name, below `XDG_CACHE_HOME` or, if that fails, in a temporary folder."""
-        for base in (_xdg(), Path(tempfile.gettempdir()) / f"autograder-cache-{os.getuid()}"):
+        """Return this user's cache called `name`, below `XDG_CACHE_HOME` or, if that fails, in a temporary folder."""
+        for base in (_user_cache_folder(), Path(tempfile.gettempdir()) / f"autograder-cache-{os.getuid()}"):
             root = base / "autograder" / name
             with contextlib.suppress(OSError):
                 root.mkdir(parents=True, exist_ok=True, mode=0o700)
@@ -41,13 +41,13 @@ class Cache:
         return cls(Path(tempfile.mkdtemp(prefix="autograder-cache-")))
 
     def get(self, key: str, make: Callable[[Path], None]) -> Path:
-        """Return the folder of an entry as `use` does. It exists at least until another entry is made."""
+        """Return the folder of an entry, as `use` yields it. The folder exists at least until another entry is made."""
         with self.use(key, make) as entry:
             return entry
 
     @contextlib.contextmanager
     def use(self, key: str, make: Callable[[Path], None]) -> Iterator[Path]:
-        """Yield the folder of an entry, which is made first if it does not exist. It is not evicted during the block.
+        """Yield the folder of an entry, which is not evicted during the block. Make the entry if it does not exist.
 
         Args:
             key: 16 to 64 hexadecimal digits.
@@ -62,7 +62,7 @@ class Cache:
                 if not entry.is_dir():
                     self._make(entry, make)
                     is_new = True
-                fcntl.flock(lock, fcntl.LOCK_SH)  # the lock is free for a moment, in which the entry may be evicted
+                fcntl.flock(lock, fcntl.LOCK_SH)  # for a moment, the lock is free and the entry may be evicted
             os.utime(entry)
             if is_new:
                 self._evict()
@@ -101,22 +101,22 @@ class Cache:
                 total -= size
 
     def _remove(self, folder: Path, key: str) -> bool:
-        """Remove a folder unless its key is in use or being made; return whether it has been removed."""
+        """Remove a folder unless its entry is in use or being made. Return whether the folder no longer exists."""
         with self._lock(key) as lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 # It is renamed first, so that an interrupted removal does not leave half an entry.
-                renamed = folder.with_name(f".{key}-{os.getpid()}-{time.monotonic_ns()}")
-                folder.rename(renamed)
+                doomed_folder = folder.with_name(f".{key}-{os.getpid()}-{time.monotonic_ns()}")
+                folder.rename(doomed_folder)
             except FileNotFoundError:
                 return True
             except BlockingIOError:
                 return False
-            shutil.rmtree(renamed, ignore_errors=True)
+            shutil.rmtree(doomed_folder, ignore_errors=True)
             return True
 
 
-def _xdg() -> Path:
+def _user_cache_folder() -> Path:
     folder = os.environ.get("XDG_CACHE_HOME", "")
     return Path(folder) if folder.startswith("/") else Path(os.environ.get("HOME", "/nonexistent")) / ".cache"
 

@@ -1,4 +1,4 @@
-"""Converts plain values to CDR, the format of DDS messages, and back, by rosidl's model of their types.
+"""Converts plain values to and from CDR, the format of DDS messages, according to rosidl's model of their types.
 
 The bytes are untrusted. Reading is bounded, and bytes that do not match the type raise a ValueError.
 """
@@ -34,7 +34,7 @@ Members = Callable[[rosidl.NamespacedType], Sequence[tuple[str, rosidl.AbstractT
 """Returns the names and types of a message's members."""
 
 Make = Callable[[rosidl.NamespacedType, dict[str, Any]], Any]
-"""Makes a message from the values of its members."""
+"""Creates a message from the values of its members."""
 
 
 class Writer:
@@ -90,10 +90,10 @@ class Writer:
 
 
 class Reader:
-    """Reads values from bytes; `members` returns the members of nested messages, and `make` makes them.
+    """Reads values from bytes; `members` returns the members of nested messages, and `make` creates the messages.
 
     Raises:
-        ValueError: the bytes are too many, or do not match the type.
+        ValueError: there are too many bytes, or they do not match the type.
     """
 
     def __init__(self, data: bytes, members: Members, make: Make) -> None:
@@ -116,7 +116,7 @@ class Reader:
         count = self._count()
         if isinstance(kind, rosidl.AbstractWString):
             return _convert_units(self._take(count, 4), "I", "H").decode("utf-16-le", "replace")
-        return self._take(count, 1)[:-1].decode("utf-8", "replace")  # rosidl does not limit the length, either
+        return self._take(count, 1)[:-1].decode("utf-8", "replace")  # like rosidl, without a check of the length
 
     def _read_elements(self, kind: Any) -> Any:
         inner, is_array = kind.value_type, isinstance(kind, rosidl.Array)

@@ -1,4 +1,4 @@
-"""Compiles generated interface code with the system's gcc: few translation units, without optimisation."""
+"""Compiles generated interface code with the system's gcc, in few translation units and without optimisation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from autograder.ros.environment import site_packages
 
 FASTRTPS = "rosidl_typesupport_fastrtps_c"
 INTROSPECTION = "rosidl_typesupport_introspection_c"
-# The libraries that dependants link. An installed package has all of them, and a package built here has the first two.
+# The libraries to which dependants link. Installed packages have all of them, packages built here only the first two.
 _LIBRARIES = (FASTRTPS, INTROSPECTION, "rosidl_generator_c", "rosidl_typesupport_c", "rosidl_generator_py")
 
 
@@ -23,8 +23,8 @@ def compile_package(
 ) -> None:
     """Compile the generators' output in `work` into libraries and the extension module under `prefix`.
 
-    rcl loads the libraries of the Fast DDS type support and of introspection by name. The former contains everything
-    but introspection, and a link to it is the extension module.
+    rcl loads two libraries by name: one for the Fast DDS type support, and one for introspection. The first contains
+    everything except introspection, and the extension module is a link to it.
 
     Args:
         package: the package's name.
@@ -92,7 +92,8 @@ def _unit(work: Path, name: str, sources: list[Path]) -> Path:
 
 
 def _compilation(source: Path, target: str, flags: list[str]) -> list[str]:
-    # C++14 is the oldest version that Fast CDR accepts, and has the shortest standard headers. GNU's has no trigraphs.
+    # C++14 is the oldest version that Fast CDR accepts, and has the shortest standard headers. GNU's variant of it has
+    # no trigraphs.
     compiler = ["g++", "-std=gnu++14"] if source.suffix == ".cpp" else ["gcc", "-std=gnu11"]
     return [*compiler, "-c", *flags, str(source), "-o", target]
 

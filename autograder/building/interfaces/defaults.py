@@ -1,4 +1,4 @@
-"""Returns functions that create the initial values of fields."""
+"""Provides functions that create the initial values of fields."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from autograder.building.interfaces.cdr import CODES, NUMBERS
 def default_factory(
     kind: rosidl.AbstractType, default: Any, make: Callable[[rosidl.NamespacedType], Any]
 ) -> Callable[[], Any]:
-    """Return a function that returns the initial value of a field, a new object each time.
+    """Return a function that creates the initial value of a field, a new object at each call.
 
     Args:
         kind: the field's type.
         default: the default in its definition, or None.
-        make: makes a message of a type.
+        make: creates a message of a type.
     """
     if not isinstance(kind, rosidl.AbstractNestedType):
         return _single_factory(kind, default, make)

@@ -1,4 +1,4 @@
-"""Interface definitions as plain values, with methods that generate their text without the author's formatting."""
+"""Interface definitions as plain values, from which a text without the author's formatting can be generated."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class DefinitionError(InterfaceError):
 
 
 Value = bool | int | float | str
-"""The value of a constant. The default of a field may also be a list of these."""
+"""The value of a constant. The default of a field may also be a list of such values."""
 
 
 @dataclass(frozen=True)
@@ -32,10 +32,10 @@ class Field:
     name: str
     base: str  # a basic type, such as `float64`, or the name of a message, such as `Header`
     package: str | None = None  # the package of a message
-    max_length: int | None = None  # the bound of a string
+    max_length: int | None = None  # the maximum length of a string
     is_array: bool = False
     size: int | None = None  # the number of elements of an array
-    is_upper_bound: bool = False  # whether `size` is only a bound
+    is_upper_bound: bool = False  # whether `size` is only the maximum
     default: Value | list[Value] | None = None
 
     def __str__(self) -> str:
@@ -77,8 +77,8 @@ class Definition:
 
     path: str  # such as `msg/RobotStatus.msg`
     sections: tuple[Section, ...]
-    uses: tuple[tuple[str, str, str], ...]  # its messages of other packages, as (package, type, text of the line)
-    elements: int = 1  # for which a new message allocates memory
+    uses: tuple[tuple[str, str, str], ...]  # messages of other packages that it contains: (package, type, line's text)
+    elements: int = 1  # the number of elements for which a new message allocates memory
 
     @property
     def text(self) -> str:
@@ -95,7 +95,7 @@ def _literal(value: Value | list[Value]) -> str:
 
 
 def require_uses(definitions: tuple[Definition, ...], exists: Callable[[str, str | None], bool]) -> None:
-    """Raise a DefinitionError unless each message of another package exists.
+    """Raise a DefinitionError unless all messages of other packages that the definitions contain exist.
 
     `exists` returns whether a package has the given message, or whether the package exists if the message is None.
     """

@@ -2,9 +2,9 @@
 
     python -m autograder.building.interfaces.generate PREFIX
 
-The folder PREFIX contains `recipe.json`, as `prefix.build` wrote it, and gets the built package. This is a separate
-process, because the generators are patched, print and keep state, and because it forks, which a process with a running
-rclpy must not do.
+The folder PREFIX contains the `recipe.json` that `prefix.build` wrote. The built package is installed there. All this
+runs in a separate process, because the generators are patched, print and keep state, and because it forks, which a
+process that uses rclpy must not do.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class InterfaceBuildJob:
 
 
 def closure(prefixes: tuple[Path, ...], packages: list[str]) -> tuple[str, ...]:
-    """Return these packages and all their dependencies, by their manifests, if they are interface packages."""
+    """Return the interface packages among these packages and all the dependencies that their manifests declare."""
     names: set[str] = set()
     pending = list(packages)
     while pending:
@@ -63,7 +63,10 @@ def closure(prefixes: tuple[Path, ...], packages: list[str]) -> tuple[str, ...]:
 
 
 def write_definitions(prefix: Path, package: str, texts: dict[str, str]) -> tuple[str, ...]:
-    """Write definitions, texts by path, and their .idl files to the share folder; return the paths of the latter."""
+    """Write definitions and their .idl files to the package's share folder. Return the paths of the .idl files.
+
+    `texts` contains the definitions by path.
+    """
     from rosidl_adapter.action import convert_action_to_idl
     from rosidl_adapter.msg import convert_msg_to_idl
     from rosidl_adapter.srv import convert_srv_to_idl
@@ -81,15 +84,17 @@ def write_definitions(prefix: Path, package: str, texts: dict[str, str]) -> tupl
 def escape_texts() -> None:
     """Make the generators escape each character of a string, except ASCII letters and digits.
 
-    So no string can end its literal early, however a compiler treats quotation marks, trigraphs or line ends.
+    Then no string can end its literal early, no matter how a compiler treats quotation marks, trigraphs or line ends.
     """
     c, python = import_module("rosidl_generator_c"), import_module("rosidl_generator_py.generate_py_impl")
 
-    def escaped(text: str, code: str) -> str:
-        return "".join(chr(byte) if chr(byte).isalnum() and byte < 128 else code % byte for byte in text.encode())
+    def escape_bytes(text: str, byte_format: str) -> str:
+        return "".join(
+            chr(byte) if chr(byte).isalnum() and byte < 128 else byte_format % byte for byte in text.encode()
+        )
 
-    c.escape_string = c.escape_wstring = lambda text: escaped(text, "\\%03o")  # type: ignore[attr-defined]
-    python.quoted_string = lambda text: f"'{escaped(text, chr(92) + 'x%02x')}'"  # type: ignore[attr-defined]
+    c.escape_string = c.escape_wstring = lambda text: escape_bytes(text, "\\%03o")  # type: ignore[attr-defined]
+    python.quoted_string = lambda text: f"'{escape_bytes(text, chr(92) + 'x%02x')}'"  # type: ignore[attr-defined]
 
 
 def parse_once(job: InterfaceBuildJob) -> None:
@@ -102,7 +107,7 @@ def parse_once(job: InterfaceBuildJob) -> None:
 
 
 def write_arguments(job: InterfaceBuildJob, generator: str, **more: Any) -> str:
-    """Write a generator's arguments file; return its path."""
+    """Write the file with a generator's arguments, including `more`. Return its path."""
     output_folder = job.output_folder(generator)
     for kind in {Path(file).parts[0] for file in job.files}:
         (output_folder / kind / "detail" / "dds_fastrtps").mkdir(parents=True, exist_ok=True)
@@ -123,11 +128,11 @@ def write_arguments(job: InterfaceBuildJob, generator: str, **more: Any) -> str:
 
 
 def generate(job: InterfaceBuildJob) -> None:
-    """Run all generators in two processes: those that need the type hashes in this one, the others in a fork."""
+    """Run all generators: in this process those that need the hashes of types, and the others in a fork."""
     python = import_module("rosidl_generator_py.generate_py_impl")
     descriptions = import_module("rosidl_generator_type_description")
-    code, supports = import_module("rosidl_generator_c"), import_module("rosidl_typesupport_c")
-    fast, introspection = map(import_module, C_SUPPORTS)
+    c, type_support = import_module("rosidl_generator_c"), import_module("rosidl_typesupport_c")
+    fastrtps, introspection = map(import_module, C_SUPPORTS)
 
     def generate_hashed() -> None:
         include = [f"{name}:{job.share(name)}" for name in job.dependencies]
@@ -136,13 +141,13 @@ def generate(job: InterfaceBuildJob) -> None:
         )
         descriptions_folder = job.output_folder("rosidl_generator_type_description")
         tuples = [f"{file}:{descriptions_folder / file[:-4]}.json" for file in job.files]
-        code.generate_c(write_arguments(job, "rosidl_generator_c", type_description_tuples=tuples))
+        c.generate_c(write_arguments(job, "rosidl_generator_c", type_description_tuples=tuples))
         introspection.generate_c(write_arguments(job, "rosidl_typesupport_introspection_c"))
 
     def generate_others() -> None:
         python.generate_py(write_arguments(job, "rosidl_generator_py"), ["rosidl_typesupport_c"])
-        supports.generate_c(write_arguments(job, "rosidl_typesupport_c"), C_SUPPORTS)
-        fast.generate_typesupport_fastrtps_c(write_arguments(job, "rosidl_typesupport_fastrtps_c"))
+        type_support.generate_c(write_arguments(job, "rosidl_typesupport_c"), C_SUPPORTS)
+        fastrtps.generate_typesupport_fastrtps_c(write_arguments(job, "rosidl_typesupport_fastrtps_c"))
 
     run_in_parallel(generate_hashed, generate_others)
     for name in ("rosidl_generator_c", "rosidl_typesupport_c", *C_SUPPORTS):

@@ -1,4 +1,4 @@
-"""Creates descriptions of types at run time, as rosidl's C structures, which rmw_fastrtps_cpp passes to Fast DDS."""
+"""Describes types at run time in rosidl's C structures, which rmw_fastrtps_cpp passes to Fast DDS."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ Members = Callable[[rosidl.NamespacedType], Sequence[tuple[str, rosidl.AbstractT
 
 
 class MessageSupport(Structure):
-    """C's `rosidl_message_type_support_t`."""
+    """The C structure `rosidl_message_type_support_t`."""
 
     _fields_ = (
         *(("identifier", c_void_p), ("data", c_void_p), ("handle", c_void_p), ("hash", c_void_p)),
@@ -71,11 +71,11 @@ def _common_addresses() -> tuple[int | None, int | None]:
     return name.value, cast(handle, c_void_p).value
 
 
-_kept_alive: list[Any] = []  # objects that C code points to, for the lifetime of the process
+_kept_alive: list[Any] = []  # objects that C code refers to until the process ends
 
 
 class Introspection:
-    """Creates the structures of types, and caches them."""
+    """Creates the structures that describe types, and caches them."""
 
     def __init__(self, members: Members) -> None:
         self._members = members

@@ -1,4 +1,4 @@
-"""The types that messages of a student's packages may contain: those of these packages, and those of ROS."""
+"""The types that messages of a student's packages may contain: the packages' own types, and those of ROS."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class KnownTypes:
         ]
 
     def make(self, kind: rosidl.NamespacedType, values: Mapping[str, Any] | None = None) -> Any:
-        """Make a message, with the values of all members if they are given."""
+        """Create a message, with the values of all members if they are given."""
         student_class = self._student_classes.get(kind.namespaced_name())
         if student_class is not None:
             return student_class() if values is None else student_class._from_values(values)
@@ -86,5 +86,5 @@ class KnownTypes:
 
 
 def _ros_class(kind: rosidl.NamespacedType) -> Any:
-    """Return the class of a message of a ROS package."""
+    """Return the class of a ROS package's message."""
     return getattr(import_module(".".join(kind.namespaces)), kind.name)

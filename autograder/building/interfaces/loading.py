@@ -1,4 +1,4 @@
-"""Loads a student's interface packages as message classes of plain values, from the texts of their definitions."""
+"""Loads a student's interface packages from the texts of their definitions, as message classes with plain values."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:  # the process of the generators also imports this package, bu
     from autograder.run.workspace import Workspace
 
 Texts = tuple[tuple[str, str], ...]
-"""Pairs of a definition's path in its package, such as `msg/RobotStatus.msg`, and its text, sorted."""
+"""Sorted pairs of a definition's path in its package, such as `msg/RobotStatus.msg`, and the definition's text."""
 
 
 def load_interfaces(workspace: Workspace, package: str) -> Any:
-    """Return the classes of an interface package of a student's workspace: `.msg.Name`, `.srv.Name`, `.action.Name`.
+    """Return the classes of an interface package in a student's workspace: `.msg.Name`, `.srv.Name`, `.action.Name`.
 
-    Two calls return the same objects for the same texts.
+    For the same texts, two calls return the same objects.
 
     Raises:
         StudentError: the package or its definitions are missing or wrong.
@@ -43,7 +43,7 @@ def load_interfaces(workspace: Workspace, package: str) -> Any:
 
 @lru_cache(maxsize=8)
 def classes(packages: tuple[tuple[str, Texts], ...]) -> Any:
-    """Return the classes of the last package. Each package uses only those before it."""
+    """Return the classes of the last of these packages. Each package uses only those before it."""
     from autograder.building.interfaces.known_types import KnownTypes
     from autograder.building.interfaces.messages import add_package
 
@@ -59,7 +59,7 @@ def _gather(
     elements: dict[tuple[str, str], int],
     ros: tuple[Path, ...],
 ) -> None:
-    """Add the texts of a package and the sizes of its messages to `texts` and `elements`, after its dependencies."""
+    """Add a package's texts to `texts` and its messages' sizes to `elements`, after those of its dependencies."""
     folder = packages.get(package)
     if folder is None:
         sentence = f"The package {package} is missing: src holds {', '.join(sorted(packages)) or 'no package at all'}."
@@ -88,7 +88,7 @@ def _gather(
 
 
 def _require_uses(definitions: tuple[Definition, ...], texts: dict[str, Texts], ros: tuple[Path, ...]) -> None:
-    """Raise a DefinitionError unless each message of another package exists."""
+    """Raise a DefinitionError unless all messages of other packages that the definitions contain exist."""
 
     def exists_anywhere(package: str, message: str | None) -> bool:
         if package in texts:

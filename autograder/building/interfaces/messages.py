@@ -1,7 +1,7 @@
-"""Makes message classes of plain Python values from parsed definitions. rclpy accepts them without generated code.
+"""Creates message classes from parsed definitions. They hold plain values, and rclpy needs no generated code for them.
 
 They have the attributes of rosidl's classes: fields with their defaults, constants, `Request` and `Response` of a
-service, `Goal`, `Result` and `Feedback` of an action. Fields that are messages of ROS packages have the real classes.
+service, `Goal`, `Result` and `Feedback` of an action. For messages of ROS packages, fields use the real classes.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ class Interfaces(SimpleNamespace):
 
 
 class PlainMessage:
-    """Base of the message classes. Its attributes begin with an underscore, unlike those of fields and constants."""
+    """Base of the message classes. Unlike fields and constants, its attributes begin with an underscore."""
 
     _type: ClassVar[rosidl.NamespacedType]
     _members: ClassVar[Mapping[str, rosidl.AbstractType]]
-    _defaults: ClassVar[Mapping[str, Callable[[], Any]]]  # of the fields
+    _defaults: ClassVar[Mapping[str, Callable[[], Any]]]  # functions that create the fields' initial values
     _known: ClassVar[KnownTypes]
 
     def __init__(self, **values: Any) -> None:
@@ -77,12 +77,12 @@ class PlainMessage:
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
-        """Return the fields, in their order, with rosidl's names of their types."""
+        """Return the fields in order, each with rosidl's name for its type."""
         return {name: structures.describe(cls._members[name]) for name in cls._defaults}
 
     @classmethod
     def _from_values(cls, values: Mapping[str, Any]) -> PlainMessage:
-        """Make a message from the values of all members."""
+        """Create a message from the values of all members."""
         message = cls.__new__(cls)
         vars(message).update({name: values[name] for name in cls._defaults})
         return message
@@ -97,17 +97,17 @@ def to_bytes(message: PlainMessage) -> bytes:
 
 
 def from_bytes(kind: type[PlainMessage], data: bytes) -> PlainMessage:
-    """Return the message with a CDR. Raise a ValueError if the bytes do not match the type."""
+    """Return the message whose CDR is `data`. Raise a ValueError if the bytes do not match the type."""
     message: PlainMessage = cdr.Reader(data, kind._known.members, kind._known.make).read(kind._type)
     return message
 
 
 def add_package(package: str, definitions: tuple[Definition, ...], known: KnownTypes) -> SimpleNamespace:
-    """Make the classes of a package, and add them to the known types.
+    """Create the classes of a package, and add them to the known types.
 
     Returns:
-        The classes as attributes, as in the package's modules: `.msg.RobotStatus`, `.srv.CheckTrip`, ... An attribute
-        that does not exist raises a StudentError.
+        The classes as attributes, as in the package's modules: `.msg.RobotStatus`, `.srv.CheckTrip`, ... Reading an
+        attribute that does not exist raises a StudentError.
     """
     models = [structures.model(package, definition) for definition in definitions]
     known.describe(models)
@@ -197,7 +197,7 @@ def _make_class(meta: Any, kind: rosidl.NamespacedType, bases: tuple[type, ...],
 
 
 def _metaclass(support: Callable[[], dict[str, Any]], names: tuple[str, ...]) -> type:
-    """Return a metaclass for rclpy, with a type support that is made at its first use."""
+    """Return a metaclass for rclpy, whose type support is created on first use."""
 
     def import_type_support(meta: type) -> None:
         if meta._TYPE_SUPPORT is None:  # type: ignore[attr-defined]

@@ -1,4 +1,4 @@
-"""Builds the prefix of an interface package of this project from its texts, or takes it from the cache."""
+"""Builds a prefix with an interface package of this project from its definitions, or takes it from the cache."""
 
 from __future__ import annotations
 
@@ -19,28 +19,28 @@ from autograder.ros import RosEnvironment, activate
 from autograder.ros.environment import without_wheel_bootstrap
 
 HERE = Path(__file__).parent
-BUILD_SECONDS = 120.0
+BUILD_SECONDS = 120.0  # maximum real time of a build
 RECIPE = "recipe.json"
 BUILD_MODULES = (
     "building/interfaces/generate",
     "building/interfaces/compile",
     "submission/packages",
     "ros/environment",
-)  # the modules that make a prefix
+)  # the modules that determine the content of a prefix
 
 
 class GenerationError(InterfaceError):
-    """The generators or the compiler rejected definitions that can be read."""
+    """The generators or the compiler rejected definitions that `read` accepts."""
 
 
 def build(package: str, files: Mapping[str, str], *, cache: Cache | None = None) -> Path:
-    """Return a prefix with the package built from its definitions, from the cache if it was built before.
+    """Build a package from its definitions, unless the cache contains it. Return the prefix with the package.
 
     The prefix exists at least until another one is built.
 
     Args:
         package: the package's name.
-        files: texts by their paths in the package: `msg/*.msg`, `srv/*.srv`, `action/*.action`.
+        files: the definitions' texts by their paths in the package: `msg/*.msg`, `srv/*.srv`, `action/*.action`.
         cache: the cache for the prefix, by default this user's.
 
     Raises:
@@ -63,13 +63,13 @@ def build(package: str, files: Mapping[str, str], *, cache: Cache | None = None)
 
 
 def exists(prefixes: tuple[Path, ...], package: str, message: str | None) -> bool:
-    """Return whether a message exists in one of the prefixes, or the package with its messages if it is None."""
+    """Return whether one of the prefixes contains a message, or any message of the package if `message` is None."""
     folders = (prefix / "share" / package / "msg" for prefix in prefixes)
     return any((folder if message is None else folder / f"{message}.idl").exists() for folder in folders)
 
 
 def identity(ros: RosEnvironment) -> dict[str, object]:
-    """Return everything but its content on which a built package depends: the Python, and the versions of ROS."""
+    """Return what a built package depends on besides its definitions: the interpreter, and the versions of ROS."""
     return {
         "prefixes": [str(prefix) for prefix in ros.prefixes],
         "python": [sys.executable, sys.version, sysconfig.get_config_var("EXT_SUFFIX")],

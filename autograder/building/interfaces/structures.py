@@ -1,4 +1,4 @@
-"""Converts parsed definitions to rosidl's model of types: structures with members, also those implied by an action."""
+"""Converts parsed definitions to rosidl's model of types: structures with members, including those of actions."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def _structure(name: rosidl.NamespacedType, section: Section) -> rosidl.Structur
 
 
 def describe(kind: rosidl.AbstractType) -> str:
-    """Return the name of a field's type in `get_fields_and_field_types` of rosidl's Python classes."""
+    """Return the name of a field's type as in `get_fields_and_field_types` of rosidl's Python classes."""
     value = kind.value_type if isinstance(kind, rosidl.AbstractNestedType) else kind
     if isinstance(value, rosidl.NamespacedType):
         text = f"{value.namespaces[0]}/{value.name}"

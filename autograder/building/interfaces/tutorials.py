@@ -1,8 +1,8 @@
 """Installs the interface packages of ROS's tutorials, which have no wheels.
 
 They are built from `tutorials.yaml` into the prefix of this environment, for Python programs only: they do not contain
-the files that CMake packages need. Set-up runs this module. It does nothing for a sourced ROS 2, which has the real
-packages.
+the files that CMake packages need. Set-up runs this module. For a sourced ROS 2, which has the real packages, it
+does nothing.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ FOLDERS = ("share", "lib", "include")
 
 
 def packages() -> dict[str, dict[str, str]]:
-    """Return each package's definitions, texts by path, as `build` accepts them."""
+    """Return the definitions of each package in the form that `build` accepts: their texts by path."""
     definitions: dict[str, dict[str, str]] = yaml.safe_load(DEFINITIONS.read_text(encoding="utf-8"))
     return definitions
 
 
 def missing(prefix: Path) -> dict[str, dict[str, str]]:
-    """Return the packages that are not in `prefix`, or have other definitions there, in the form of `packages`."""
+    """Return those of `packages()` that `prefix` does not contain, or contains with other definitions."""
     return {name: files for name, files in packages().items() if not _is_installed(prefix, name, files)}
 
 
@@ -40,9 +40,9 @@ def install(prefix: Path) -> list[str]:
     packages_to_build = missing(prefix)
     with tempfile.TemporaryDirectory() as scratch:
         for name, files in packages_to_build.items():
-            built = build(name, files, cache=Cache(Path(scratch)))
+            built_prefix = build(name, files, cache=Cache(Path(scratch)))
             for folder in FOLDERS:
-                shutil.copytree(built / folder, prefix / folder, dirs_exist_ok=True, copy_function=_replace)
+                shutil.copytree(built_prefix / folder, prefix / folder, dirs_exist_ok=True, copy_function=_replace)
     return list(packages_to_build)
 
 
@@ -53,7 +53,7 @@ def _is_installed(prefix: Path, package: str, files: dict[str, str]) -> bool:
 
 
 def _replace(source: str, target: str) -> None:
-    """Replace the target by a copy, because the file of a library that a process has loaded must not change."""
+    """Put a copy of the source in the target's place: the file of a library that a process uses must not change."""
     new = Path(f"{target}.new")
     shutil.copy2(source, new)
     new.replace(target)
@@ -63,9 +63,9 @@ def main() -> int:
     """Install the packages in this environment. Without a compiler, print how to do that later, and succeed."""
     prefix = Path(sys.prefix)
     try:
-        if find().kind != "wheels" or not (absent := missing(prefix)):
+        if find().kind != "wheels" or not (missing_packages := missing(prefix)):
             return 0
-        names = ", ".join(absent)
+        names = ", ".join(missing_packages)
         if shutil.which("g++") is None:
             command = f"{sys.executable} -m autograder.building.interfaces.tutorials"
             print(f"g++ is missing, so {names} are not installed; once it is there, run {command}")

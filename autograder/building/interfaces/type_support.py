@@ -1,11 +1,12 @@
 """Creates type supports without generated code. They transport a message as bytes, so that no type needs a library.
 
-For rclpy and rmw_fastrtps_cpp, a type consists of C structures with its name, its hash and functions that convert it.
-rosidl generates these as code. Here they are created at run time, for any name, and the functions only copy bytes.
-`messages` interprets the bytes. In place of a C pointer to a message, they use the number of an entry in `_messages`.
+For rclpy and rmw_fastrtps_cpp, a type consists of C structures with its name, its hash and functions that convert its
+messages. rosidl generates these as code. Here they are created at run time, for any name, and the functions only copy
+bytes, which `messages` interprets. Instead of a C pointer to a message, the functions get the number of an entry in
+`_messages`.
 
-rmw_fastrtps_cpp passes the bytes in a `Cdr` of Fast CDR 2, whose end is a private member. This module reads it from
-memory, at an offset from members that public functions of `Cdr` also return, which verifies the layout.
+rmw_fastrtps_cpp passes the bytes in a `Cdr` of Fast CDR 2, in which the end of the bytes is a private member. This
+module reads it from memory. To verify the layout, it compares other members with what public functions return.
 """
 
 from __future__ import annotations
@@ -23,13 +24,14 @@ from autograder.building.interfaces.introspection import IDENTIFIER, MessageSupp
 from autograder.exceptions import GraderError
 
 LITTLE_ENDIAN = b"\x00\x01"  # the first bytes of a CDR header
-POSITIONS_OFFSET = 18 * 8  # of the positions in the buffer, in a `Cdr`
-HEADER_SIZE = 4  # bytes before those of the message
-INITIAL_SIZE = 256  # bytes that a history allocates for a message in advance; it grows
+POSITIONS_OFFSET = 18 * 8  # bytes of a `Cdr` before its positions in the buffer
+HEADER_SIZE = 4  # bytes of a CDR header
+INITIAL_SIZE = 256  # bytes that a history allocates for a message in advance; it allocates more if needed
+# The attributes that rclpy needs in the metaclass of a message class.
 NAMES = ("_CREATE_ROS_MESSAGE", "_CONVERT_FROM_PY", "_CONVERT_TO_PY", "_DESTROY_ROS_MESSAGE", "_TYPE_SUPPORT")
 
-_kept_alive: list[Any] = []  # objects that C code points to, for the lifetime of the process
-_messages: dict[int, bytes | None] = {}  # None for one that could not be read
+_kept_alive: list[Any] = []  # objects that C code refers to until the process ends
+_messages: dict[int, bytes | None] = {}  # the bytes of each message; None if they could not be read
 _numbers = itertools.count(1)
 
 _Serialize = ctypes.CFUNCTYPE(c_bool, c_void_p, c_void_p)
@@ -92,7 +94,7 @@ def message_support(
     Args:
         message: the message's type.
         to_bytes: returns the CDR of a message, without a header. If it raises a ValueError, rclpy raises an error.
-        from_bytes: returns the message with a CDR. If it raises a ValueError, rclpy receives None.
+        from_bytes: returns the message of a CDR. If it raises a ValueError, rclpy receives None.
     """
 
     def create() -> int:
@@ -185,7 +187,7 @@ def _functions() -> tuple[Any, ...]:
 
     def deserialize(cdr: int, number: int) -> bool:
         first, current = start(cdr) or 0, position(cdr) or 0
-        # Three iterators, each with the start of the buffer: of the current position, the origin and the end.
+        # Three iterators, each with the start of the buffer and a position: the current one, the origin, and the end.
         positions = (c_void_p * 6).from_address(cdr + POSITIONS_OFFSET)
         end = positions[5] or 0
         if [positions[0], positions[1], positions[2], positions[4]] == [
@@ -196,7 +198,7 @@ def _functions() -> tuple[Any, ...]:
         ] and current == first + HEADER_SIZE <= end:
             readable = ctypes.string_at(first, HEADER_SIZE)[:2] == LITTLE_ENDIAN and end - current <= MAX_BYTES
             _messages[number] = ctypes.string_at(current, end - current) if readable else None
-        return True  # a message that cannot be read is received, too, and counts
+        return True  # a message that cannot be read has nevertheless arrived, and counts
 
     def maximum_size(bounds: Any) -> int:
         bounds[0] = b"\0"  # unbounded
@@ -212,9 +214,9 @@ def _functions() -> tuple[Any, ...]:
 
 @cache
 def _templates() -> Mapping[str, Any]:
-    """Return structures of existing types, for the parts that are the same for all types.
+    """Return the structures of two existing types, from which other types copy the parts that are the same for all.
 
-    The description of a type is that of another one, because it is never requested from the grader.
+    These include the description of the type. It is wrong for the other types, but nobody requests it from the grader.
     """
     from std_msgs.msg import Empty as EmptyMessage
     from std_srvs.srv import Empty as EmptyService

@@ -1,4 +1,4 @@
-"""Attacks: malicious submissions, made of the reference and attack payloads.
+"""Attacks: malicious submissions, made from the reference and attack payloads.
 
 Each attack starts from a mutant whose losses are known. An attack that gains nothing loses at least the same checks.
 """
@@ -35,7 +35,7 @@ WRITEFILE = f"%%writefile ws/src/{PACKAGE}/{CONTROLLER}\n"
 PUBLISH = "        self.cmd_vel_pub.publish(command)"
 COUNT = "        self.calls = getattr(self, 'calls', 0) + 1\n"
 # Robots that ignore every scan and still touch little or nothing: name, description, and lines before the command.
-BLIND = (
+BLIND_ROBOTS = (
     (
         "late driver",
         "stands still for most of a drive, and then drives straight on",
@@ -60,7 +60,7 @@ def package_writer(
     """Return a function that writes a source tree with payloads.
 
     Args:
-        base: the mutant that gets them, or None for the reference.
+        base: the mutant into which the payloads are put, or None for the reference.
         head: text before the controller's source.
         foot: text before the controller's `if __name__`.
         replace: parts of the controller's source, each with its new text.
@@ -103,40 +103,40 @@ def notebook_writer(*cells: str, base: str | None = None) -> Callable[[Path], No
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks. One submission combines attacks that do not disturb each other."""
-    slow, blind = CHAPTER.mutant("five_hertz").fails, CHAPTER.mutant("drives_blind").fails
+    slow_losses, blind_losses = CHAPTER.mutant("five_hertz").fails, CHAPTER.mutant("drives_blind").fails
     all_checks = CHAPTER.checks
     return (
         Attack(
             "thief",
             "reads suites, processes and accounts; writes results and code; phones home; leaves a daemon",
             package_writer("five_hertz", head=STEAL_SECRETS + STOP_PARENT + FORGE_PASSES),
-            slow,
+            slow_losses,
             exactly=True,
         ),
         Attack(
             "kernel holder",
             "writes kernel settings; holds inotify watches and descriptors that other processes of the user need",
             package_writer("five_hertz", head=HOLD_KERNEL),
-            slow,
+            slow_losses,
             exactly=True,
         ),
         Attack(
             "tricks",
             "objects equal to anything; patched builtins, time and unittest; atexit and __del__",
             package_writer("five_hertz", foot=OVERRIDE_BUILTINS),
-            slow,
+            slow_losses,
         ),
         Attack(
             "forged protocol",
             "answers in the host's place with steps and counts of its own",
             package_writer("five_hertz", head=STEAL_SECRETS, foot=FORGE_PROTOCOL),
-            slow,
+            slow_losses,
         ),
         Attack(
             "lost messages",
             "reports in the host's place that no message of the grader arrives",
             package_writer("five_hertz", head=LOSE_MESSAGES),
-            slow,
+            slow_losses,
         ),
         Attack(
             "spoofed ROS",
@@ -146,7 +146,7 @@ def attacks() -> tuple[Attack, ...]:
                 foot=SPOOF_ROS,
                 replace={"        self.last_scan_time = None\n": CALL_SPOOF},
             ),
-            blind,
+            blind_losses,
         ),
         Attack(
             "grader's name",
@@ -170,7 +170,7 @@ def attacks() -> tuple[Attack, ...]:
                 package_writer(None, replace={PUBLISH: f"{lines}{PUBLISH}"}),
                 frozenset({"forward_when_clear", "turns_when_blocked", "nan", "room", "pillars", "corridor"}),
             )
-            for name, description, lines in BLIND
+            for name, description, lines in BLIND_ROBOTS
         ),
         Attack(
             "nan commands",
@@ -182,7 +182,7 @@ def attacks() -> tuple[Attack, ...]:
             "build thief",
             "setup.py steals; plants conftest.py, pytest.ini and a start-up hook; forged install and build trees",
             package_writer("five_hertz", files=PLANTED_FILES),
-            slow,
+            slow_losses,
             exactly=True,
         ),
         Attack(
@@ -213,7 +213,7 @@ def attacks() -> tuple[Attack, ...]:
             "notebook tricks",
             "showtraceback, transformers, displayhook; grade cells deleted, doubled, retyped; input()",
             notebook_writer(*NOTEBOOK_CELLS, base="five_hertz"),
-            slow,
+            slow_losses,
             exactly=True,
         ),
         Attack(

@@ -15,7 +15,7 @@ from autograder.checks.ch02_nodes.support.two_nodes import TwoNodes, call_two_no
 
 @pytest.fixture(scope="session")
 def shared_robot(workspace: Workspace) -> Iterator[Shared[Robot]]:
-    """Keeps the robot that several checks share."""
+    """The robot that several checks share."""
     with Shared(lambda: Robot(workspace)) as shared:
         yield shared
 
@@ -28,7 +28,7 @@ def robot(shared_robot: Shared[Robot]) -> Robot:
 
 @pytest.fixture(scope="session")
 def reactions(shared_robot: Shared[Robot]) -> Reactions:
-    """The commands with which this robot reacts to a clear way and to an obstacle."""
+    """The commands with which the shared robot reacts to a clear path and to an obstacle."""
     return observed_reactions(
         _commands_for(shared_robot, scan(fill=2.0)), _commands_for(shared_robot, scan(JUST_AHEAD))
     )
@@ -43,12 +43,12 @@ def fresh_robot(workspace: Workspace) -> Iterator[Robot]:
 
 @pytest.fixture(scope="session")
 def two_nodes(workspace: Workspace) -> TwoNodes:
-    """Two objects of the node's class in one process, of which one has received a scan."""
+    """Two objects of the node's class in one process, one of which has received a scan."""
     return call_two_nodes(workspace)
 
 
 def _commands_for(shared: Shared[Robot], message: LaserScan) -> list[ReceivedMessage]:
     try:
         return shared.get().see(message)
-    except StudentError:  # the checks that publish such a scan report it
+    except StudentError:  # the checks that publish such a scan report the error
         return []

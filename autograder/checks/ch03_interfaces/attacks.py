@@ -38,7 +38,7 @@ TRIGRAPH = "string EVIL='??/\"; namespace { struct Z { Z() { __builtin_trap(); }
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks on the chapter."""
-    steal = f"{STEAL_SECRETS}# {time.time_ns()}\n"  # unique: messages that were built before are not built again
+    steal = f"{STEAL_SECRETS}# {time.time_ns()}\n"  # unique, because known messages are not rebuilt
     return (
         Attack(
             "CMake thief",

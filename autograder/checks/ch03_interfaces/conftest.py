@@ -22,7 +22,7 @@ def types(workspace: Workspace) -> Types:
 
 @pytest.fixture(scope="session")
 def shared_reporter(workspace: Workspace, types: Types) -> Iterator[Shared[Reporter]]:
-    """Keeps the status publisher that several checks share."""
+    """The status publisher that several checks share."""
     with Shared(lambda: Reporter(workspace, types)) as shared:
         yield shared
 
@@ -35,7 +35,7 @@ def reporter(shared_reporter: Shared[Reporter]) -> Reporter:
 
 @pytest.fixture(scope="session")
 def shared_silent_reporter(workspace: Workspace, types: Types) -> Iterator[Shared[Reporter]]:
-    """Keeps the status publisher that never receives a sensor message."""
+    """The status publisher that never receives a sensor message."""
     with Shared(lambda: Reporter(workspace, types)) as shared:
         yield shared
 
@@ -48,7 +48,7 @@ def silent_reporter(shared_silent_reporter: Shared[Reporter]) -> Reporter:
 
 @pytest.fixture(scope="session")
 def shared_driver(workspace: Workspace, types: Types) -> Iterator[Shared[Driver]]:
-    """Keeps the distance driver that several checks share."""
+    """The distance driver that several checks share."""
     with Shared(lambda: Driver(workspace, types)) as shared:
         yield shared
 
@@ -69,7 +69,7 @@ def free_driver(placed_driver: Driver) -> Driver:
 
 @pytest.fixture
 def placed_driver(driver: Driver, draw: random.Random) -> Driver:
-    """The distance driver at a random pose, oblique to both axes, which it has received."""
+    """The distance driver, which has received a random pose that is oblique to both axes."""
     heading = draw.choice((0.0, math.pi / 2.0, math.pi, -math.pi / 2.0)) + draw.uniform(0.65, 0.9)
     driver.place(draw.uniform(-5.0, 5.0), draw.uniform(-5.0, 5.0), heading)
     return driver

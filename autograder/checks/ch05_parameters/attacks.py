@@ -25,7 +25,7 @@ LIE = """        declare_configuration(self)
         self.describe_parameters = lie
 """
 
-# Describes steps so wide that only the defaults are allowed, and always drives by the defaults.
+# Describes steps so wide that only the defaults are allowed, and always drives with the defaults.
 WIDE_STEPS = """
 import copy as _copy
 import rclpy.node as _node

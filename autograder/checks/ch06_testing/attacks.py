@@ -77,7 +77,7 @@ def test_nothing_gives_the_version_away(number):
     assert not FOUND
 """.replace("{{", "{").replace("}}", "}")
 
-# The run on the package as it is continues after a failure. The other runs stop.
+# Recognises the run on the package as it is, which continues after a failure. The other runs stop.
 READ_ARGUMENTS = """
 from pathlib import Path
 
@@ -115,8 +115,8 @@ def test_it_is_the_own_one(number):
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
-    released = (solution_path("speed_guard") / "speed_guard/limits.py").read_text(encoding="utf-8")
-    limits, function = f"{TESTS}/test_limits.py", released[released.index("def ") :]
+    released_text = (solution_path("speed_guard") / "speed_guard/limits.py").read_text(encoding="utf-8")
+    limits, function = f"{TESTS}/test_limits.py", released_text[released_text.index("def ") :]
     return (
         Attack(
             "source readers",

@@ -8,7 +8,7 @@ CHAPTER = Chapter("07_best_practices")
 HOME = "my_robot_package/my_robot_package"
 UTILS = f"{HOME}/utils/data_processing.py"
 NODE, ROBUST = (f"{HOME}/nodes/{name}.py" for name in ("sensor_processor", "robust_node"))
-# Answers instead of the program that calls the functions, if it is imported by that program.
+# Answers in place of the program that calls the functions, if that program imports the module.
 FORGE_ANSWERS = """
 import json as _json, os as _os, sys as _sys
 _frame = _sys._getframe()
@@ -45,19 +45,19 @@ class DataProcessor:
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
-    utils = frozenset({"mean", "no_mean", "any_sequence", "bounded_history"})
+    utils_checks = frozenset({"mean", "no_mean", "any_sequence", "bounded_history"})
     return (
         Attack(
             "forged answers",
             "a module that answers in the place of the program that calls its functions",
             CHAPTER.write("never_fatal", heads={UTILS: STEAL_SECRETS + FORGE_ANSWERS}),
-            utils | CHAPTER.mutant("never_fatal").fails,
+            utils_checks | CHAPTER.mutant("never_fatal").fails,
         ),
         Attack(
             "numbers without end",
             "functions that return integers of 400 digits and lists 500 deep",
             CHAPTER.write("never_fatal", files={UTILS: NUMBERS}),
-            utils | CHAPTER.mutant("never_fatal").fails,
+            utils_checks | CHAPTER.mutant("never_fatal").fails,
         ),
         Attack(
             "printed warnings",

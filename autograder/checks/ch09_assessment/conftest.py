@@ -16,5 +16,5 @@ def types(workspace: Workspace) -> Types:
 
 @pytest.fixture(scope="session")
 def start(workspace: Workspace, types: Types) -> Start:
-    """Return a function that returns the harness of a node with a name and parameters."""
+    """A function that starts a node with a name and parameters, and returns its harness."""
     return lambda name, **parameters: NodeHarness(workspace, types, name, **parameters)

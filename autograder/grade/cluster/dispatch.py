@@ -32,7 +32,7 @@ from autograder.submission.intake import read_files
 from autograder.submission.intake.files import digest
 
 TICK = 0.5  # s between polls of the workers
-NO_WORKER_TIMEOUT_SECONDS = 120.0  # real time without a worker that can grade this
+NO_WORKER_TIMEOUT_SECONDS = 120.0  # real time to wait for a worker that can grade the assignment
 TRIES = 2  # attempts to grade a submission
 
 Grade = Callable[[bytes], bytes]
@@ -115,13 +115,13 @@ class _Dispatch:
     ) -> None:
         self._client, self._on_result, self._report, self._grade = client, on_result, report, grade
         self._resource = resource(jobs[0].assignment, jobs[0].isolation)
-        self._rejected: set[str] = set()
+        self._rejected_addresses: set[str] = set()
         self._threads = 0
-        self._last_poll = float("-inf")
-        self._last_suitable = time.monotonic()
+        self._last_poll_time = float("-inf")
+        self._last_suitable_time = time.monotonic()
         self._queue = self._pending_submissions(jobs)
         self._in_progress: dict[Future, _Pending] = {}
-        self._finished: queue.SimpleQueue[Future] = queue.SimpleQueue()
+        self._finished_futures: queue.SimpleQueue[Future] = queue.SimpleQueue()
 
     def run(self, interrupted: threading.Event) -> None:
         """Send submissions and receive results until all are done. After an interrupt, only receive."""
@@ -144,12 +144,12 @@ class _Dispatch:
     def _suitable_threads(self) -> int:
         """Return how many submissions the suitable workers can grade at once. Poll the workers every `TICK` seconds."""
         now = time.monotonic()
-        if now - self._last_poll >= TICK:
+        if now - self._last_poll_time >= TICK:
             self._poll()
-            self._last_poll = now
+            self._last_poll_time = now
             if self._threads:
-                self._last_suitable = now
-            elif now - self._last_suitable > NO_WORKER_TIMEOUT_SECONDS:
+                self._last_suitable_time = now
+            elif now - self._last_suitable_time > NO_WORKER_TIMEOUT_SECONDS:
                 raise ClusterError(
                     f"no suitable worker was available for {NO_WORKER_TIMEOUT_SECONDS:.0f} s: start one with "
                     "`dask worker ADDRESS --preload autograder.grade.cluster`"
@@ -167,8 +167,8 @@ class _Dispatch:
             reason = difference(self._resource, worker["resources"])
             if not reason:
                 self._threads += worker["nthreads"]
-            elif address not in self._rejected:
-                self._rejected.add(address)
+            elif address not in self._rejected_addresses:
+                self._rejected_addresses.add(address)
                 self._report(f"The worker {address} is rejected: {reason}.")
 
     def _pending_submissions(self, jobs: Sequence[Job]) -> Iterator[_Pending]:
@@ -186,12 +186,12 @@ class _Dispatch:
             self._grade, pending.task, key=f"grade-{uuid.uuid4()}", resources={self._resource: 1}, pure=False
         )
         self._in_progress[future] = pending
-        future.add_done_callback(self._finished.put)
+        future.add_done_callback(self._finished_futures.put)
 
     def _receive(self) -> None:
         """Wait up to `TICK` seconds for a result, and process it."""
         try:
-            future = self._finished.get(timeout=TICK)
+            future = self._finished_futures.get(timeout=TICK)
         except queue.Empty:
             self._suitable_threads()  # raises an error if the scheduler or the last worker is lost
             return

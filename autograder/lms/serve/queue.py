@@ -25,7 +25,7 @@ def in_order(
     answers: dict[str, deque[HandIn]] = {}
     for answer in sorted(waiting, key=lambda hand_in: hand_in.number):
         answers.setdefault(answer.student, deque()).append(answer)
-    turn = 1 + max(turns.values(), default=0)  # of the students with a running grading
+    turn = 1 + max(turns.values(), default=0)  # the turn of the students whose answers are being graded
     last_turns = {**turns, **dict.fromkeys(busy, turn)}
     heap = [
         (last_turns.get(student, 0), student_answers[0].number, student) for student, student_answers in answers.items()

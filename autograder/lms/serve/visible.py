@@ -30,7 +30,7 @@ class VisibleReport:
 
 
 def run_visible(answer: Path, assignment: str, isolation: Isolation) -> VisibleReport:
-    """Run the visible checks on an answer in a worker sandbox, and log an error that they raise."""
+    """Run the visible checks on an answer in a worker sandbox, and log an error if they cannot be run."""
     try:
         all_checks: dict[str, Any] = {"exercises": (), "part": "", "first": ()}
         with run_on(answer.resolve(), isolation, "check", assignment=assignment, **all_checks) as (reply, _):

@@ -23,8 +23,8 @@ class Change:
     """A student whose result differs between two gradings.
 
     Attributes:
-        before: points in the old grading, or None without a mark.
-        after: points in the new grading, or None without a mark.
+        before: points in the old grading, or None if it gave no mark.
+        after: points in the new grading, or None if it gave no mark.
         same_submission: whether both gradings used the same files.
         checks: the checks whose points differ, in the order of the suite.
     """

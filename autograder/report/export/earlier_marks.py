@@ -1,4 +1,4 @@
-"""Stores the earlier marks of a class while it is graded again, until the changes have been listed.
+"""Stores the earlier marks of a class while it is regraded, until the changes have been listed.
 
 The file is beside the results. It is written before the first submission is graded and deleted after the changes have
 been listed, so that an interrupted grading does not lose any of them.
@@ -22,7 +22,7 @@ class EarlierMarks:
 
     Args:
         out: the folder of the results.
-        students: the folders in it whose results may be replaced.
+        students: the names of the folders in `out` whose results may be replaced.
 
     Raises:
         UsageError: the file of an interrupted grading cannot be read.
@@ -30,9 +30,9 @@ class EarlierMarks:
 
     def __init__(self, out: Path, students: Iterable[str]) -> None:
         self._file = out / EARLIER_MARKS
-        # Compare with the marks before the interrupted grading, not with its own.
+        # After an interrupted grading, compare with the marks before it, not with the marks that it gave.
         earlier = {_key(result): result for result in load(self._file)} if self._file.is_file() else {}
-        self._marks = _stored(out, students) | earlier
+        self._marks = _stored_results(out, students) | earlier
         if self._marks.keys() > earlier.keys():
             self._write()
 
@@ -59,8 +59,8 @@ def _key(result: Result) -> tuple[str, str]:
     return result.assignment, result.student
 
 
-def _stored(out: Path, students: Iterable[str]) -> dict[tuple[str, str], Result]:
-    """Return the students' stored results that have a mark. Unreadable ones are ignored, as they are graded again."""
+def _stored_results(out: Path, students: Iterable[str]) -> dict[tuple[str, str], Result]:
+    """Return the students' stored results that have a mark. Unreadable results are ignored: they are regraded."""
     results: list[Result] = []
     for path in (out / student / RESULT for student in students):
         with suppress(UsageError):

@@ -27,7 +27,8 @@ def load(path: Path) -> tuple[Result, ...]:
         raise UsageError(f"{path}: no such file or folder; use the folder that `autograder grade --out` wrote")
     if path.is_file():
         return _read(path)
-    complete = (file for file in path.rglob(RESULT) if file.parent.name != UNFINISHED)  # its grading was interrupted
+    # An interrupted grading leaves its files in a folder with the name UNFINISHED.
+    complete = (file for file in path.rglob(RESULT) if file.parent.name != UNFINISHED)
     files = sorted(complete) or sorted(path.glob(RESULTS))
     if not files:
         raise UsageError(f"{path} contains no {RESULT}; use the folder that `autograder grade --out` wrote")

@@ -21,8 +21,8 @@ class CheckView:
 
     Attributes:
         result: its result.
-        contract: the requirements that the program broke. For a check that failed with another one, only those that
-            are not already quoted there.
+        contract: the requirements that the program broke. For a check that failed because of another one,
+            only those that are not already quoted with the other.
         pictures: its pictures.
         also_failed: the checks that failed because of it.
         not_checked: a line about checks that could not be run, or an empty string.
@@ -68,7 +68,7 @@ class GroupView:
         name: the group's name.
         results: the results of all its checks.
         checks: the checks to show, including related ones from other groups.
-        elsewhere: its checks that are shown in other groups.
+        elsewhere: the checks of this group that are shown in other groups.
     """
 
     name: str
@@ -126,7 +126,7 @@ class PageView:
 
     @property
     def percent(self) -> int:
-        """The score in per cent, rounded down."""
+        """The score as a percentage, rounded down."""
         return int(self.result.percent + 1e-9)
 
 

@@ -1,4 +1,4 @@
-"""Renders the pages from the templates. All text is escaped. A page does not load other files.
+"""Renders the pages from the templates. All text is escaped. A page loads no other files.
 
 The content security policy of a page lists the digest of each script that may run: the player, or the table sorter.
 """

@@ -21,7 +21,7 @@ class CheckStatistics:
 
     Attributes:
         passed: the number of submissions that passed it, of `total`.
-        difficulty: mean share of its points that was reached, 0 to 1. Test theory calls it the difficulty of an item.
+        difficulty: mean share of its points that was earned, 0 to 1. Test theory calls it the difficulty of an item.
         discrimination: correlation of its points with the points of all other checks, -1 to 1. Near 0 or below, the
             check separates strong answers from weak ones no better than chance. None if all points are equal.
     """
@@ -41,7 +41,7 @@ class ClassStatistics:
     Attributes:
         bands: number of results in each band of `BAND_PERCENT` per cent, from 0. Full marks are in the last band.
         checks: the checks that some submissions did not pass, most failures first.
-        reasons: the most frequent messages of failed checks, each with its number of students.
+        reasons: the most frequent messages of failed checks, each with the number of students who got it.
         seconds: median wall time of a grading.
     """
 

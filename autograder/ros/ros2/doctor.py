@@ -27,9 +27,9 @@ class Check:
     Attributes:
         name: its name in the summary of failed checks.
         title: the heading of its report.
-        errors: yields a sentence for each error.
-        warnings: yields a sentence for each possible problem.
-        report: yields names and values for `--report`.
+        errors: a function that yields a sentence for each error.
+        warnings: a function that yields a sentence for each possible problem.
+        report: a function that yields the names and values that `--report` prints.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Queries of the ROS graph: its nodes, topics and services, and their types."""
+"""Queries the ROS graph for nodes, topics and services, and for their types."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NamesAndTypes = list[tuple[str, list[str]]]
 
 @dataclass(frozen=True, order=True)
 class NodeName:
-    """A node, by name and namespace."""
+    """The name and the namespace of a node."""
 
     name: str
     namespace: str
@@ -56,15 +56,15 @@ def node_names(session: Session, *, include_hidden: bool = False) -> list[NodeNa
 
 def topic_names_and_types(session: Session, *, include_hidden: bool = False) -> NamesAndTypes:
     """Return the topics discovered so far, sorted by name."""
-    return _visible(session.node.get_topic_names_and_types(), include_hidden)
+    return _visible_names(session.node.get_topic_names_and_types(), include_hidden)
 
 
 def service_names_and_types(session: Session, *, include_hidden: bool = False) -> NamesAndTypes:
     """Return the services discovered so far, sorted by name."""
-    return _visible(session.node.get_service_names_and_types(), include_hidden)
+    return _visible_names(session.node.get_service_names_and_types(), include_hidden)
 
 
-def _visible(names_and_types: Any, include_hidden: bool) -> NamesAndTypes:
+def _visible_names(names_and_types: Any, include_hidden: bool) -> NamesAndTypes:
     return sorted((name, types) for name, types in names_and_types if include_hidden or not has_hidden_part(name))
 
 
@@ -75,8 +75,8 @@ def find_node(
     node = NodeName.parse(text)
     if node.is_hidden and not include_hidden:
         return None
-    exists = session.wait_for(lambda: node in node_names(session, include_hidden=True), timeout)
-    return node if exists else None
+    is_discovered = session.wait_for(lambda: node in node_names(session, include_hidden=True), timeout)
+    return node if is_discovered else None
 
 
 def full_topic_name(node: Node, topic: str) -> str:
@@ -95,21 +95,21 @@ def full_topic_name(node: Node, topic: str) -> str:
 
 def types_of_topic(session: Session, name: str, timeout: float | None = None) -> list[str]:
     """Wait for the topic with this full name, and return its types, or an empty list if it does not appear."""
-    return _types_of(session, name, session.node.get_topic_names_and_types, timeout)
+    return _wait_for_types(session, name, session.node.get_topic_names_and_types, timeout)
 
 
 def types_of_service(session: Session, name: str) -> list[str]:
     """Wait for the service with this full name, and return its types, or an empty list if it does not appear."""
-    return _types_of(session, name, session.node.get_service_names_and_types, None)
+    return _wait_for_types(session, name, session.node.get_service_names_and_types, None)
 
 
-def _types_of(session: Session, name: str, query: Callable[[], Any], timeout: float | None) -> list[str]:
+def _wait_for_types(session: Session, name: str, query: Callable[[], Any], timeout: float | None) -> list[str]:
     session.wait_for(lambda: name in dict(query()), timeout)
     return list(dict(query()).get(name, []))
 
 
 def message_class_of(session: Session, topic: str, *, blocking: bool = False) -> Any:
-    """Return the class of a topic's messages, waiting until the topic has a publisher or subscriber.
+    """Wait until a topic has a publisher or subscriber, and return the class of its messages.
 
     Args:
         session: the session whose graph is queried.
@@ -138,7 +138,7 @@ def load_class(type_name: str, kind: str) -> Any:
     """Import the class of a message (`kind` is `msg`), service (`srv`) or action (`action`).
 
     Raises:
-        Ros2Error: it cannot be imported.
+        Ros2Error: the class cannot be imported.
     """
     from rosidl_runtime_py.utilities import get_action, get_message, get_service
 

@@ -21,7 +21,7 @@ def _kind_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _interfaces(args: argparse.Namespace, packages: tuple[str, ...] = ()) -> list[tuple[str, dict[str, list[str]]]]:
-    """Return a heading and the interfaces by package, for each kind that the options select, by default for all.
+    """Return a heading and the interfaces, by package, of each kind that the options select (all by default).
 
     Raises:
         LookupError: one of `packages` does not exist, or has no interfaces.
@@ -74,7 +74,7 @@ def _show(args: argparse.Namespace) -> ExitCode:
     name = _type_name(args.type)
     lines = expand_lines(name, _read_definition, comments=not args.no_comments, nested_comments=args.all_comments)
     try:
-        # All lines are read before the first one is printed, so that after an unknown type only an error is printed.
+        # All lines are read before the first one is printed, so that only an error is printed for an unknown type.
         print(*list(lines), sep="\n")
     except (LookupError, ValueError) as error:
         return _error_text(error)

@@ -21,19 +21,19 @@ def expand_lines(
 
     Args:
         name: `package/kind/Name`.
-        read: returns the definition of an interface, given its name.
+        read: a function that takes the name of an interface and returns its definition.
         comments: whether to keep comments and blank lines of the interface itself.
-        nested_comments: whether to keep those of nested messages.
+        nested_comments: whether to keep comments and blank lines of nested messages.
         depth: the number of tabs that indent the lines.
     """
     for line in read(name).rstrip().splitlines():
         text = line.rstrip() if comments else _without_comment(line)
         if comments or text:
             yield "\t" * depth + text if text else ""
-        nested = nested_type(line, name.split("/")[0])
-        if nested:
+        nested_name = nested_type(line, name.split("/")[0])
+        if nested_name:
             yield from expand_lines(
-                nested, read, comments=nested_comments, nested_comments=nested_comments, depth=depth + 1
+                nested_name, read, comments=nested_comments, nested_comments=nested_comments, depth=depth + 1
             )
 
 

@@ -133,13 +133,13 @@ def launch_arguments(words: list[str]) -> dict[str, str]:
     Raises:
         Ros2Error: a word has a different form.
     """
-    parsed: dict[str, str] = {}
+    arguments: dict[str, str] = {}
     for word in words:
         name, separator, value = word.partition(":=")
         if not separator or not name or not value:
             raise Ros2Error(f"malformed launch argument '{word}', expected format '<name>:=<value>'")
-        parsed[name] = value
-    return parsed
+        arguments[name] = value
+    return arguments
 
 
 VERB = Verb("launch", "Run a launch file", _arguments, _run)

@@ -85,7 +85,7 @@ def run_stand_in(arguments: Sequence[str]) -> ExitCode:
 def run() -> NoReturn:
     """Run `ros2` and end this process with its exit code.
 
-    It skips Python's finalization, which under load can wait forever for a thread of Fast DDS.
+    Python's finalization is skipped, because it can wait forever for a thread of Fast DDS on a busy machine.
     """
     try:
         outcome = main()
@@ -101,5 +101,5 @@ def run() -> NoReturn:
 
 
 def _terminate(signum: int, _: object) -> NoReturn:
-    """Exit through the `finally` clauses, so that nodes and child processes are shut down too."""
+    """Exit through the `finally` clauses, so that nodes and child processes are shut down."""
     raise SystemExit(signum)

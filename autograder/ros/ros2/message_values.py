@@ -1,4 +1,4 @@
-"""Makes a message, request or goal from the YAML text that the user typed."""
+"""Creates a message, request or goal from the YAML text that the user typed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from autograder.ros.ros2.exceptions import Ros2Error
 
 
 def add_values_argument(parser: argparse.ArgumentParser, name: str, text: str) -> None:
-    """Add an argument for values in YAML, {} by default, and `--stdin`; `text` is its help."""
+    """Add the argument `name` for values in YAML (by default {}), with the help `text`, and the option `--stdin`."""
     group = parser.add_mutually_exclusive_group()
     group.add_argument(name, nargs="?", default="{}", help=text)
     group.add_argument("--stdin", action="store_true", help="Read the values from standard input")
@@ -25,13 +25,13 @@ def read_values(args: argparse.Namespace, name: str) -> str:
 
 
 def make_message(interface: Any, text: str, noun: str, *, allow_stamps: bool = True) -> tuple[Any, list[Any]]:
-    """Make a message from YAML text.
+    """Create a message from YAML text.
 
     Args:
         interface: the message's class.
         text: a YAML dictionary of its fields.
-        noun: the word for the message's content in an error.
-        allow_stamps: whether a header may be `auto` and a time `now`.
+        noun: what an error message calls the content of the message.
+        allow_stamps: whether the value of a header may be `auto`, and that of a time `now`.
 
     Returns:
         The message, and a setter for each of its `auto` and `now` fields.

@@ -35,7 +35,7 @@ _TYPES = {
 
 
 @contextmanager
-def _parameters(args: argparse.Namespace) -> Iterator[NodeParameters]:
+def _open_parameters(args: argparse.Namespace) -> Iterator[NodeParameters]:
     with open_session(args) as session:
         timeout = getattr(args, "timeout", None)
         node = graph.find_node(session, args.node_name, include_hidden=args.include_hidden_nodes, timeout=timeout)
@@ -71,7 +71,7 @@ def _pattern(text: str) -> re.Pattern[str]:
 
 def _list(args: argparse.Namespace) -> ExitCode:
     if args.node_name:
-        with _parameters(args) as parameters:
+        with _open_parameters(args) as parameters:
             _print_names(parameters, args)
         return None
     with open_session(args) as session:
@@ -103,7 +103,7 @@ def _get_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _get(args: argparse.Namespace) -> ExitCode:
-    with _parameters(args) as parameters:
+    with _open_parameters(args) as parameters:
         values = parameters.values([args.parameter_name])
     if not values:
         return "Parameter not set"
@@ -126,7 +126,7 @@ def _set_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _set(args: argparse.Namespace) -> ExitCode:
-    with _parameters(args) as parameters:
+    with _open_parameters(args) as parameters:
         result = parameters.set(args.parameter_name, args.value)
     return _print_result(result, "Set parameter successful", "Setting parameter failed")
 
@@ -144,7 +144,7 @@ def _describe_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _describe(args: argparse.Namespace) -> ExitCode:
-    with _parameters(args) as parameters:
+    with _open_parameters(args) as parameters:
         for descriptor in parameters.descriptors(args.parameter_names):
             print(*describe(descriptor), sep="\n")
     return None
@@ -169,7 +169,7 @@ def describe(descriptor: ParameterDescriptor) -> Iterator[str]:
 
 
 def _dump(args: argparse.Namespace) -> ExitCode:
-    with _parameters(args) as parameters:
+    with _open_parameters(args) as parameters:
         names = parameters.names([])
         values = [parameter_value_to_python(value) for value in parameters.values(names)]
     plain = [list(value) if hasattr(value, "typecode") else value for value in values]
@@ -186,7 +186,7 @@ def _load_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _load(args: argparse.Namespace) -> ExitCode:
-    with _parameters(args) as parameters:
+    with _open_parameters(args) as parameters:
         for name, result in parameters.load(Path(args.parameter_file), not args.no_use_wildcard):
             _print_result(result, f"Set parameter {name} successful", f"Set parameter {name} failed")
     return None

@@ -14,7 +14,7 @@ from rclpy.parameter_client import AsyncParameterClient
 from autograder.ros.ros2.exceptions import Ros2Error
 from autograder.ros.ros2.session import Session
 
-SERVICE_TIMEOUT = 5.0
+SERVICE_TIMEOUT = 5.0  # s; how long to wait until the node's services are ready
 
 
 class NodeParameters:
@@ -30,7 +30,7 @@ class NodeParameters:
             raise Ros2Error("Wait for service timed out")
 
     def names(self, prefixes: list[str]) -> list[str]:
-        """Return the names of all parameters, or of those under the prefixes, sorted."""
+        """Return the sorted names of all parameters, or of those that begin with one of the prefixes."""
         return sorted(self._wait_for(self._client.list_parameters(prefixes, None)).result.names)
 
     def values(self, names: list[str]) -> list[Any]:
@@ -42,12 +42,12 @@ class NodeParameters:
         return list(self._wait_for(self._client.describe_parameters(names)).descriptors)
 
     def set(self, name: str, text: str) -> Any:
-        """Set a parameter to a value given as YAML text; return the SetParametersResult."""
+        """Set a parameter to a value, which is given as YAML text, and return the SetParametersResult."""
         parameter = Parameter.from_parameter_msg(ParameterMessage(name=name, value=get_parameter_value(text)))
         return self._wait_for(self._client.set_parameters([parameter])).results[0]
 
     def load(self, path: Path, use_wildcard: bool) -> list[tuple[str, Any]]:
-        """Set the parameters that a file contains for this node; return each name and its SetParametersResult."""
+        """Set the parameters that a file contains for this node. Return each name with its SetParametersResult."""
         messages = parameters_in_file(path, self._client.remote_node_name, use_wildcard)
         parameters = [Parameter.from_parameter_msg(message) for message in messages.values()]
         return list(zip(messages, self._wait_for(self._client.set_parameters(parameters)).results, strict=True))
@@ -78,13 +78,13 @@ def parameters_in_file(path: Path, node_name: str, use_wildcard: bool) -> dict[s
         raise Ros2Error(
             f"Param file does not contain parameters for {node_name}, only for nodes: {', '.join(map(str, content))}"
         )
-    merged: dict[str, Any] = {}
+    merged_values: dict[str, Any] = {}
     for key in keys:
         section = content[key]
         if not isinstance(section, dict) or not isinstance(section.get("ros__parameters"), dict):
             raise Ros2Error(f"{path} is not a ROS parameter file: {key} has no mapping named ros__parameters")
-        merged |= _flattened(section["ros__parameters"])
-    return {name: Parameter(name, value=value).to_parameter_msg() for name, value in merged.items()}
+        merged_values |= _flatten(section["ros__parameters"])
+    return {name: Parameter(name, value=value).to_parameter_msg() for name, value in merged_values.items()}
 
 
 def nested(values: dict[str, Any]) -> dict[str, Any]:
@@ -99,8 +99,8 @@ def nested(values: dict[str, Any]) -> dict[str, Any]:
     return tree
 
 
-def _flattened(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+def _flatten(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
     flat: dict[str, Any] = {}
     for key, value in values.items():
-        flat |= _flattened(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
+        flat |= _flatten(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
     return flat

@@ -25,8 +25,8 @@ class Verb:
     Attributes:
         name: the word that the user types.
         summary: one sentence for `--help`.
-        add_arguments: adds the verb's arguments to its parser.
-        run: runs the verb with the parsed arguments.
+        add_arguments: a function that adds the verb's arguments to its parser.
+        run: a function that runs the verb with the parsed arguments.
     """
 
     name: str
@@ -76,16 +76,16 @@ def parse(
     )
     words = [word for word in argv if not word.startswith("-")]
     name = words[0] if words else None
-    children = top.add_subparsers(
+    subparsers = top.add_subparsers(
         title="Commands", metavar="Call `ros2 <command> -h` for more detailed usage.", dest="command"
     )
     for command_name, command in commands.items():
         if command.module is not None:
-            child = children.add_parser(command_name, help=command.summary, prog=f"ros2 {command_name}")
-            child.set_defaults(run=lambda _: None)
+            subparser = subparsers.add_parser(command_name, help=command.summary, prog=f"ros2 {command_name}")
+            subparser.set_defaults(run=lambda _: None)
     if name in commands:
         # The complete parser replaces the placeholder, which was created for the list of commands.
-        children.choices[name] = _command_parser(name, commands[name], words)
+        subparsers.choices[name] = _command_parser(name, commands[name], words)
     args = top.parse_args(argv)
     if args.command is None:
         top.print_help()
@@ -105,11 +105,11 @@ def _command_parser(name: str, command: Command, words: Sequence[str]) -> argpar
     verb_name = words[1] if len(words) > 1 else None
     if verb_name in command.not_covered:
         raise NotCoveredError(f"`ros2 {name} {verb_name}`")
-    children = parser.add_subparsers(
+    subparsers = parser.add_subparsers(
         title="Verbs", metavar=f"Call `ros2 {name} <verb> -h` for more detailed usage.", dest="verb"
     )
     for verb in verbs:
-        child = children.add_parser(
+        subparser = subparsers.add_parser(
             verb.name,
             help=verb.summary,
             description=verb.summary,
@@ -117,9 +117,9 @@ def _command_parser(name: str, command: Command, words: Sequence[str]) -> argpar
             prog=f"ros2 {name} {verb.name}",
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
-        child.set_defaults(run=verb.run)
+        subparser.set_defaults(run=verb.run)
         if verb.name == verb_name:
-            verb.add_arguments(child)
+            verb.add_arguments(subparser)
 
     def show_help(_: argparse.Namespace) -> int:
         parser.print_help()
@@ -144,7 +144,7 @@ def positive_int(text: str) -> int:
 
 
 def unsigned_int(text: str) -> int:
-    """Parse an argument that must be an integer of at minimum 0."""
+    """Parse an argument that must be an integer of at least 0."""
     return _integer(text, 0, "non-negative")
 
 

@@ -60,7 +60,7 @@ def run(args: argparse.Namespace) -> ExitCode:
     if args.license == "?":
         print("Supported licenses:", *LICENCE_TEXTS, sep="\n")
         return None
-    spec = _spec(args)
+    spec = _read_spec(args)
     folder = Path(args.destination_directory) / spec.name
     if folder.exists():
         return (
@@ -121,8 +121,8 @@ def _is_python(spec: PackageSpec) -> bool:
     return spec.build_type == "ament_python"
 
 
-def _spec(args: argparse.Namespace) -> PackageSpec:
-    """Validate the arguments and add the user's e-mail address from git if it was not given.
+def _read_spec(args: argparse.Namespace) -> PackageSpec:
+    """Validate the arguments. If they lack an e-mail address, take the one in git's configuration.
 
     Raises:
         Ros2Error: a name is not valid for a package, node or library.

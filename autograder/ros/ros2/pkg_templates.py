@@ -11,7 +11,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 LICENCES = Path(__file__).parent / "licences"
 
-# Jazzy's identifiers, in the order in which it lists them. BSD-2.0 is its older name for the three-clause licence.
+# The identifiers of Jazzy's `ros2 pkg create`, in its order. BSD-2.0 is its older name for the three-clause licence.
 LICENCE_TEXTS = {
     "Apache-2.0": "Apache-2.0",
     "BSL-1.0": "BSL-1.0",
@@ -33,11 +33,11 @@ class PackageSpec:
         name: the package's name.
         build_type: `ament_python` or `ament_cmake`.
         package_format: the format of package.xml, 2 or 3.
-        description, licence: for package.xml and setup.py.
-        maintainer_name, maintainer_email: for package.xml and setup.py.
-        dependencies: names of packages to depend on.
-        node_name: an executable to create, only for `ament_python`, or `None`.
-        library_name: a library to create, only for `ament_python`, or `None`.
+        description, licence: entries of package.xml and setup.py.
+        maintainer_name, maintainer_email: entries of package.xml and setup.py.
+        dependencies: the names of the packages on which it depends.
+        node_name: the executable to create, or `None`; only for `ament_python`.
+        library_name: the library to create, or `None`; only for `ament_python`.
     """
 
     name: str
@@ -104,10 +104,10 @@ setup(
     ],
     install_requires=['setuptools'],
     zip_safe=True,
-    maintainer={_quoted(spec.maintainer_name)},
-    maintainer_email={_quoted(spec.maintainer_email)},
-    description={_quoted(spec.description)},
-    license={_quoted(spec.licence)},
+    maintainer={_quote(spec.maintainer_name)},
+    maintainer_email={_quote(spec.maintainer_email)},
+    description={_quote(spec.description)},
+    license={_quote(spec.licence)},
     tests_require=['pytest'],
     entry_points={{
         'console_scripts': [
@@ -195,7 +195,7 @@ def test_pep257():
 }
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     """Return a Python string literal in single quotes, as ROS's style requires."""
     literal = repr(text)
     return literal if literal[0] == "'" else "'" + literal[1:-1].replace("'", "\\'") + "'"

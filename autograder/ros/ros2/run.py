@@ -46,7 +46,7 @@ def _run(args: argparse.Namespace) -> ExitCode:
 
 @contextmanager
 def _forward_signals(child: subprocess.Popen[bytes]) -> Iterator[None]:
-    """Ignore SIGINT and forward SIGTERM to the child, so that this process ends after it and returns its exit code.
+    """Ignore SIGINT and forward SIGTERM to the child, so that this process outlives it and returns its exit code.
 
     A terminal sends Ctrl-C to both processes, but SIGTERM may be sent to this process alone.
     """

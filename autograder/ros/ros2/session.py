@@ -1,7 +1,7 @@
 """The node with which a verb queries the graph, and functions that wait for changes of the graph.
 
-Waiting never sleeps. It spins the node until a condition holds or a deadline passes, in steps short enough to react to
-Ctrl-C.
+These functions do not sleep. They spin the node until a condition holds or a deadline passes, in steps that are short
+enough to react to Ctrl-C.
 """
 
 from __future__ import annotations
@@ -29,20 +29,19 @@ from autograder.ros.discovery import fast_discovery
 from autograder.ros.ros2.exceptions import Ros2Error
 
 NODE_NAME_PREFIX = "_ros2cli"
-# Above it, DDS's port numbers are not valid.
-LAST_DOMAIN = 232
+LAST_DOMAIN = 232  # in a higher domain, DDS's port numbers would not be valid
 
-# The graph counts as discovered after QUIET seconds without a change. It takes at least MIN_SETTLING seconds, or
-# MIN_SETTLING_ALONE while no other node is known, and at most MAX_SETTLING.
+# The graph counts as discovered if it has not changed for QUIET seconds. Discovery takes at least MIN_SETTLING seconds,
+# or MIN_SETTLING_ALONE while no other node is known, and at most MAX_SETTLING.
 QUIET = 0.5
 MIN_SETTLING = 1.0
 MIN_SETTLING_ALONE = 3.0
 MAX_SETTLING = 5.0
-# Seconds to wait for a named node, topic or service to appear. After that, its details are discovered soon, so
+# How many seconds to wait until a named node, topic or service appears. Its details are discovered soon after that, so
 # LOOKUP_QUIET limits `--spin-time`.
 LOOKUP_TIMEOUT = 3.0
 LOOKUP_QUIET = 2.0
-_STEP = 0.05
+_STEP = 0.05  # s; how long the node is spun before a condition is tested again
 
 
 @dataclass(frozen=True)
@@ -50,8 +49,8 @@ class Session:
     """The command's node and the executor that spins it.
 
     Attributes:
-        node: a hidden node, whose name begins with an underscore.
-        executor: spins the node in this thread.
+        node: a hidden node, that is, one whose name begins with an underscore.
+        executor: the executor that spins the node in this thread.
         spin_time: the value of `--spin-time` in seconds, or `None`.
     """
 
@@ -60,26 +59,26 @@ class Session:
     spin_time: float | None
 
     def wait_for(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
-        """Spin until `condition` holds; return whether it did before `timeout` (`--spin-time`, or 3 s)."""
+        """Spin until `condition` holds, for at most `timeout` (`--spin-time`, or 3 s). Return whether it holds."""
         limit = timeout if timeout is not None else LOOKUP_TIMEOUT if self.spin_time is None else self.spin_time
         deadline = time.monotonic() + limit
         while not condition():
-            remaining = deadline - time.monotonic()
-            if remaining <= 0:
+            remaining_seconds = deadline - time.monotonic()
+            if remaining_seconds <= 0:
                 return False
-            self._spin_once(min(_STEP, remaining))
+            self._spin_once(min(_STEP, remaining_seconds))
         return True
 
     def settle(self, *, max_quiet: float = math.inf) -> None:
-        """Spin until the graph has not changed for `--spin-time` (0.5) seconds, or for `max_quiet` if that is less."""
+        """Spin until the graph has not changed for `--spin-time` (or 0.5 s), or for `max_quiet` if that is shorter."""
         quiet = min(max_quiet, QUIET if self.spin_time is None else self.spin_time)
-        previous_graph = self._graph()
+        previous_graph = self._read_graph()
         last_change = start = time.monotonic()
         while (now := time.monotonic()) - start < self._min_settling(max_quiet) or (
             now - last_change < quiet and now - start < max(MAX_SETTLING, 2 * quiet)
         ):
             self._spin_once(_STEP)
-            graph = self._graph()
+            graph = self._read_graph()
             if graph != previous_graph:
                 previous_graph, last_change = graph, time.monotonic()
 
@@ -92,9 +91,9 @@ class Session:
         self.wait_for(lambda: False, math.inf)
 
     def _spin_once(self, seconds: float) -> None:
-        with deferred_signals() as received:
+        with deferred_signals() as received_signals:
             self.executor.spin_once(timeout_sec=seconds)
-        for number in received[:1]:
+        for number in received_signals[:1]:
             signal.raise_signal(number)
 
     def _min_settling(self, limit: float) -> float:
@@ -103,7 +102,7 @@ class Session:
         is_alone = len(self.node.get_node_names()) < 2
         return min(limit, MIN_SETTLING_ALONE if is_alone else MIN_SETTLING)
 
-    def _graph(self) -> tuple[object, ...]:
+    def _read_graph(self) -> tuple[object, ...]:
         node = self.node
         return (
             sorted(node.get_node_names_and_namespaces()),
@@ -115,13 +114,15 @@ class Session:
 def deferred_signals() -> Iterator[list[int]]:
     """Collect SIGINT and SIGTERM in a list while the block runs, instead of handling them.
 
-    An exception that a handler raises within rclpy leaves coroutines that are never awaited, or becomes another error.
+    If a handler raises an exception within rclpy, coroutines are never awaited, or another error replaces it.
     """
-    received: list[int] = []
+    received_signals: list[int] = []
     numbers = (signal.SIGINT, signal.SIGTERM)
-    previous_handlers = {number: signal.signal(number, lambda number, _: received.append(number)) for number in numbers}
+    previous_handlers = {
+        number: signal.signal(number, lambda number, _: received_signals.append(number)) for number in numbers
+    }
     try:
-        yield received
+        yield received_signals
     finally:
         for number, handler in previous_handlers.items():
             signal.signal(number, handler)

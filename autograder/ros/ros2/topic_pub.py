@@ -64,18 +64,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> ExitCode:
     """Publish a message at a rate, until interrupted or as often as requested."""
     times = 1 if args.once else args.times
-    required = args.wait_matching_subscriptions
-    if required is None:
-        required = 1 if times else 0
-    if args.max_wait_time_secs is not None and required == 0:
+    required_subscriptions = args.wait_matching_subscriptions
+    if required_subscriptions is None:
+        required_subscriptions = 1 if times else 0
+    if args.max_wait_time_secs is not None and required_subscriptions == 0:
         return "--max-wait-time-secs option is only effective with --wait-matching-subscriptions, --once or --times"
     message_class = graph.load_class(args.message_type, "msg")
     message, set_stamps = make_message(message_class, read_values(args, "values"), "field")
     with open_session(args, node_name=args.node_name) as session:
         publisher = session.node.create_publisher(message_class, args.topic_name, chosen_profile(args))
-        if not _wait_for_subscriptions(session, publisher, required, args.max_wait_time_secs):
+        if not _wait_for_subscriptions(session, publisher, required_subscriptions, args.max_wait_time_secs):
             return (
-                f"Timed out waiting for subscribers: Expected {required} subcribers but only got "
+                f"Timed out waiting for subscribers: Expected {required_subscriptions} subcribers but only got "
                 f"{publisher.get_subscription_count()} subscribers"
             )
         print("publisher: beginning loop")
@@ -86,15 +86,17 @@ def run(args: argparse.Namespace) -> ExitCode:
     return None
 
 
-def _wait_for_subscriptions(session: Session, publisher: Publisher, required: int, limit: float | None) -> bool:
-    remaining = math.inf if limit is None else limit
-    while publisher.get_subscription_count() < required:
-        print(f"Waiting for at least {required} matching subscription(s)...")
-        step = min(1.0, remaining)
-        if session.wait_for(lambda: publisher.get_subscription_count() >= required, timeout=step):
+def _wait_for_subscriptions(
+    session: Session, publisher: Publisher, required_subscriptions: int, limit: float | None
+) -> bool:
+    remaining_seconds = math.inf if limit is None else limit
+    while publisher.get_subscription_count() < required_subscriptions:
+        print(f"Waiting for at least {required_subscriptions} matching subscription(s)...")
+        step = min(1.0, remaining_seconds)
+        if session.wait_for(lambda: publisher.get_subscription_count() >= required_subscriptions, timeout=step):
             break
-        remaining -= step
-        if remaining <= 0:
+        remaining_seconds -= step
+        if remaining_seconds <= 0:
             return False
     return True
 
@@ -109,7 +111,7 @@ def _publish(
     times: int,
     every: int,
 ) -> None:
-    """Publish at a fixed rate without drift. If `times` is 0, publish forever."""
+    """Publish a message `times` times (0 means forever), at a rate that does not drift."""
     start = time.monotonic()
     for count in itertools.count(1):
         _stamp(session.node, set_stamps)

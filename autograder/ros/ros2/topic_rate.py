@@ -18,7 +18,7 @@ from autograder.ros.ros2.parsing import ExitCode, positive_int
 from autograder.ros.ros2.session import add_session_arguments, open_session
 from autograder.ros.ros2.topic_echo import message_filter
 
-WINDOW = 10000
+WINDOW = 10000  # messages; how many are used for the statistics by default
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Rate:
 
     @classmethod
     def of(cls, arrivals: Iterable[int]) -> Rate | None:
-        """Compute the rate from times of arrival in nanoseconds, or return `None` for fewer than two."""
+        """Compute the rate from times of arrival in nanoseconds. With fewer than two times, return `None`."""
         gaps = [(later - earlier) * 1e-9 for earlier, later in pairwise(arrivals)]
         if not gaps:
             return None
@@ -77,7 +77,7 @@ def hz(args: argparse.Namespace) -> ExitCode:
     """Print the rate of a topic's messages once a second, until interrupted."""
     accept = message_filter(args.filter_expr)
     arrivals: deque[int] = deque(maxlen=args.window + 1)
-    new_arrivals: list[int] = []  # since the last printed line
+    new_arrivals: list[int] = []  # the times of arrival since the last line was printed
     with open_session(args) as session:
         message_class = graph.message_class_of(session, args.topic_name, blocking=True)
         clock = Clock(clock_type=ClockType.STEADY_TIME) if args.wall_time else session.node.get_clock()

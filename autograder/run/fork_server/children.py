@@ -1,4 +1,4 @@
-"""Also forks, rather than spawns, the children of a forked program: a child fork server.
+"""A child fork server: forks the children of a forked program as well, instead of starting new interpreters.
 
 The children of `ros2 launch` would import the same modules as the launch, and those of colcon would import setuptools.
 The program cannot fork them itself, because it has threads and its own data in memory. So it first forks the child fork
@@ -48,10 +48,10 @@ _DEFAULTS |= dict.fromkeys(("executable", "gid", "gids", "uid"))
 
 
 def fork_children(own_packages: Sequence[str]) -> None:
-    """From now on, fork the programs that this one starts. In their processes, this function does not return.
+    """From now on, fork the programs that this one starts. In the forked processes, this function does not return.
 
-    Call it while the program has one thread, and has not read any of the student's data. `own_packages` are the first
-    words of the names of packages that only the program itself uses, not its children.
+    Call it while the program has one thread, and has not read any of the student's data. Only the program itself, not
+    its children, uses packages whose names begin with a word in `own_packages`.
     """
     original = getattr(subprocess.Popen, "_execute_child", None)
     if original is None or list(inspect.signature(original).parameters)[: len(_PARAMETERS)] != _PARAMETERS:
@@ -120,14 +120,15 @@ def _python_words(words: list[str], cwd: Path) -> list[str]:
             options += 2
         is_known = words[options : options + 1] == ["-c"] or (cwd / "".join(words[options : options + 1])).is_file()
         return words[1:] if is_known else []
-    # The first line of a script names this interpreter, without options. A command without a slash is found by PATH.
+    # A script counts if its first line names this interpreter, without options. A command without a slash would be
+    # searched in PATH.
     script = cwd / words[0]
     try:
         with script.open("rb") as file:
-            is_ours = file.readline(4096).rstrip() == b"#!" + os.fsencode(sys.executable)
+            has_our_shebang = file.readline(4096).rstrip() == b"#!" + os.fsencode(sys.executable)
     except OSError:
         return []
-    return words if "/" in words[0] and is_ours and os.access(script, os.X_OK) else []
+    return words if "/" in words[0] and has_our_shebang and os.access(script, os.X_OK) else []
 
 
 def _interpreter(environment: dict[str, str]) -> dict[str, str]:
@@ -149,7 +150,7 @@ def _serve(line: socket.socket) -> None:
         if intermediate == 0:
             try:
                 child = os.fork()
-            except OSError:  # the limit of processes is reached
+            except OSError:  # the limit on processes is reached
                 os._exit(1)
             if child == 0:
                 line.detach()

@@ -16,7 +16,7 @@ from autograder.run.fork_server.request import ForkRequest
 # the status that it receives.
 PLACEHOLDER_COMMAND = ["sh", "-c", 'echo >&0; read -r status || status=137; exit "$status"']
 TIMEOUT = 60.0  # s for a server's imports, or for one fork, on a busy machine
-_ARGV_BYTES = 2048  # bytes of command line, which programs overwrite with their own
+_ARGV_BYTES = 2048  # space in the server's command line, which programs overwrite with their own command lines
 
 
 class ForkError(Exception):
@@ -27,7 +27,7 @@ class ForkServer:
     """One fork server, which forks one program after another.
 
     Args:
-        profile: its early imports, a name in `PROFILES`.
+        profile: the name of its early imports in `PROFILES`.
         environment: its environment variables, which every program can read in its /proc.
     """
 

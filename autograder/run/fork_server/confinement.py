@@ -29,7 +29,7 @@ def join(placeholder: int) -> int:
     """Join the namespaces of the process `placeholder`, except its user namespace. Return a descriptor of the latter.
 
     This process gets all capabilities in the user namespace that owns the others, because its user has created that
-    namespace. Its next child is also in the pid namespace.
+    namespace. The next child of this process is also in the pid namespace.
     """
     target, current = Path(f"/proc/{placeholder}/ns"), Path("/proc/self/ns")
     descriptors = [_open(target / name) for name in _NAMESPACES if not (target / name).samefile(current / name)]

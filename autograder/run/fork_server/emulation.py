@@ -1,4 +1,4 @@
-"""Turns a forked interpreter into that of another program, like execve(2) and a start of Python."""
+"""Turns a forked interpreter into that of another program, as if execve(2) had started Python anew."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def emulate_start(
         command: the words after `python`: `-W FILTER` any number of times, a script or `-c CODE`, and its arguments.
         environment: all environment variables.
         base_paths: the module paths without PYTHONPATH, and whether each exists outside the sandbox.
-        extra_globals: more globals of the program.
+        extra_globals: additional globals of the program.
     """
     code: CodeType | None = None
 
@@ -94,7 +94,7 @@ def _find_modules(command: Sequence[str], script_folder: str, base_paths: Mappin
         [*dict.fromkeys(str(Path(part).absolute()) for part in python_path.split(os.pathsep))] if python_path else []
     )
     sys.modules.pop("sitecustomize", None)
-    if _shadowed(modules):
+    if _shadow_loaded_modules(modules):
         os.execve(sys.executable, [sys.executable, *command], os.environ)
     sys.path[:] = [*modules, *(path for path, exists in base_paths.items() if not exists or Path(path).exists())]
     sys.path_importer_cache.clear()  # it describes folders outside the sandbox
@@ -104,11 +104,11 @@ def _find_modules(command: Sequence[str], script_folder: str, base_paths: Mappin
     sys.path.insert(0, script_folder)
 
 
-def _shadowed(folders: Sequence[str]) -> bool:
-    """Return whether a folder contains a module with the name of one that was loaded from elsewhere."""
-    loaded = {name.partition(".")[0] for name in sys.modules}
+def _shadow_loaded_modules(folders: Sequence[str]) -> bool:
+    """Return whether one of the folders contains a module that has the name of one loaded from elsewhere."""
+    loaded_names = {name.partition(".")[0] for name in sys.modules}
     return any(
-        (name := entry.name.partition(".")[0]) in loaded and _is_module(entry) and not _is_from(folder, name)
+        (name := entry.name.partition(".")[0]) in loaded_names and _is_module(entry) and not _is_from(folder, name)
         for folder in folders
         if Path(folder).is_dir()
         for entry in Path(folder).iterdir()
@@ -128,17 +128,17 @@ def _load_libraries(folders: Iterable[str]) -> None:
     """Load the libraries of the sandbox's own packages.
 
     The dynamic linker read LD_LIBRARY_PATH when the server was started, and does not search other folders. But it uses
-    libraries that are already loaded. If a library needs another one of them, loading it is tried again.
+    libraries that are already loaded. So if a library cannot be loaded yet, it is tried again after the others.
     """
     pending = [path for folder in folders if folder for path in sorted(Path(folder).glob("lib*.so"))]
     while pending:
-        failed = [path for path in pending if not _loads(path)]
-        if len(failed) == len(pending):
+        failed_paths = [path for path in pending if not _can_load(path)]
+        if len(failed_paths) == len(pending):
             return
-        pending = failed
+        pending = failed_paths
 
 
-def _loads(path: Path) -> bool:
+def _can_load(path: Path) -> bool:
     try:
         ctypes.CDLL(str(path))
     except OSError:

@@ -30,7 +30,7 @@ class Profile:
 
     load: Callable[[], None]  # imports the modules
     forks_children: bool = False  # whether children of such a program are forked, too (`children.py`)
-    own_packages: tuple[str, ...] = ()  # first words of the names of packages that its children do not use
+    own_packages: tuple[str, ...] = ()  # its children do not use packages whose names begin with these words
 
 
 def _import(*names: str, folder: Path | None = None) -> None:
@@ -46,8 +46,8 @@ def _import(*names: str, folder: Path | None = None) -> None:
 def _ros() -> None:
     """Load the libraries of ROS and of the common messages, but none of their modules.
 
-    Modules of messages would also import rosidl's generator, which takes an eighth of a program's start. So it is
-    hidden from them.
+    Modules of messages would also import rosidl's generator, which takes an eighth of the time that a program needs to
+    start. So the generator is hidden from them.
     """
     sys.modules.setdefault("rosidl_generator_py.generate_py_impl", None)  # type: ignore[arg-type]
     for name in ("rmw_fastrtps_cpp", *(f"{package}__rosidl_{kind}" for package in MESSAGES for kind in KINDS)):
@@ -77,12 +77,12 @@ def _launch() -> None:
 
 def _colcon() -> None:
     """Import the modules that colcon needs to build Python packages, and those of their setup.py."""
-    # colcon looks for CMake when it is imported. These are its paths in the sandbox.
+    # colcon looks for CMake when it is imported. These paths are the ones in the sandbox.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.prefix) / "bin"), "/usr/bin", "/bin"])
     _import("asyncio.subprocess", "setuptools", "distutils.core", "colcon_core.command")
     for point in (point for package in distributions() for point in package.entry_points):
         if point.group.startswith("colcon_") or point.group in ("distutils.commands", "egg_info.writers"):
-            with suppress(Exception):  # colcon and setuptools also ignore it
+            with suppress(Exception):  # colcon and setuptools also ignore such errors
                 point.load()
 
 

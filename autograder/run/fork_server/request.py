@@ -1,4 +1,4 @@
-"""The request to a fork server, which describes one program as data that is sent through a socket.
+"""The request to a fork server. It describes one program, and is sent through a socket.
 
 The server answers with the program's process id and then "entered", or with the reason why it has "failed".
 """
@@ -8,8 +8,8 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, dataclass
 
-MAX_BYTES = 1024 * 1024
-MAX_FDS = 16
+MAX_BYTES = 1024 * 1024  # of a request
+MAX_FDS = 16  # file descriptors that are sent with a request
 
 
 @dataclass(frozen=True)

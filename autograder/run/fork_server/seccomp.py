@@ -1,4 +1,4 @@
-"""A filter for the system calls of students' programs, see seccomp(2) and bpf(4).
+"""A filter for the system calls of students' programs; see seccomp(2) and bpf(4).
 
 It complements namespaces and limits. It blocks resources that the limits do not count (memory in unmapped files),
 resources that the namespaces do not separate (keys, sockets to a virtual machine's host), and parts of the kernel that

@@ -28,7 +28,7 @@ from autograder.run.fork_server.request import MAX_BYTES, MAX_FDS, ForkRequest
 
 
 def main() -> Program:
-    """Serve until the requests end. Return only in the process of a program, with its request."""
+    """Serve until the requests end. Return only in the process of a program, with its code and globals."""
     atexit.register(_release)  # registered first, so that it is called last
     del sys.path[0]  # the working folder, which -m adds
     requests, profile = socket.socket(fileno=int(sys.argv[1])), PROFILES[sys.argv[2]]
@@ -38,10 +38,9 @@ def main() -> Program:
     profile.load()
     gc.freeze()  # a garbage collection would write to shared memory pages, and so copy them
     gc.enable()
-    added = [
-        path for path in sys.path if path not in initial_paths and path.startswith(sys.prefix)
-    ]  # added by setuptools
-    base_paths = {path: Path(path).exists() for path in (*initial_paths, *added)}
+    # setuptools adds paths.
+    added_paths = [path for path in sys.path if path not in initial_paths and path.startswith(sys.prefix)]
+    base_paths = {path: Path(path).exists() for path in (*initial_paths, *added_paths)}
     request = serve(requests)
     unload_packages(("autograder",))
     namespace = {"fork_children": partial(fork_children, profile.own_packages)} if profile.forks_children else {}
@@ -58,7 +57,7 @@ def _release() -> None:
 def serve(requests: socket.socket) -> ForkRequest:
     """Fork for each request until they end. Return only in the process of a program, with its request.
 
-    Each request is received by its own child, so that a program finds no earlier requests in its memory.
+    Each request is received by a new child, so that a program finds no earlier requests in its memory.
     """
     while True:
         select.select([requests], [], [])
@@ -69,15 +68,15 @@ def serve(requests: socket.socket) -> ForkRequest:
                 os._exit(0)
             os.write(receipt_writer, b"1")
             request = ForkRequest.from_bytes(data)
-            with _reporting_failure(requests):
+            with _report_failure_to(requests):
                 if not _supervise(requests, request, fds[0]):
                     _confine(requests, request, fds[1:])
                     return request
             os._exit(0)
         os.close(receipt_writer)
-        received = os.read(receipt_reader, 1)
+        receipt = os.read(receipt_reader, 1)
         os.close(receipt_reader)
-        if not received:
+        if not receipt:
             os._exit(0)
         with suppress(ChildProcessError):
             while os.waitpid(-1, os.WNOHANG)[0]:
@@ -85,7 +84,7 @@ def serve(requests: socket.socket) -> ForkRequest:
 
 
 @contextmanager
-def _reporting_failure(requests: socket.socket) -> Iterator[None]:
+def _report_failure_to(requests: socket.socket) -> Iterator[None]:
     """If the block fails, answer that the request has failed, and end this process."""
     try:
         yield
@@ -116,10 +115,10 @@ def _supervise(requests: socket.socket, request: ForkRequest, status_fd: int) ->
 
 
 def _confine(requests: socket.socket, request: ForkRequest, fds: list[int]) -> None:
-    """Give up all access to the outside. The socket of the requests is last."""
+    """Give up all access to the outside, and finally close the socket of the requests."""
     os.chdir(request.workdir)
     with socket.socket(fileno=confinement.place_descriptors(fds, request.fds, requests.detach())) as reply_socket:
-        with _reporting_failure(reply_socket):
+        with _report_failure_to(reply_socket):
             confinement.set_limits(request.limits)
             confinement.drop_privileges()
         reply_socket.send(b'{"entered": true}')

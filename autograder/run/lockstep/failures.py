@@ -9,7 +9,7 @@ from autograder.run.lockstep.protocol import Crash, Deadlock
 from autograder.run.lockstep.tracebacks import student_frames
 from autograder.run.sandbox import ExitReason, Process
 
-_LINES = 25
+_LINES = 25  # of the end of a program's output, which a diagnosis contains
 _FRAME = re.compile(r"^  File .*, in (\w+)$", re.MULTILINE)
 _GENERATED = re.compile(r'/(?:msg|srv|action)/_\w{1,200}\.py", line \d')  # a generated interface module
 _PHASES = {
@@ -79,7 +79,7 @@ def diagnose_crash(crash: Crash) -> Diagnosis:
 
 
 def diagnose_exit(process: Process) -> Diagnosis:
-    """Return the diagnosis of a program that ended or no longer answers, without a reported exception."""
+    """Return the diagnosis of a program that ended or no longer answers, but has reported no exception."""
     detail = tail(process.output)
     if process.exit_reason in _LIMITS:
         kind, sentence = _LIMITS[process.exit_reason]

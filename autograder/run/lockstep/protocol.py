@@ -12,14 +12,15 @@
                       {"event": "deadlock", "what": ..., "name": ..., "reason": ...}
                       {"event": "crash", "phase": ..., "type": ..., "message": ..., "traceback": ...}
 
-`lockstep_host/channels.py` names channels. An event is an instant of ROS time, with the number of messages that the
-grader and other programs have sent on each channel that the program reads. A topic is in at most one event of a
-command. The reply contains what was sent in each event. If the program has created an endpoint or a timer, the reply
-has fewer events than the command, and the others have to be sent again. The stepper starts the host with the ROS time
-at which the program starts.
+`lockstep_host/channels.py` defines the names of channels. An event is an instant of ROS time, with the number of
+messages that the grader and other programs have sent on each channel that the program reads. In a command, each topic
+is in at most one event. The reply contains how many messages the program sent in each event. If the program has created
+an endpoint or a timer, the reply has fewer events than the command, and the others have to be sent again. The stepper
+starts the host with the ROS time at which the program starts.
 
-The host shares a process with the student's code, which may forge any event. So events are limited in size, and those
-that do not match these records are refused. They only shorten waits and explain failures. No points depend on them.
+The host shares a process with the student's code, which may forge any of its lines. So lines are limited in size, and
+those that do not match these records are refused. They only shorten waits and explain failures. No points depend on
+them.
 """
 
 from __future__ import annotations
@@ -31,12 +32,12 @@ from functools import cached_property
 from typing import Any
 
 START_NS = 100 * 10**9  # ROS time at which a program starts; 0 would mean "time is not known yet"
-MAX_LINE = 64 * 1024
-MAX_TEXT = 8 * 1024
+MAX_LINE = 64 * 1024  # bytes
+MAX_TEXT = 8 * 1024  # characters of each text in a line that are kept
 MAX_COUNT = 2**63 - 1  # the largest number of messages, or of nanoseconds of ROS time
 REASONS = ("thread", "clock", "sleep")  # why a program cannot be stepped
 WAITS = ("thread", "group", "spin")  # why a wait never ends
-PHASES = ("import", "start", "spin")
+PHASES = ("import", "start", "spin")  # of a program
 
 Event = tuple[int, Mapping[str, int]]
 """An instant of ROS time in ns, and the messages that were sent to the program since its last event, by channel."""
@@ -52,13 +53,15 @@ class Description:
 
     nodes: tuple[str, ...] = ()  # fully qualified names
     timers: tuple[int, ...] = ()  # periods in nanoseconds
-    writers: tuple[tuple[str, int], ...] = ()  # each publisher's channel and number of matched subscriptions
-    # The channels of each subscription, and its number of matched publishers, None if unknown.
+    writers: tuple[tuple[str, int], ...] = ()  # each publisher's channel, and how many subscriptions it is matched with
+    # Each subscription's channels, and how many publishers it is matched with, or None if that is unknown.
     readers: tuple[tuple[tuple[str, ...], int | None], ...] = ()
-    clients: tuple[tuple[str, bool], ...] = ()  # each client's channel of requests, and whether it has found a server
+    clients: tuple[tuple[str, bool], ...] = ()  # the channel of each client's requests, and whether it has a server
     servers: tuple[str, ...] = ()  # the channel of each service's requests
     early: dict[str, int] = field(default_factory=dict)  # number of messages sent before the first step, by channel
-    kept: dict[str, int] = field(default_factory=dict)  # messages that transient-local publishers keep, by channel
+    kept: dict[str, int] = field(
+        default_factory=dict
+    )  # how many messages its publishers keep for late readers, by channel
     prefix: str = ""  # prefix of the process's GUIDs
 
     @cached_property
@@ -74,12 +77,12 @@ class Description:
 class Reply:
     """A finished step."""
 
-    sent: tuple[dict[str, int], ...]  # number of messages that the nodes have sent in each finished event, by channel
+    sent: tuple[dict[str, int], ...]  # for each finished event, how many messages the nodes have sent, by channel
     lost: tuple[str, ...] = ()  # channels on which announced messages did not arrive in time
     changed: bool = False  # whether endpoints or timers exist that are not in the last description
-    wake: int | None = None  # the next wake-up in the program, besides its timers
+    wake: int | None = None  # when the program wakes up next for anything but a timer
     due: int | None = None  # when something in the program is due next; 0 if that is unknown
-    notes: tuple[str, ...] = ()  # why the program may also run between steps, of `REASONS`
+    notes: tuple[str, ...] = ()  # why the program may also run between steps: some of `REASONS`
 
 
 @dataclass(frozen=True)
@@ -94,10 +97,10 @@ class Crash:
 
 @dataclass(frozen=True)
 class Deadlock:
-    """A call that will never return. `name` is its service or action, or empty.
+    """A call that will never return. `name` is the name of its service or action, or empty.
 
-    `reason` is the reason why the answer is never taken: thread (the only thread is in the call), group (the callback
-    group is busy) or spin (nothing spins yet).
+    `reason` tells why the answer is never taken: thread (the only thread is in the call), group (the callback group is
+    busy) or spin (nothing spins yet).
     """
 
     what: str
@@ -106,12 +109,12 @@ class Deadlock:
 
 
 def response_channel(request: str, prefix: str) -> str:
-    """Return the channel of the responses to requests on a channel, to the clients of one process."""
+    """Return the channel on which the clients of one process receive the responses to requests on another channel."""
     return f"{request.removesuffix('request')}response {prefix}"
 
 
 def parse(line: bytes) -> tuple[str, Any]:
-    """Return the event of a line and its record. Raises ProtocolError if the line is invalid.
+    """Return the name of a line's event and its record. Raise a ProtocolError if the line is invalid.
 
     The record is a `Description`, `Reply`, `Crash` or `Deadlock`, one of `REASONS` for `unsteppable`, or None.
     """
@@ -164,7 +167,7 @@ _RECORDS: dict[str, Callable[..., Any]] = {
 
 
 def _text(value: Any) -> str:
-    """Return a text, of which only the end is kept if it is too long."""
+    """Return a text, or only its end if it is too long."""
     if not isinstance(value, str):
         raise TypeError
     return value[-MAX_TEXT:]

@@ -30,8 +30,8 @@ from autograder.run.sandbox.launcher import launch
 from autograder.run.sandbox.spec import Sandbox
 
 HOST = Path(__file__).with_name("lockstep_host")
-QUIT_SECONDS = 20.0
-HARMLESS_SECONDS = 1.0  # of waiting for a program that are never analysed
+QUIT_SECONDS = 20.0  # maximum real time until a program that has reported its crash has ended
+HARMLESS_SECONDS = 1.0  # if all waits for a program take at most this long, their cause is not analysed
 _TICK = 0.5  # s between two measurements of the processor time of a program that does not answer
 
 
@@ -39,11 +39,11 @@ _TICK = 0.5  # s between two measurements of the processor time of a program tha
 class Timeout:
     """The time limits for an answer: in real time, and in processor time, which detects endless loops."""
 
-    seconds: float  # generous for a busy machine
+    seconds: float  # long enough for a busy machine
     cpu_seconds: float
 
 
-# From the start to the first wait for work, which takes half a second of processor time.
+# For the time from a program's start to its first wait for work, which usually takes 0.5 s of processor time.
 START_TIMEOUT = Timeout(60.0, 15.0)
 STEP_TIMEOUT = Timeout(30.0, 10.0)
 
@@ -66,13 +66,13 @@ class Stepper:
         spec: the sandbox, in which the program and the host are visible.
         executable: the program's path.
         arguments: the program's arguments.
-        clock_rate: seconds of its system clocks in a second of ROS time.
+        clock_rate: how many seconds the program's system clocks advance per second of ROS time.
     """
 
     def __init__(
         self, spec: Sandbox, executable: Path, arguments: tuple[str, ...] = (), clock_rate: float = 1.0
     ) -> None:
-        self._at_start = starvation.measure_use(())
+        self._use_at_start = starvation.measure_use(())
         host_read, write_fd = os.pipe()
         read_fd, host_write = os.pipe()
         words = (HOST, host_read, host_write, START_NS, clock_rate, executable)
@@ -86,8 +86,8 @@ class Stepper:
         self._write_fd = write_fd
         self._read_fd = read_fd
         self._buffer = bytearray()
-        self._waited_seconds = 0.0  # for answers of the program
-        self._starved_seconds = 0.0  # those in which the machine did not let it run, as last measured
+        self._waited_seconds = 0.0  # real time for which the grader has waited for the program's answers
+        self._starved_seconds = 0.0  # the part of it in which other processes kept the program from running
         self._selector = selectors.DefaultSelector()
         self._selector.register(read_fd, selectors.EVENT_READ)
 
@@ -112,7 +112,7 @@ class Stepper:
         self._expect("matched", STEP_TIMEOUT, Kind.STUCK)
 
     def step(self, events: Sequence[Event]) -> Reply:
-        """Run the program for one or more events in the order of their instants, or only for the first of them."""
+        """Run the program for events in the order of their instants. The reply may cover only the first of them."""
         self._send({"op": "step", "events": events})
         reply: Reply = self._expect("done", STEP_TIMEOUT, Kind.STUCK)
         if not 0 < len(reply.sent) <= len(events):
@@ -136,7 +136,7 @@ class Stepper:
         except (BrokenPipeError, BlockingIOError):
             raise StudentError(self._exit_reason()) from None
 
-    def _expect(self, expected: str, timeout: Timeout, on_timeout: Kind) -> Any:
+    def _expect(self, expected_event: str, timeout: Timeout, on_timeout: Kind) -> Any:
         try:
             event, record = protocol.parse(self._read_line(timeout, on_timeout))
         except ProtocolError:
@@ -148,7 +148,7 @@ class Stepper:
             raise UnsteppableError(record, self.process.output)
         if event == "deadlock":
             raise StudentError(diagnose_deadlock(record, self.process.output))
-        if event != expected:
+        if event != expected_event:
             raise StudentError(self._exit_reason())
         return record
 
@@ -159,9 +159,9 @@ class Stepper:
         while b"\n" not in self._buffer:
             if len(self._buffer) > protocol.MAX_LINE:
                 raise StudentError(diagnose_too_much(self.process.output))
-            remaining = deadline - time.monotonic()
-            if not self._selector.select(max(0.0, min(_TICK, remaining))):
-                if remaining <= 0.0:
+            remaining_seconds = deadline - time.monotonic()
+            if not self._selector.select(max(0.0, min(_TICK, remaining_seconds))):
+                if remaining_seconds <= 0.0:
                     raise self._no_answer(on_timeout, f"{timeout.seconds:.0f} s")
                 cpu_seconds = self.process.cpu_seconds()
                 first_cpu_seconds = cpu_seconds if first_cpu_seconds is None else first_cpu_seconds
@@ -173,24 +173,24 @@ class Stepper:
             if not chunk:
                 return b""
             self._buffer += chunk
-        elapsed = time.monotonic() - start
-        self._waited_seconds += elapsed
-        patience.add_answer_time(elapsed)
+        elapsed_seconds = time.monotonic() - start
+        self._waited_seconds += elapsed_seconds
+        patience.add_answer_time(elapsed_seconds)
         self._require_patience()
-        line, _, following = bytes(self._buffer).partition(b"\n")
-        self._buffer = bytearray(following)
+        line, _, next_lines = bytes(self._buffer).partition(b"\n")
+        self._buffer = bytearray(next_lines)
         return line + b"\n"
 
-    def _require_patience(self, waiting: float = 0.0) -> None:
-        """Raise a StudentError if answers of programs, the current one after `waiting`, have taken too long in all."""
-        if patience.is_too_slow(waiting):
+    def _require_patience(self, waiting_seconds: float = 0.0) -> None:
+        """Raise a StudentError if all answers, and the current one after `waiting_seconds`, have taken too long."""
+        if patience.is_too_slow(waiting_seconds):
             self._deduct_starvation()
-            if patience.is_too_slow(waiting):
+            if patience.is_too_slow(waiting_seconds):
                 raise patience.too_slow_error()
 
     def _deduct_starvation(self) -> None:
         """Deduct the time for which the program was ready to run, but other processes used the processor."""
-        starved = starvation.starved_seconds(self._at_start, starvation.measure_use((self.process.innermost(),)))
+        starved = starvation.starved_seconds(self._use_at_start, starvation.measure_use((self.process.innermost(),)))
         starved_seconds = min(max(0.0, starved), self._waited_seconds)
         patience.add_answer_time(self._starved_seconds - starved_seconds)
         self._starved_seconds = starved_seconds

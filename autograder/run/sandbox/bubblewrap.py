@@ -1,4 +1,4 @@
-"""Translates the description of a sandbox to a bubblewrap command line, without side effects."""
+"""Translates the description of a sandbox into a command line of bubblewrap, without side effects."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from autograder.run.sandbox.spec import Mount, Sandbox, View
 # Of /etc, only the files for the dynamic linker, compilers and fonts: no accounts, keys or settings of this machine.
 _ETC = ("alternatives", "fonts", "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "localtime", "magic")
 _SYSTEM = ("bin", "lib", "lib32", "lib64", "sbin")
-# The kernel counts these for each user of the machine. A user namespace has its own limit, which its sandboxes share.
-# Setting it needs a capability, which `setpriv` then drops.
+# The kernel counts inotify instances and watches for each user of the machine. A user namespace has limits of its own,
+# which its sandboxes share. Setting them needs a capability, which `setpriv` then drops.
 _BOUND_KERNEL_OBJECTS = f"""
 echo {INOTIFY_INSTANCES} > /proc/sys/user/max_inotify_instances || exit 1
 echo {INOTIFY_WATCHES} > /proc/sys/user/max_inotify_watches || exit 1
@@ -36,7 +36,7 @@ OUT = "out"  # the folder in a worker's scratch folder for its output
 
 
 def resource_limits(limits: Limits) -> dict[str, tuple[int, int]]:
-    """Return the kernel's own limits on each process, soft and hard, by their names in `resource`."""
+    """Return the soft and hard limits that the kernel enforces on each process, by their names in `resource`."""
     return {
         "RLIMIT_CPU": (limits.cpu_seconds, limits.cpu_seconds + 5),
         "RLIMIT_AS": (limits.address_space, limits.address_space),
@@ -49,7 +49,7 @@ def resource_limits(limits: Limits) -> dict[str, tuple[int, int]]:
 
 
 def rlimits(limits: Limits) -> list[str]:
-    """Return the `prlimit` prefix that sets the kernel's own limits on each process."""
+    """Return the `prlimit` command, up to `--`, that runs another command with `resource_limits`."""
     by_option = {name.removeprefix("RLIMIT_").lower(): bounds for name, bounds in resource_limits(limits).items()}
     return ["prlimit", *(f"--{name}={soft}:{hard}" for name, (soft, hard) in by_option.items()), "--"]
 
@@ -57,21 +57,21 @@ def rlimits(limits: Limits) -> list[str]:
 def worker_sandbox(
     command: list[str], view: View, *, scratch: Path, user: int | None = None, groups: tuple[Path, ...] = ()
 ) -> list[str]:
-    """Return the command line of a worker sandbox, with its own namespaces, which sees only `view` of the machine.
+    """Return the command line of a worker sandbox, which has its own namespaces and sees only `view` of the machine.
 
-    It is read-only except `scratch`, /tmp and the writable folders of `view`. Sandboxes can be nested in it: bubblewrap
-    can mount /proc inside another one unless the outer one runs as root, for which it hides parts of /proc.
+    It is read-only except `scratch`, /tmp and the writable folders of `view`. Sandboxes can be nested in it: a nested
+    bubblewrap can mount /proc unless the outer one runs as root, because then the outer one hides parts of /proc.
 
     Args:
         command: the command to run.
         view: the files that it sees in addition to the system and the grader.
-        scratch: the folder that is a file system in memory, of `limits.WORKER_SCRATCH` bytes. Its folder `OUT` is
+        scratch: where a file system in memory, of `limits.WORKER_SCRATCH` bytes, is mounted. Its folder `OUT` is
             another file system, so that the worker can write its result even if a program fills `scratch`.
         user: the user to become, for root; None leaves the user as it is.
         groups: folders of control groups in which the worker sandbox creates groups for its sandboxes.
     """
     unshare = ("--unshare-user", "--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts")
-    # The command is process 1. Otherwise that is bubblewrap's own process, whose processor time would not be counted.
+    # The command is process 1. Otherwise, process 1 is bubblewrap's own, whose processor time would not be counted.
     namespaces = (
         *unshare,
         "--as-pid-1",
@@ -87,37 +87,39 @@ def worker_sandbox(
     mounts = _worker_mounts(view, scratch, groups)
     if user is None:
         return ["bwrap", "--die-with-parent", *namespaces, *mounts, "--", *inner_command]
-    # Root makes the mounts, because it can access their sources. The signal of a parent's death is sent with the rights
-    # of the parent, and the outer bubblewrap gives up its rights over other users. The shell, which stays the parent,
-    # keeps them.
+    # Root makes the mounts, because it can access their sources. When a parent dies, the kernel sends the signal to its
+    # child with the parent's rights. The outer bubblewrap gives up its rights over other users, but the shell, which
+    # stays the parent, keeps them.
     inner = ("bwrap", "--die-with-parent", "--dev-bind", "/", "/", *namespaces)
     outer = ("bwrap", "--die-with-parent", "--bind", "/proc", "/proc", *mounts)
     return [*outer, "--", "sh", "-c", _RUN_IN_SHELL, "sh", *setpriv_command(user), *inner, "--", *inner_command]
 
 
 def setpriv_command(user: int) -> list[str]:
-    """Return the prefix of a command that root runs as another user."""
+    """Return the `setpriv` command with which root runs another command as an ordinary user."""
     return ["setpriv", f"--reuid={user}", f"--regid={user}", "--clear-groups", "--no-new-privs", "--pdeathsig=KILL"]
 
 
 def _worker_mounts(view: View, scratch: Path, groups: tuple[Path, ...]) -> list[str]:
-    code = [*python_mounts(), *(path for path in _grader_paths() if path.exists())]
-    private = [folder for folder in _private_folders() if folder.is_dir() and any(map(folder.is_relative_to, code))]
-    covered = [folder for folder in private if not any(map(folder.is_relative_to, view.shown))]
+    code_paths = [*python_mounts(), *(path for path in _grader_paths() if path.exists())]
+    private_folders = [
+        folder for folder in _private_folders() if folder.is_dir() and any(map(folder.is_relative_to, code_paths))
+    ]
+    covered_folders = [folder for folder in private_folders if not any(map(folder.is_relative_to, view.shown))]
     arguments = [*_open_folders(("/etc",)), *_system(), "--dev", "/dev"]
-    bounded = {"/tmp": WORKER_TMP, "/dev/shm": WORKER_TMP, scratch: WORKER_SCRATCH, scratch / OUT: WORKER_OUT}
-    for place, size in bounded.items():
+    size_by_place = {"/tmp": WORKER_TMP, "/dev/shm": WORKER_TMP, scratch: WORKER_SCRATCH, scratch / OUT: WORKER_OUT}
+    for place, size in size_by_place.items():
         arguments += ["--perms", "0777", "--size", str(size), "--tmpfs", str(place)]
-    for path in code:
+    for path in code_paths:
         arguments += [*_open_folders(path.parents), "--ro-bind", str(path), str(path)]
-    for folder in covered:
+    for folder in covered_folders:
         arguments += ["--tmpfs", str(folder)]
     for flag, paths in (("--ro-bind", (*view.shown, *view.submitted)), ("--bind", (*view.writable, *groups))):
         for path in paths:
             arguments += [*_open_folders(path.parents), flag, str(view.copies.get(path, path)), str(path)]
     if (font_list := warm_caches.fonts()) is not None:
         arguments += ["--perms", "0777", "--dir", _FONTS, "--ro-bind", str(font_list), f"{_FONTS}/{font_list.name}"]
-    for folder in (*covered, Path("/dev"), Path("/")):
+    for folder in (*covered_folders, Path("/dev"), Path("/")):
         arguments += ["--remount-ro", str(folder)]
     return arguments
 
@@ -129,7 +131,7 @@ def _open_folders(folders: Iterable[Path | str]) -> list[str]:
 
 
 def _grader_paths() -> tuple[Path, ...]:
-    """Return the parts of the grader in every worker sandbox: its code, the course's description and a sourced ROS."""
+    """Return what every worker sandbox sees of the grader: its code, the course's description, and a sourced ROS."""
     course = (course_paths.course().root / course_paths.COURSE_FILE, course_paths.WORLDS)
     code = (course_paths.ROOT / "autograder", course_paths.ROOT / "sim", course_paths.SHARED_WORLDS)
     try:
@@ -172,7 +174,7 @@ def sandbox(command: list[str], spec: Sandbox, filter_fd: int | None, status_fd:
     arguments += ["--remount-ro", "/dev", "--remount-ro", "/"]
     for name, value in spec.environment.items():
         arguments += ["--setenv", name, value]
-    # The limits are set inside, because outside, all processes of the machine's user would count.
+    # The limits are set inside the sandbox: outside, the kernel would count all processes of the machine's user.
     return [*arguments, "--chdir", str(spec.workdir), "--", *rlimits(spec.limits), *command]
 
 

@@ -1,8 +1,8 @@
 """Limits that the kernel enforces on a whole sandbox: its number of processes, and its memory of any kind.
 
-`prlimit --nproc` also limits users except root, to whom the kernel does not apply it (setrlimit(2), RLIMIT_NPROC). A
-fork bomb outgrows anything that only watches it. Nothing else counts memory that no process has mapped (files in
-memory, buffers of sockets, inodes). See cgroups(7), version 1 and version 2.
+`prlimit --nproc` also limits the number of processes, but the kernel does not apply it to root (setrlimit(2),
+RLIMIT_NPROC). Watching is not enough, because a fork bomb grows faster than it can be counted. Only control groups
+count memory that no process has mapped (files in memory, buffers of sockets, inodes). See cgroups(7), versions 1 and 2.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from pathlib import Path
 from autograder.run.sandbox.limits import Limits
 
 _NUMBERS = itertools.count()
-# A unique name: worker sandboxes may have the same process ids, and some of them share a folder.
+# Part of each group's name. A process id is not unique enough: worker sandboxes may share both ids and a folder.
 _PROCESS = os.urandom(6).hex()
 _NAME = "autograder"
 _LEAF = "worker"
-_CLOSE_SECONDS = 5.0
-_TICK = 0.005
-_STALE = 3600.0  # s; an older empty group was left behind by a grader that was killed
+_CLOSE_SECONDS = 5.0  # maximum time until the processes of a group have ended
+_TICK = 0.005  # s between two attempts to remove a group
+_STALE = 3600.0  # s; an empty group that is older was left behind by a grader that was killed
 # A shell that joins the groups before `--`, and then executes the command after it.
 _ENTER = 'while [ "$1" != -- ]; do echo $$ > "$1"/cgroup.procs || exit 1; shift; done; shift; exec "$@"'
 
@@ -36,11 +36,11 @@ class ControlGroup:
     """A control group: its folder for each controller."""
 
     by_controller: dict[str, Path]
-    entry_folders: dict[str, Path] = field(default_factory=dict)  # the subgroups that a process enters instead, if any
+    entry_folders: dict[str, Path] = field(default_factory=dict)  # subgroups, if any, that processes enter instead
 
     @property
     def folders(self) -> tuple[Path, ...]:
-        """The group's folders: with version 1, each controller has its own."""
+        """The group's folders: in version 1, each controller has its own."""
         return tuple(dict.fromkeys(self.by_controller.values()))
 
     def enter(self, command: list[str]) -> list[str]:
@@ -60,7 +60,7 @@ class ControlGroup:
         return any(line.split()[0] == "oom_kill" and line.split()[1] != "0" for line in events.splitlines())
 
     def close(self) -> None:
-        """Kill the remaining processes, and remove the group. If that takes over 5 s, a later `make` removes it."""
+        """Kill the remaining processes, and remove the group. If that takes too long, a later `make` removes it."""
         with contextlib.suppress(OSError, KeyError):
             (self.by_controller["pids"] / "pids.max").write_text("0")  # so that a dying process cannot start others
         deadline = time.monotonic() + _CLOSE_SECONDS
@@ -68,7 +68,7 @@ class ControlGroup:
             while not _remove(folder) and time.monotonic() < deadline:
                 for pid in map(int, " ".join(map(_read, folder.rglob("cgroup.procs"))).split()):
                     with contextlib.suppress(OSError):
-                        if pid > 0:  # 0 is a process of another pid namespace, and for kill() the caller's whole group
+                        if pid > 0:  # 0 is a process in another pid namespace, but means the caller's group to kill()
                             os.kill(pid, signal.SIGKILL)
                 time.sleep(_TICK)
 
@@ -76,8 +76,8 @@ class ControlGroup:
 def make(limits: Limits) -> ControlGroup:
     """Return a new group with the limits that this machine supports, possibly none.
 
-    The limits are above `Limits.memory` and `Limits.threads`, so that the watcher, whose diagnosis is better, notices
-    an excess first.
+    The limits are above `Limits.memory` and `Limits.threads`, so that the watcher notices an excess first, because its
+    diagnosis is better.
     """
     memory = 2 * (limits.memory + limits.scratch)
     values = {"pids": {"pids.max": limits.tasks}, "memory": {"memory.max": memory, "memory.limit_in_bytes": memory}}
@@ -102,7 +102,7 @@ def make(limits: Limits) -> ControlGroup:
 def make_nested(limits: Limits, user: int | None) -> ControlGroup:
     """Return a new group whose processes, which run as `user` if given, can create groups for their children.
 
-    They cannot change the limits of the new group.
+    The processes cannot change the limits of the new group.
     """
     group = make(limits)
     entry_folders = {}
@@ -121,7 +121,7 @@ def make_nested(limits: Limits, user: int | None) -> ControlGroup:
 
 
 def bounds() -> frozenset[str]:
-    """Return the resources that this machine can limit for a whole sandbox, of "pids" and "memory"."""
+    """Return which of the resources "pids" and "memory" this machine can limit for a whole sandbox."""
     group = make(Limits())
     group.close()
     return frozenset(group.by_controller) | ({"pids"} if os.geteuid() != 0 else set())
@@ -129,15 +129,17 @@ def bounds() -> frozenset[str]:
 
 @cache
 def _parent_folder(controller: str) -> Path | None:
-    """Return the folder in which this process can create groups of a controller for its children."""
+    """Return the folder in which this process can create groups for its children with a controller."""
     for parent in parent_folders(controller, _read(Path("/proc/self/mountinfo")), _read(Path("/proc/self/cgroup"))):
-        trial = parent / f"{_NAME}-{_PROCESS}-{next(_NUMBERS)}"
+        trial_folder = parent / f"{_NAME}-{_PROCESS}-{next(_NUMBERS)}"
         try:
-            trial.mkdir()
+            trial_folder.mkdir()
         except OSError:
             continue
-        completed = subprocess.run(ControlGroup({controller: trial}).enter(["true"]), capture_output=True, check=False)
-        _remove(trial)
+        completed = subprocess.run(
+            ControlGroup({controller: trial_folder}).enter(["true"]), capture_output=True, check=False
+        )
+        _remove(trial_folder)
         if completed.returncode == 0:
             _remove_stale(parent)
             return parent
@@ -145,9 +147,9 @@ def _parent_folder(controller: str) -> Path | None:
 
 
 def parent_folders(controller: str, mountinfo: str, memberships: str) -> list[Path]:
-    """Return the folders in which a group with a controller may be created, nearest to this process first.
+    """Return candidates for the folder in which groups with a controller are created, nearest to this process first.
 
-    `mountinfo` and `memberships` are the contents of `/proc/self/mountinfo` and `/proc/self/cgroup`, see
+    `mountinfo` and `memberships` are the contents of `/proc/self/mountinfo` and `/proc/self/cgroup`; see
     proc_pid_mountinfo(5) and cgroups(7).
     """
     folders = []

@@ -1,7 +1,7 @@
 """The user of each worker sandbox that root starts: a user id that no account of the machine has.
 
 Root owns the kernel's settings, so a process of root can write to them even inside a user namespace. Different users
-also separate the worker sandboxes in everything that the kernel counts or allows by user.
+also separate the worker sandboxes in everything that the kernel counts or permits per user.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ _USERS = range(47_000, 48_000)
 
 @contextmanager
 def ordinary_user() -> Iterator[int | None]:
-    """Claim a user for the duration of the block, or yield None if this process is not root.
+    """Claim a user for the duration of the block, and yield its id, or None if this process is not root.
 
-    A claim is an abstract socket, which the kernel removes when its process ends.
+    A claim is an abstract socket, which the kernel removes when the claiming process ends.
 
     Raises:
         IsolationError: all users are claimed.

@@ -1,4 +1,4 @@
-"""The isolation levels, and tests of this machine's support for them."""
+"""The isolation levels, and tests of which of them this machine supports."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _TRIAL_ENVIRONMENT = {"PATH": os.defpath, "PYTHONPATH": str(course_paths.ROOT), 
 
 
 class Isolation(str, Enum):
-    """How strongly students' code is isolated. Every result contains the name.
+    """How strongly students' code is isolated. Every result contains the name of the level.
 
     `bubblewrap`: separate process, mount, ipc, user and network namespaces.
     `process`: only a process tree with limits. Students' code can read everything that the grader's user can read.
@@ -33,7 +33,7 @@ class Isolation(str, Enum):
 
 @cache
 def best_isolation() -> Isolation:
-    """Return the strongest isolation level of this machine. Starts a sandbox inside a worker sandbox as a trial."""
+    """Return the strongest isolation level that this machine supports. This starts nested sandboxes as a trial."""
     return Isolation.BUBBLEWRAP if namespaces_failure() is None else Isolation.PROCESS
 
 

@@ -27,8 +27,8 @@ from autograder.run.sandbox.spec import INTERPRETER, Sandbox
 
 ISOLATION_VARIABLE = "AUTOGRADER_ISOLATION"
 
-# Variables with which a fork server finds the real ROS. They must not name a folder of a submission, because the server
-# runs outside every sandbox.
+# Variables by which a fork server finds the real ROS. They must not name a submission's folder, because the server runs
+# outside every sandbox.
 _ROS_VARIABLES = (*WHEEL_BOOTSTRAP_VARIABLES, "PYTHONPATH", "AMENT_PREFIX_PATH")
 
 _lock = threading.Lock()
@@ -44,8 +44,8 @@ def current_isolation() -> Isolation:
 def restore_sigint() -> None:
     """Let SIGINT end the processes that this one will start. Call it in the main thread.
 
-    A shell's background job ignores SIGINT, and all its descendants inherit that. A node would end on Ctrl-C if it is
-    graded in the foreground, but not if it is graded in the background.
+    A shell's background job ignores SIGINT, and all its descendants inherit that. So without this call, a node would
+    end on Ctrl-C if the grader runs in the foreground, but not if the grader runs in the background.
     """
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -61,7 +61,7 @@ def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = (),
         profile: for a Python script, the profile of modules that are imported in advance (`fork_server.profiles`).
 
     Raises:
-        StudentError: the grading has no time left for programs. Running programs are also stopped at that time.
+        StudentError: the grading has no time left for programs. When its time is over, running programs are stopped.
     """
     patience.require()
     limits = replace(spec.limits, wall_seconds=patience.bounded(spec.limits.wall_seconds))
@@ -118,7 +118,7 @@ def _start(
 
 
 def _fork(command: list[str], spec: Sandbox, pass_fds: tuple[int, ...], profile: str) -> Process | None:
-    """Fork a program. Return None if that is impossible. The program has then not run."""
+    """Fork a program. Return None if that is impossible; then the program has not run."""
     warm_up(profile)
     server = _servers[profile]
     if server is None:

@@ -1,4 +1,4 @@
-"""The line from a worker to the process that started it: its only way out of its sandbox."""
+"""The line from a worker to the process that started it: the worker's only way out of its sandbox."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Messages between a worker and the process that started it: JSON, and trees of files, each of limited size.
 
-Student code may have taken over a worker. Its messages are only JSON or bytes, the receiver sets their maximum size in
-advance, and paths only lead into the folder that the receiver names.
+Student code may have taken over a worker. So its messages are only JSON or bytes, the receiver sets their maximum size
+in advance, and paths lead only into the folder that the receiver names.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def receive_message(line: Connection) -> dict[str, Any]:
     """Receive a message of at most `limits.MESSAGE` bytes.
 
     Raises:
-        MessageError: it is larger, or not a JSON object.
+        MessageError: the message is larger, or not a JSON object.
         EOFError: the sender has closed the connection.
     """
     try:
@@ -57,13 +57,13 @@ def receive_tree(line: Connection, limits: TreeLimits) -> dict[Entry, bytes]:
     """Receive a tree: the content of each file, and the target of each link.
 
     Raises:
-        MessageError: it exceeds the limits, has a path that leads out of it, or differs from its list.
+        MessageError: the tree exceeds the limits, has a path that leads out of it, or differs from its list.
         EOFError: the sender has closed the connection.
     """
     try:
         # JSON needs at most six bytes for a byte of a path.
-        listed = json.loads(_receive(line, max(MESSAGE, 6 * limits.paths + 64 * limits.names)))
-        entries = [Entry(str(p), str(kind), bool(x), int(size)) for p, kind, x, size in listed]
+        listing = json.loads(_receive(line, max(MESSAGE, 6 * limits.paths + 64 * limits.names)))
+        entries = [Entry(str(p), str(kind), bool(x), int(size)) for p, kind, x, size in listing]
     except (ValueError, TypeError, OverflowError, RecursionError):
         raise MessageError("a list of files is malformed") from None
     if len(entries) > limits.names or sum(entry.size for entry in entries) > limits.size:
@@ -80,7 +80,7 @@ def receive_tree(line: Connection, limits: TreeLimits) -> dict[Entry, bytes]:
 
 
 def write_received(tree: Mapping[Entry, bytes], root: Path) -> None:
-    """Write a received tree to a new or empty folder. Overwrites nothing and follows no link."""
+    """Write a received tree to a new or empty folder, without overwriting anything or following links."""
     root.mkdir(parents=True, exist_ok=True)
     for entry in (entry for entry in tree if entry.kind != "link"):
         path = root / entry.path

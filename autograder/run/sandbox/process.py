@@ -21,9 +21,9 @@ from autograder.run.sandbox.procfs import Tree, children, cpu_seconds, measure, 
 
 _TICK = 0.1  # s between two checks of the clock while the process prints nothing
 _MEASURE = 0.25  # s between two measurements of the tree
-_REPORT = 4096  # bytes; bubblewrap's report has some hundred
-_EXIT = b'"exit-code"'  # in the report if the command was run
-_MANY = 8  # if at least this many processes fill the memory together, the cause is their number
+_REPORT_BYTES = 4096  # maximum bytes of bubblewrap's report, which usually has a few hundred
+_EXIT_KEY = b'"exit-code"'  # the report contains this if the command was run
+_MANY_PROCESSES = 8  # if it takes at least this many processes to fill the memory, their number is the cause
 
 
 class ExitReason(str, Enum):
@@ -50,10 +50,11 @@ class Process:
         pass_fds: descriptors that it inherits, besides its standard streams.
         cwd: its working folder; that of this process if not given.
         contained: whether the end of the outermost process ends the whole tree, as in a pid namespace.
-        group: a control group that the command enters, closed after its end; leaving the block waits for it.
-        writable: folders, as paths inside, on whose file systems it may create `Limits.files` files.
+        group: a control group that the command enters. It is closed after the command's end, before the block is left.
+        writable: folders, by their paths in the sandbox, on whose file systems it may create `Limits.files` files.
         stdin: its standard input.
-        is_placeholder: whether the command is replaced by a program that is adopted later, when its time starts.
+        is_placeholder: whether the command stands in for a program that is adopted later. Only then does the time
+            start.
         status: a descriptor from which bubblewrap's report is read, and which is closed at the end. The report
             contains the exit status of the command, unless the sandbox could not be made.
 
@@ -86,7 +87,7 @@ class Process:
         self._output = bytearray()
         self._exit_reason: ExitReason | None = None
         self._lock = threading.Lock()
-        self._adopted: tuple[int, ...] = ()
+        self._adopted_pids: tuple[int, ...] = ()
         self._start_time = math.inf if is_placeholder else time.monotonic()
         self._popen = subprocess.Popen(
             command,
@@ -131,7 +132,7 @@ class Process:
         return self._popen.returncode if self._has_ended() else None
 
     def wait(self, timeout: float | None) -> bool:
-        """Wait until it has ended, at most `timeout` seconds if given. Return whether it has."""
+        """Wait until it has ended, for at most `timeout` seconds if that is not None. Return whether it has ended."""
         self._ended.wait(timeout)
         return self._has_ended()
 
@@ -147,21 +148,21 @@ class Process:
         return cpu_seconds(self._measure().pids)
 
     def adopt(self, pid: int) -> None:
-        """Also watch a process that has joined the sandbox from outside. Its time starts now."""
-        self._adopted = (pid,)
+        """Also watch a process that has joined the sandbox from outside. Its wall time starts now."""
+        self._adopted_pids = (pid,)
         self._start_time = time.monotonic()
 
     def innermost(self) -> int:
         """Return the process id of the student's own process below the sandbox's helpers."""
-        if self._adopted:
-            return self._adopted[0]
+        if self._adopted_pids:
+            return self._adopted_pids[0]
         pid = self.pid
-        while name(pid) == "bwrap" and (below := children(pid)):
-            pid = below[0]
+        while name(pid) == "bwrap" and (child_pids := children(pid)):
+            pid = child_pids[0]
         return pid
 
     def signal(self, number: signal.Signals) -> None:
-        """Send a signal to the student's own process. Does nothing once it has ended."""
+        """Send a signal to the student's own process. Do nothing if it has ended."""
         if not self._ended.is_set():
             with suppress(ProcessLookupError):
                 os.kill(self.innermost(), number)
@@ -179,7 +180,7 @@ class Process:
         self._watcher.join(10.0)
 
     def _measure(self) -> Tree:
-        return measure(self._popen.pid, *self._adopted, max_threads=self._limits.threads)
+        return measure(self._popen.pid, *self._adopted_pids, max_threads=self._limits.threads)
 
     def _files(self) -> int:
         """Return the number of files on the file systems that it can write to, or 0 if it has ended."""
@@ -194,7 +195,7 @@ class Process:
         if self._exit_reason is None and self._popen.poll() is None:
             self._exit_reason = reason
         pids = self._measure().pids
-        # Children are killed first, because they are not found after the end of their parent, unless they end with it.
+        # Children are killed first, because they cannot be found without their parent, unless they end with it.
         for pid in pids if self._contained else reversed(pids):
             with suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
@@ -220,12 +221,12 @@ class Process:
                 if now - last_measurement > _MEASURE:
                     last_measurement = now
                     tree = self._measure()
-                    is_over = tree.threads > self._limits.threads or tree.memory > self._limits.memory
-                    excess_count = excess_count + 1 if is_over else 0
+                    is_excess = tree.threads > self._limits.threads or tree.memory > self._limits.memory
+                    excess_count = excess_count + 1 if is_excess else 0
                     if excess_count >= self._limits.excess_measurements and tree.threads > self._limits.threads:
                         self._end(ExitReason.THREADS)
                     elif excess_count >= self._limits.excess_measurements:
-                        is_many = tree.largest < self._limits.memory / _MANY
+                        is_many = tree.largest < self._limits.memory / _MANY_PROCESSES
                         self._end(ExitReason.THREADS if is_many else ExitReason.MEMORY)
                     elif self._is_out_of_memory():
                         self._end(ExitReason.MEMORY)
@@ -233,7 +234,7 @@ class Process:
                         self._end(ExitReason.FILES)
                     else:
                         min_file_count = min(min_file_count, file_count)
-            # The last output before the end. A grandchild may hold the pipe open, so read only the available bytes.
+            # Read the last output. Only the available bytes are read, because a grandchild may keep the pipe open.
             while open_stream and selector.select(0):
                 open_stream = self._read()
         with self._lock:
@@ -241,10 +242,12 @@ class Process:
         self._popen.wait()
         self._exit_reason = self._exit_reason or (ExitReason.MEMORY if self._is_out_of_memory() else ExitReason.EXITED)
         if self._status is not None:
-            report = os.read(self._status, _REPORT)
+            report = os.read(self._status, _REPORT_BYTES)
             os.close(self._status)
-            # bubblewrap exits with status 1 if it fails. A negative status is a signal, such as from the OOM killer.
-            self._is_made = self._exit_reason is not ExitReason.EXITED or self._popen.returncode <= 0 or _EXIT in report
+            # bubblewrap exits with status 1 if it fails. A negative status means a signal, as from the OOM killer.
+            self._is_made = (
+                self._exit_reason is not ExitReason.EXITED or self._popen.returncode <= 0 or _EXIT_KEY in report
+            )
         self._ended.set()
         if self._group is not None:
             self._group.close()

@@ -1,4 +1,4 @@
-"""Reads the kernel's data about processes in /proc, see proc(5)."""
+"""Reads the kernel's data about processes from /proc; see proc(5)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 _PAGE = os.sysconf("SC_PAGE_SIZE")
 _TICKS_PER_SECOND = os.sysconf("SC_CLK_TCK")
-TICK = 1.0 / _TICKS_PER_SECOND  # s
+TICK = 1.0 / _TICKS_PER_SECOND  # s; the resolution of the kernel's times of processes
 
 
 @dataclass(frozen=True)
@@ -24,10 +24,10 @@ class Tree:
 
 
 def measure(*roots: int, max_threads: int = sys.maxsize) -> Tree:
-    """Measure the trees below `roots`: process ids, threads, resident bytes.
+    """Measure `roots` and their descendants: process ids, threads, resident bytes.
 
     Processes that end meanwhile are left out. The measurement stops after `max_threads` threads, because a fork bomb
-    grows faster than it can be counted.
+    grows faster than its threads can be counted.
     """
     pids: list[int] = []
     threads = memory = largest = 0
@@ -49,7 +49,7 @@ def measure(*roots: int, max_threads: int = sys.maxsize) -> Tree:
 
 
 def start_seconds(pid: int) -> float | None:
-    """Return the start of a process in seconds since the boot, rounded down to a `TICK`, or None if it has ended."""
+    """Return when a process started, in s since boot, rounded down to a `TICK`; None if it has ended."""
     try:
         return int(_stat(pid)[19]) / _TICKS_PER_SECOND  # starttime
     except OSError:
@@ -58,7 +58,7 @@ def start_seconds(pid: int) -> float | None:
 
 @dataclass(frozen=True)
 class CpuTime:
-    """The processor time, in s, of a process, and of its ended children for which it has waited."""
+    """The processor time, in s, of a process, and of those of its ended children for which it has waited."""
 
     own: float = 0.0
     reaped: float = 0.0
@@ -81,7 +81,7 @@ def cpu_seconds(pids: Iterable[int]) -> float:
 
 @dataclass(frozen=True)
 class ThreadTime:
-    """The seconds for which a thread has run, and for which it has waited for a processor."""
+    """How many seconds a thread has run, and has waited for a processor."""
 
     ran: float = 0.0
     waited: float = 0.0
@@ -103,7 +103,7 @@ def thread_times(pids: Iterable[int]) -> dict[int, ThreadTime]:
 
 
 def parent(pid: int) -> int | None:
-    """Return the parent of a process, or None if it has ended."""
+    """Return the process id of a process's parent, or None if the process has ended."""
     try:
         return int(_stat(pid)[1])  # ppid
     except OSError:
@@ -111,12 +111,12 @@ def parent(pid: int) -> int | None:
 
 
 def children(pid: int) -> list[int]:
-    """Return the processes that a process's first thread has started."""
+    """Return the children that a process's first thread has started."""
     return _started_by(pid, pid)
 
 
 def name(pid: int) -> str:
-    """Return the name of a process's program, at most 15 characters, or an empty string if it has ended."""
+    """Return at most 15 characters of the name of a process's program, or an empty string if the process has ended."""
     try:
         return _read(f"/proc/{pid}/comm").decode(errors="replace").strip()
     except OSError:
@@ -132,7 +132,7 @@ def _started_by(pid: int, task: int | str) -> list[int]:
 
 
 def _stat(pid: int) -> list[bytes]:
-    """Return the fields of a process after its name, the third field of proc_pid_stat(5) first."""
+    """Return the fields after the name in a process's `stat` file, beginning with the third of proc_pid_stat(5)."""
     return _read(f"/proc/{pid}/stat").rpartition(b")")[2].split()
 
 

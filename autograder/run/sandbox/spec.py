@@ -1,4 +1,4 @@
-"""The description of a sandbox and of the files in it, without side effects."""
+"""Describes sandboxes and the files that are visible in them, without side effects."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ INTERPRETER = {
     "OPENBLAS_NUM_THREADS": "1",
     "LANG": "C.UTF-8",
 }
-"""Environment variables of every Python process of a workspace."""
+"""Environment variables for every Python process that a workspace's sandbox runs."""
 
 
 @dataclass(frozen=True)
 class Mount:
     """A folder or file of the machine that is visible in the sandbox, at the same path unless `source` is given.
 
-    `Isolation.PROCESS` mounts nothing, so that the code sees the file at `path` itself.
+    At the isolation level `process`, nothing is mounted, so code finds what the machine has at `path`.
     """
 
     path: Path
@@ -37,10 +37,10 @@ class View:
     """The part of the machine that a worker sandbox sees, besides the system, the grader and its scratch folder."""
 
     shown: tuple[Path, ...] = ()  # folders and files that it can only read
-    # The submission. Root's worker gets a copy, because it runs as another user, who may be unable to read it.
+    # The submission. Root's worker gets a copy, because the worker runs as another user, who may be unable to read it.
     submitted: tuple[Path, ...] = ()
     writable: tuple[Path, ...] = ()  # folders that it can write to
-    copies: Mapping[Path, Path] = field(default_factory=dict)  # the copy to mount at a path
+    copies: Mapping[Path, Path] = field(default_factory=dict)  # by path: the copy that is mounted there instead
 
 
 @dataclass(frozen=True)
@@ -48,9 +48,9 @@ class Sandbox:
     """One sandbox: visible files, resource limits and environment."""
 
     workdir: Path  # the working folder, inside a mount
-    # Besides the read-only system and the grader's Python. Suites and solutions in them are hidden.
+    # What is visible besides the read-only system and the grader's Python. Suites and solutions in mounts are hidden.
     mounts: tuple[Mount, ...] = ()
-    # All environment variables of the code, which inherits none.
+    # All environment variables of the code. It inherits none.
     environment: Mapping[str, str] = field(default_factory=dict)
     network: bool = False  # whether it can use the worker sandbox's loopback interface, to reach the grader over DDS
     limits: Limits = NODE  # the resource limits of the tree

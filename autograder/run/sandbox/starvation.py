@@ -1,8 +1,8 @@
 """Measures how long processes outside a submission kept its programs from running.
 
-The kernel reports how long a thread has waited for a processor, but not which process used it. If that process belongs
-to the submission, its processor time grows by as much as the thread waits. So the waiting time minus the submission's
-processor time was caused by others.
+The kernel reports how long a thread has waited for a processor, but not which process used the processor meanwhile. If
+that process belongs to the submission, its processor time grows by as much as the thread waits. So other processes
+caused the waiting time that exceeds the submission's processor time.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from autograder.run.sandbox import procfs
 from autograder.run.sandbox.procfs import CpuTime, ThreadTime
 
-_MAX_THREADS = 10_000  # that are counted, well above the limit of a program
+_MAX_THREADS = 10_000  # how many threads are counted, far more than a program may have
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class CpuUse:
 
 
 def measure_use(pids: Iterable[int]) -> CpuUse:
-    """Measure programs, and this process with all its descendants."""
+    """Measure the threads of programs, and this process with all its descendants."""
     pids = tuple(pids)
     return CpuUse(
         procfs.thread_times(pids), procfs.cpu_times(procfs.measure(os.getpid(), *pids, max_threads=_MAX_THREADS).pids)
@@ -36,8 +36,8 @@ def measure_use(pids: Iterable[int]) -> CpuUse:
 def used_seconds(before: CpuUse, after: CpuUse) -> float:
     """Return the processor time, in s, that this grading's processes used between two measurements.
 
-    The time of a process that has ended is added to its parent. If the parent ignores the end of its children, only
-    the time until the first measurement is known.
+    The kernel adds the time of a process that has ended to that of its parent. If the parent does not wait for its
+    children, only their time until the first measurement is known.
     """
     old, new = before.processes, after.processes
     running = sum(time.own - old.get(pid, CpuTime()).own for pid, time in new.items())

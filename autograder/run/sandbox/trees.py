@@ -1,6 +1,7 @@
 """Lists, limits and copies files that untrusted code wrote and that leave a sandbox.
 
-Sizes are apparent sizes. A sparse file needs no space where it is written, but its full size where it is copied.
+Sizes are apparent sizes, because a sparse file needs no space where it is written, but its full size where it is
+copied.
 """
 
 from __future__ import annotations
@@ -17,12 +18,12 @@ from autograder.run.sandbox.limits import MIB, TreeLimits
 
 Ignored = Callable[[Sequence[str]], Container[str]]
 _CHUNK = 1 << 20
-_CHANGED = (errno.ENOENT, errno.ENOTDIR, errno.ELOOP, errno.ENXIO)  # the file was replaced after it was listed
+_CHANGED_ERRORS = (errno.ENOENT, errno.ENOTDIR, errno.ELOOP, errno.ENXIO)  # the file was replaced after it was listed
 _NO_FOLLOW = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
 
 
 class TreeError(Exception):
-    """A tree exceeds a limit, or contains something except files, folders and inner links. The message says what."""
+    """A tree exceeds a limit, or contains anything but files, folders and inner links. The message says what."""
 
 
 @dataclass(frozen=True)
@@ -128,7 +129,7 @@ def _leads_inside(root: Path, link: Path) -> bool:
 
 
 def _read_file(path: Path, size: int) -> bytes:
-    """Read a plain file of at most `size` bytes, unless something else has replaced it since it was listed."""
+    """Read a plain file of at most `size` bytes. Raise a TreeError if it has changed since it was listed."""
     with os.fdopen(os.open(path, _NO_FOLLOW), "rb") as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
             raise TreeError(f"{path.name} is no longer a plain file")
@@ -139,20 +140,21 @@ def _read_file(path: Path, size: int) -> bytes:
 
 
 def copy_untrusted(source: Path, target: Path, limits: TreeLimits, ignored: Ignored) -> None:
-    """Copy a submission for a reader without access to it, without following links or reading archives.
+    """Copy a submission for a reader that cannot access it, without following links or reading archives.
 
     Intake refuses the copy for the same reasons as the original. Links stay links, devices and pipes become pipes.
-    Files larger than `limits` keep their size but not their content, so that the reader rejects them. `ignored` returns
-    the names of a folder to leave out. Each folder is opened from its parent, so a path may have any length. Files that
-    change meanwhile are left out. No folder of the path `source` was a link, and none may have become one.
+    Files that exceed `limits` keep their size but not their content, so that the reader rejects them. `ignored` gets
+    the names in a folder, and returns those to leave out. Each folder is opened from its parent, so a path may have any
+    length. Files that change meanwhile are left out. No folder in the path `source` was a link. If one has become a
+    link, nothing is copied.
     """
-    with _unless_changed(), _opened_unfollowed(source.parent) as old, _opened(target.parent) as new:
+    with _unless_changed(), _open_without_links(source.parent) as old, _open_folder(target.parent) as new:
         _copy(_Pair(old, source.name, new, target.name), _Remaining(limits), ignored, limits.depth)
 
 
 @dataclass
 class _Remaining:
-    """The numbers of names and bytes that may still be copied."""
+    """How many names and bytes may still be copied."""
 
     limits: TreeLimits
 
@@ -179,7 +181,7 @@ def _copy(pair: _Pair, remaining: _Remaining, ignored: Ignored, depth: int) -> N
         _copy_file(pair, remaining)
     elif stat.S_ISDIR(info.st_mode):
         os.mkdir(pair.copy, 0o755, dir_fd=pair.new)
-        with _opened(pair.name, pair.old) as old, _opened(pair.copy, pair.new) as new:
+        with _open_folder(pair.name, pair.old) as old, _open_folder(pair.copy, pair.new) as new:
             names = sorted(os.listdir(old)) if depth else []
             ignored_names = ignored(names)
             for name in names:
@@ -195,7 +197,7 @@ def _unless_changed() -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        if error.errno not in _CHANGED:
+        if error.errno not in _CHANGED_ERRORS:
             raise
 
 
@@ -221,20 +223,20 @@ def _copy_file(pair: _Pair, remaining: _Remaining) -> None:
 
 
 @contextmanager
-def _opened_unfollowed(folder: Path) -> Iterator[int]:
+def _open_without_links(folder: Path) -> Iterator[int]:
     """Open a folder by an absolute path, without following links."""
     with ExitStack() as stack:
-        descriptor = stack.enter_context(_opened(folder.anchor or "."))
+        descriptor = stack.enter_context(_open_folder(folder.anchor or "."))
         for part in folder.relative_to(folder.anchor).parts:
-            descriptor = stack.enter_context(_opened(part, descriptor))
+            descriptor = stack.enter_context(_open_folder(part, descriptor))
         yield descriptor
 
 
 @contextmanager
-def _opened(folder: Path | str, within: int | None = None) -> Iterator[int]:
-    """Open a folder. If it is given relative to the open folder `within`, it must not be a link."""
-    flags = os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC | (0 if within is None else os.O_NOFOLLOW)
-    descriptor = os.open(folder, flags, dir_fd=within)
+def _open_folder(folder: Path | str, parent: int | None = None) -> Iterator[int]:
+    """Open a folder. If it is given relative to the open folder `parent`, it must not be a link."""
+    flags = os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC | (0 if parent is None else os.O_NOFOLLOW)
+    descriptor = os.open(folder, flags, dir_fd=parent)
     try:
         yield descriptor
     finally:

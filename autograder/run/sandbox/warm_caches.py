@@ -12,12 +12,12 @@ from pathlib import Path
 
 from autograder import course_paths
 
-_ANSWERS = re.compile(r"/(variants|versions)/")  # answers in a chapter's checks, which the grader does not import
+_ANSWERS = re.compile(r"/(variants|versions)/")  # answers among a chapter's checks, which the grader does not import
 
 
 @cache
 def compile_grader() -> None:
-    """Compile the grader's modules, once per process. If its folder is read-only, each worker compiles them again."""
+    """Compile the grader's modules once per process. If their folder is read-only, each worker compiles them itself."""
     for folder in (course_paths.ROOT / "autograder", course_paths.ROOT / "sim", course_paths.CHECKS):
         if os.access(folder, os.W_OK):
             compileall.compile_dir(folder, quiet=2, rx=_ANSWERS)

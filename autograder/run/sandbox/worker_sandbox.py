@@ -27,7 +27,7 @@ from autograder.submission.intake.files import MAX_DEPTH, MAX_READ_BYTES, MAX_SC
 from autograder.submission.intake.ignored import environment_parts, is_ignored
 
 EMPTY_VIEW = View()
-# More than intake accepts, so that it refuses the copy of a submission if it refuses the original.
+# The limits exceed what intake accepts, so that intake refuses the copy of a submission if it refuses the original.
 _COPY_LIMITS = TreeLimits(names=MAX_SCANNED + 2, size=MAX_READ_BYTES, depth=MAX_DEPTH + 2)
 _PREFIX = "autograder-worker-"
 _PASSED_PREFIXES = (
@@ -54,13 +54,13 @@ def run_in_worker_sandbox(
     *,
     view: View = EMPTY_VIEW,
 ) -> WorkerReport:
-    """Run a trusted command in a new worker sandbox until it ends. Arguments and errors: see `in_worker_sandbox`."""
+    """Run a trusted command in a new worker sandbox until it ends. `in_worker_sandbox` explains the arguments."""
     with in_worker_sandbox(make_command, isolation, limits, view=view) as (process, _):
         return wait_and_report(process)
 
 
 def wait_and_report(process: Process) -> WorkerReport:
-    """Wait for a process to end, and report it."""
+    """Wait until a process has ended, and return its report."""
     process.wait(None)
     assert process.exit_reason is not None
     return WorkerReport(process.exit_reason, process.returncode or 0, process.output)
@@ -78,10 +78,10 @@ def in_worker_sandbox(
     """Start a trusted command in a new worker sandbox, and yield its process and its scratch folder.
 
     Args:
-        make_command: returns the command, given the scratch folder of the worker sandbox.
-        isolation: the isolation level. An IsolationError says why this machine does not support it.
+        make_command: returns the command. It is called with the scratch folder of the worker sandbox.
+        isolation: the isolation level. If this machine does not support it, an IsolationError gives the reason.
         limits: the limits of the whole worker sandbox, including students' processes.
-        view: the parts of the machine that it sees, at the isolation level `bubblewrap`.
+        view: the parts of the machine that the command sees at the isolation level `bubblewrap`.
         pass_fds: descriptors that the command inherits.
     """
     require(isolation)
@@ -98,7 +98,7 @@ def in_worker_sandbox(
             if isolation is Isolation.BUBBLEWRAP:
                 user = stack.enter_context(ordinary_user())
                 group = cgroup.make_nested(limits, user)
-                view = view if user is None else _reachable(view, scratch, user)
+                view = view if user is None else _make_accessible(view, scratch, user)
                 command = group.enter(
                     bubblewrap.worker_sandbox(command, view, scratch=scratch, user=user, groups=group.folders)
                 )
@@ -135,12 +135,12 @@ def in_worker_sandbox(
 
 
 def path_in_sandbox(path: Path, isolation: Isolation, scratch: Path) -> Path:
-    """Return the path of the submission for the command of a worker sandbox: its own, or that of a readable copy."""
+    """Return where the command of a worker sandbox finds the submission: at its own path, or at that of a copy."""
     return scratch / "submitted" / path.name if gives_up_root(isolation) else path
 
 
-def _reachable(view: View, scratch: Path, user: int) -> View:
-    """Return the view with a copy of the submission, after giving its writable folders to a user."""
+def _make_accessible(view: View, scratch: Path, user: int) -> View:
+    """Return the view with a copy of the submission. The user becomes the owner of the writable folders."""
     copies = {path: scratch / "submitted" / f"{number}" for number, path in enumerate(view.submitted)}
     for path, copy in copies.items():
         copy.parent.mkdir(exist_ok=True)
@@ -159,7 +159,7 @@ def _own_variables(scratch: Path, isolation: Isolation) -> dict[str, str]:
     folders = [
         str(course_paths.ROOT),
         os.environ.get("PYTHONPATH", ""),
-    ]  # this grader, whatever the working folder
+    ]  # so that the worker imports this grader, whatever its working folder is
     path = (
         {} if course_paths.ROOT.is_relative_to(sys.prefix) else {"PYTHONPATH": os.pathsep.join(filter(None, folders))}
     )
@@ -167,12 +167,12 @@ def _own_variables(scratch: Path, isolation: Isolation) -> dict[str, str]:
 
 
 def passed_variables(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return the variables for a worker sandbox, without others, which may contain secrets."""
+    """Return the variables that a worker sandbox gets. The others may contain secrets."""
     return {name: value for name, value in environment.items() if name.startswith(_PASSED_PREFIXES)}
 
 
 def _remove_stale_folders() -> None:
-    """Remove the folders of worker sandboxes whose grader was killed. Nothing holds their locks."""
+    """Remove the folders of worker sandboxes whose grader was killed, so that nothing holds their locks."""
     for folder in Path(tempfile.gettempdir()).glob(f"{_PREFIX}*"):
         with suppress(OSError):
             if folder.stat().st_uid != os.geteuid() or time.time() - folder.stat().st_mtime < _MIN_AGE:

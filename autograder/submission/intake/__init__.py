@@ -2,8 +2,8 @@
 
 A submission is the folder of an assignment (the notebook and `ws/` beside it), a zip or tar archive of such a folder,
 the notebook alone, or a source tree with `src/`. It may be in nested folders or archives, under another name and beside
-other files. Links, devices, absolute paths and parent paths are refused, or skipped if they are not needed. Sizes,
-counts and depths are limited. Files that tools leave behind are ignored.
+other files. Links, devices, absolute paths and paths with `..` are refused, or skipped if they are not needed. The
+number, size and depth of files are limited. Files that tools leave behind are ignored.
 
     path -> reading -> files -> answer (which notebook and source tree) -> counting (files in `ws/src`, else cells)
 """
@@ -55,7 +55,7 @@ __all__ = [
     "write_tree",
 ]
 TIMESTAMP = PurePosixPath("timestamp.txt")  # written by nbgrader
-MAX_LISTED = 20  # names of unused files
+MAX_LISTED = 20  # unused files whose names are listed
 
 
 @dataclass(frozen=True)
@@ -66,16 +66,16 @@ class Submission:
     source: tuple[SubmittedFile, ...]  # files below `ws/src`, with paths relative to it
     # Other files that the notebook may read, with paths relative to the assignment's folder.
     extra: tuple[SubmittedFile, ...]
-    sha256: str  # digest of all files' paths and contents, in hexadecimal digits
-    graded_sha256: str  # digest of the files that a grading reads; a folder and a zip of it have the same one
-    # The packages that are graded, with paths relative to `ws/src`; None if the notebook has to make some of them.
+    sha256: str  # hexadecimal digest of the paths and contents of all files
+    graded_sha256: str  # digest of the files that a grading reads; the same for a folder and for a zip of it
+    # The packages that are graded, with paths relative to `ws/src`; None if the notebook has to create some of them.
     packages: tuple[SubmittedFile, ...] | None = None
     notices: tuple[str, ...] = ()  # sentences for the student about the files that count
-    unused: tuple[str, ...] = ()  # files that do not count, by their paths
+    unused: tuple[str, ...] = ()  # paths of files that do not count, or sentences about skipped files
 
 
 def read_packages(root: Path) -> tuple[SubmittedFile, ...]:
-    """Read the files in `root`/src, a workspace that a student's code may have changed, with paths relative to it.
+    """Read the files in `root`/src, with paths relative to it. A student's code may have changed the workspace `root`.
 
     Raises:
         StudentError: `src` is not a folder, or contains unsafe files.
@@ -104,7 +104,10 @@ def read_submission(path: Path, assignment: str) -> Submission:
 
 
 def read_files(path: Path, assignment: str) -> list[SubmittedFile]:
-    """Read all files of a submission, with paths below its root. Arguments and errors are as in `read_submission`."""
+    """Read all files of a submission, with paths relative to its root.
+
+    The arguments and errors are those of `read_submission`.
+    """
     with student_data("Your submission"):
         contents = read_contents(path, assignment)
         detect_layout(contents.files, assignment, contents.skipped)
@@ -112,11 +115,11 @@ def read_files(path: Path, assignment: str) -> list[SubmittedFile]:
 
 
 def detect_layout(files: Sequence[SubmittedFile], assignment: str, skipped: Sequence[SkippedFile] = ()) -> Submission:
-    """Find the notebook and the packages among a submission's files, whose paths are below its root.
+    """Find the notebook and the packages among a submission's files, whose paths are relative to its root.
 
     Raises:
-        StudentError: it has neither the notebook nor a package, they are unclear or unsafe, or a file and a folder
-            have the same path.
+        StudentError: the submission has neither the notebook nor a package, is unclear or unsafe, or contains a file
+            and a folder with the same path.
     """
     _require_tree(files)
     exercises = exercises_of(assignment)
@@ -137,10 +140,10 @@ def detect_layout(files: Sequence[SubmittedFile], assignment: str, skipped: Sequ
         source,
         extra,
         digest(files),
-        digest(_graded(notebook, source, extra, assignment) if graded.packages is None else graded.packages),
+        digest(_graded_files(notebook, source, extra, assignment) if graded.packages is None else graded.packages),
         graded.packages,
         graded.notices,
-        _unused(files, skipped, answer, assignment),
+        _unused_names(files, skipped, answer, assignment),
     )
 
 
@@ -160,7 +163,7 @@ def graded_packages(submission: Submission, written: Sequence[SubmittedFile], as
 
 
 def _extra(files: Sequence[SubmittedFile], answer: Answer) -> tuple[SubmittedFile, ...]:
-    """Return the other files that the notebook may read."""
+    """Return the files besides the notebook and the source tree that the notebook may read."""
     if answer.notebook is not None:
         root = answer.notebook.root
     elif answer.tree is not None:
@@ -177,17 +180,17 @@ def _extra(files: Sequence[SubmittedFile], answer: Answer) -> tuple[SubmittedFil
     return tuple(extra)
 
 
-def _graded(
+def _graded_files(
     notebook: bytes | None, source: Sequence[SubmittedFile], extra: Sequence[SubmittedFile], assignment: str
 ) -> list[SubmittedFile]:
-    """Return the files for a grading that runs the notebook, in one layout for all submissions."""
+    """Return the files that a grading with the notebook reads, in the same layout for all submissions."""
     graded = [*extra, *(replace(file, path=SOURCE / file.path) for file in source)]
     if notebook is not None:
         graded.append(SubmittedFile(PurePosixPath(f"{assignment}.ipynb"), notebook))
     return graded
 
 
-def _unused(
+def _unused_names(
     files: Sequence[SubmittedFile],
     skipped: Sequence[SkippedFile],
     answer: Answer,
@@ -197,7 +200,7 @@ def _unused(
     notebook = answer.notebook.file.path if answer.notebook is not None else None
     root = notebook.parent if notebook is not None else answer.tree.root if answer.tree is not None else PurePosixPath()
     exercises = exercises_of(assignment)
-    released = exercises.other_files if exercises is not None else frozenset()
+    released_paths = exercises.other_files if exercises is not None else frozenset()
     names = []
     for file in files:
         relative_path = file.path.relative_to(root) if file.path.is_relative_to(root) else file.path
@@ -205,14 +208,14 @@ def _unused(
         if not (
             is_source
             or file.path == notebook
-            or relative_path in released
+            or relative_path in released_paths
             or relative_path.parts[0] == "ws"
             or relative_path == TIMESTAMP
         ):
             names.append(str(file.path))
     names = sorted(names) + [file.sentence for file in skipped]
-    unlisted = len(names) - MAX_LISTED
-    return tuple(names if unlisted <= 0 else [*names[:MAX_LISTED], f"{unlisted} more"])
+    unlisted_count = len(names) - MAX_LISTED
+    return tuple(names if unlisted_count <= 0 else [*names[:MAX_LISTED], f"{unlisted_count} more"])
 
 
 def _require_tree(files: Sequence[SubmittedFile]) -> None:

@@ -1,6 +1,6 @@
 """Finds the answer in a submission: the notebook and the source tree that count.
 
-If a submission contains several candidates, the one counts whose answers include the answers of all others. So an
+If a submission contains several candidates, the one whose answers include the answers of all others counts. So an
 edited copy always wins over an untouched release. If two candidates have different answers, the submission is unclear.
 """
 
@@ -34,7 +34,7 @@ class Tree:
 
     folder: PurePosixPath  # the folder with the packages, such as `ws/src`
     root: PurePosixPath  # the assignment's folder, which contains `folder`
-    packages: frozenset[PurePosixPath]  # the folders of its packages, if nothing else in `folder` belongs to it
+    packages: frozenset[PurePosixPath]  # the folders of its packages if only they belong to it; else empty
     files: Mapping[PurePosixPath, SubmittedFile]
     answers: Answers
 
@@ -54,7 +54,7 @@ class Notebook:
 
     @property
     def root(self) -> PurePosixPath:
-        """Its folder."""
+        """The folder that contains the notebook."""
         return self.file.path.parent
 
 
@@ -72,7 +72,7 @@ def find_answer(
     """Find the answer among the files of a submission.
 
     Raises:
-        StudentError: it contains no answer, the answer cannot be read, or two candidates have different answers.
+        StudentError: the submission contains no answer, one that cannot be read, or several different ones.
     """
     trees = _trees(files, assignment, exercises)
     notebooks = _notebooks(files, trees, assignment, exercises)
@@ -84,7 +84,7 @@ def find_answer(
     for file in skipped:
         if _is_needed(file.path, tree):
             raise unsafe(file.sentence)
-    is_complete = tree is not None and exercises is not None and exercises.is_complete(_data(tree))
+    is_complete = tree is not None and exercises is not None and exercises.is_complete(_contents_of(tree))
 
     def preference(notebook: Notebook) -> tuple[bool, bool, int, str]:
         path = notebook.file.path
@@ -130,11 +130,11 @@ def _is_needed(path: PurePosixPath, tree: Tree | None) -> bool:
     return path.name in ("ws", "src") or "src" in path.parts
 
 
-C = TypeVar("C", Tree, Notebook)
+Candidate = TypeVar("Candidate", Tree, Notebook)
 
 
-def _choose(candidates: Sequence[C], preference: Callable[[C], object], label: str) -> C | None:
-    """Return the candidate that counts, or None. Raises StudentError if that is unclear."""
+def _choose(candidates: Sequence[Candidate], preference: Callable[[Candidate], object], label: str) -> Candidate | None:
+    """Return the candidate that counts, or None without candidates. Raises StudentError if several could count."""
     fullest = [c for c in candidates if not any(c.answers.items() < other.answers.items() for other in candidates)]
     different = [c for c in fullest if c.answers != fullest[0].answers]
     if different:
@@ -216,24 +216,24 @@ def _tree_answers(files: Mapping[PurePosixPath, SubmittedFile], exercises: Exerc
 def _notebooks(
     files: Sequence[SubmittedFile], trees: Sequence[Tree], assignment: str, exercises: Exercises | None
 ) -> list[Notebook]:
-    """Return the notebooks of the assignment, by name or by cells, or the unknown notebooks if none matches."""
+    """Return the notebooks whose names or cells are the assignment's, or else those that match no assignment."""
     folders = {tree.folder for tree in trees if tree.folder.parts}
     by_name, by_cells, others = [], [], []
     for file in files:
         if not is_notebook(file.path.name) or folders.intersection((file.path, *file.path.parents)):
             continue
-        notebook, is_of_chapter = _read(file, exercises)
+        notebook, has_chapter_cell = _read_notebook(file, exercises)
         if names_assignment(file.path.name, assignment):
             by_name.append(notebook)
-        elif is_of_chapter:
+        elif has_chapter_cell:
             by_cells.append(notebook)
         elif not any(names_assignment(file.path.name, other) for other in course_paths.assignments()):
             others.append(notebook)
     return by_name + by_cells or others
 
 
-def _read(file: SubmittedFile, exercises: Exercises | None) -> tuple[Notebook, bool]:
-    """Return a notebook, and whether a cell of it is one of the chapter's exercises."""
+def _read_notebook(file: SubmittedFile, exercises: Exercises | None) -> tuple[Notebook, bool]:
+    """Return a notebook, and whether one of its cells comes from the chapter."""
     try:
         cells = tuple(read_cells(file.data))
     except ValueError as error:
@@ -241,24 +241,24 @@ def _read(file: SubmittedFile, exercises: Exercises | None) -> tuple[Notebook, b
     if exercises is None:
         return Notebook(file, cells, {"": hashlib.sha256(file.data).hexdigest()}), False
     answers: dict[str, str] = {}
-    is_of_chapter = False
+    has_chapter_cell = False
     for cell in cells:
         written, name = written_file(cell["source"]), exercises.grade_id(cell)
         target = None
         if written is not None and written[0].is_relative_to(SOURCE):
             target = written[0].relative_to(SOURCE)
         if written is not None and target is not None and target in exercises.targets:
-            is_of_chapter = True
+            has_chapter_cell = True
             if not is_stub(written[1], exercises.targets[target]):
                 answers[str(target)] = written[1].strip()
         elif name in exercises.answers:
-            is_of_chapter = True
+            has_chapter_cell = True
             if not same_text(cell["source"], exercises.answers[name]):
                 answers[name] = cell["source"].strip()
         elif name in exercises.locked:
-            is_of_chapter = True
-    return Notebook(file, cells, answers), is_of_chapter
+            has_chapter_cell = True
+    return Notebook(file, cells, answers), has_chapter_cell
 
 
-def _data(tree: Tree) -> dict[PurePosixPath, bytes]:
+def _contents_of(tree: Tree) -> dict[PurePosixPath, bytes]:
     return {path: file.data for path, file in tree.files.items()}

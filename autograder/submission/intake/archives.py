@@ -21,17 +21,17 @@ from autograder.submission.intake.files import MAX_READ_BYTES, MAX_UNPACKED_BYTE
 from autograder.submission.intake.ignored import IgnoredPaths
 from autograder.submission.intake.names import reading_rank
 
-# Archives that the standard library cannot open, by their first bytes.
+# Archives that the standard library cannot open, identified by their first bytes.
 UNSUPPORTED = {b"7z\xbc\xaf\x27\x1c": "7z", b"Rar!\x1a\x07": "RAR", b"\x28\xb5\x2f\xfd": "Zstandard"}
 MAX_DIRECTORY = 32 * 1024 * 1024  # bytes of a zip's list of files
-MAX_NAME = 1024  # characters; longer or deeper paths are never an answer, and examining them is slow
-MAX_FOLDERS = 64
+MAX_NAME = 1024  # characters of a path; a longer or deeper path never belongs to an answer, and is slow to examine
+MAX_FOLDERS = 64  # folders in a path
 MAX_DICTIONARY = 128 * 1024 * 1024  # bytes of memory to decompress xz
 _EXECUTABLE = 0o100
-_COMPRESSED: dict[bytes, Callable[[IO[bytes]], Any]] = {
+_STREAM_OPENERS: dict[bytes, Callable[[IO[bytes]], Any]] = {
     b"\x1f\x8b": lambda raw: gzip.GzipFile(fileobj=raw),
     b"BZh": lambda raw: bz2.BZ2File(raw),
-    b"\xfd7zXZ\x00": lambda raw: _decompressed(raw, lzma.LZMADecompressor(memlimit=MAX_DICTIONARY)),
+    b"\xfd7zXZ\x00": lambda raw: _decompressing_stream(raw, lzma.LZMADecompressor(memlimit=MAX_DICTIONARY)),
 }
 # Errors of `zipfile`, `tarfile` and the decompressors for damaged, encrypted or unknown data.
 READ_ERRORS = (
@@ -42,7 +42,7 @@ READ_ERRORS = (
 
 @dataclass(frozen=True)
 class Member:
-    """A member of an archive. `problem` says why it is skipped if it is a link or a special file."""
+    """A member of an archive. If it is a link or a special file, `problem` is the reason why it is skipped."""
 
     path: PurePosixPath
     size: int
@@ -52,7 +52,7 @@ class Member:
 
 
 def unsupported_kind(head: bytes) -> str:
-    """Return the format of an archive that cannot be opened here, by its first bytes, or an empty string."""
+    """Return the format that the first bytes of a file show, if it cannot be opened here, or else an empty string."""
     return next((kind for magic, kind in UNSUPPORTED.items() if head.startswith(magic)), "")
 
 
@@ -73,7 +73,7 @@ def read_archive(file: IO[bytes], name: str, prefix: PurePosixPath, contents: Co
     if head.startswith(b"PK"):
         _read_zip(file, prefix, contents)
         return
-    opener = next((opener for magic, opener in _COMPRESSED.items() if head.startswith(magic)), None)
+    opener = next((opener for magic, opener in _STREAM_OPENERS.items() if head.startswith(magic)), None)
 
     def open_stream() -> IO[bytes]:
         file.seek(0)
@@ -106,14 +106,14 @@ def _read_zip(file: IO[bytes], prefix: PurePosixPath, contents: Contents) -> Non
         infos = [(safe_path(info.filename), info) for info in archive.infolist()]
         for _ in infos:
             contents.scan()
-        ignored = IgnoredPaths([path for path, _ in infos])
+        ignored_paths = IgnoredPaths([path for path, _ in infos])
 
         def member(path: PurePosixPath, info: zipfile.ZipInfo) -> Member:
             mode = info.external_attr >> 16
             problem = "" if stat.S_IFMT(mode) in (0, stat.S_IFREG) else "is not a regular file"
             return Member(path, info.file_size, bool(mode & _EXECUTABLE), lambda: _inflate(archive, info), problem)
 
-        members = (member(path, info) for path, info in infos if not info.is_dir() and path not in ignored)
+        members = (member(path, info) for path, info in infos if not info.is_dir() and path not in ignored_paths)
         _add(sorted(members, key=lambda member: reading_rank(member.path)), prefix, contents)
 
 
@@ -150,16 +150,16 @@ def _inflate_in_steps(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
     """Decompress in steps. `zipfile` would decompress everything at once, and 4 KB of bzip2 can become 4 GB."""
     as_stored = copy.copy(info)
     as_stored.compress_type, as_stored.file_size = zipfile.ZIP_STORED, info.compress_size
-    del as_stored.CRC  # the checksum of the content, which is compared below
+    del as_stored.CRC  # the checksum of the decompressed content, which is verified below
     with archive.open(as_stored) as packed:
         if info.compress_type == zipfile.ZIP_BZIP2:
-            data = _decompressed(packed, bz2.BZ2Decompressor()).read(info.file_size)
+            data = _decompressing_stream(packed, bz2.BZ2Decompressor()).read(info.file_size)
         else:
             packed.read(2)  # the version of the LZMA SDK
             properties = packed.read(*struct.unpack("<H", packed.read(2)))
             decompressor = lzma.LZMADecompressor(lzma.FORMAT_ALONE, memlimit=MAX_DICTIONARY)
             head = properties + bytes(8 * [0xFF])  # the size is unknown
-            data = _decompressed(packed, decompressor, head).read(info.file_size)
+            data = _decompressing_stream(packed, decompressor, head).read(info.file_size)
     if zlib.crc32(data) != info.CRC:
         raise zipfile.BadZipFile(f"{info.filename} is not what the archive says")
     return data
@@ -177,10 +177,10 @@ def _read_tar(open_stream: Callable[[], IO[bytes]], prefix: PurePosixPath, conte
             paths.append(safe_path(info.name))
             if not info.isdir():
                 files.append(len(paths) - 1)
-    ignored = IgnoredPaths(paths)
-    included = [number for number in files if paths[number] not in ignored]
+    ignored_paths = IgnoredPaths(paths)
+    included_numbers = [number for number in files if paths[number] not in ignored_paths]
     for are_possible_answers in (True, False):
-        pending = {number for number in included if (reading_rank(paths[number]) == 0) is are_possible_answers}
+        pending = {number for number in included_numbers if (reading_rank(paths[number]) == 0) is are_possible_answers}
         if not pending:
             continue
         with tarfile.open(fileobj=open_stream(), mode="r|") as archive:
@@ -211,7 +211,7 @@ def _add(members: Iterable[Member], prefix: PurePosixPath, contents: Contents) -
 
 
 class _LimitedStream(io.RawIOBase):
-    """A stream that fails after `MAX_READ_BYTES`, or when the submission's archives have become too large in all."""
+    """A stream that fails after `MAX_READ_BYTES`, or as soon as the submission's archives are too large in all."""
 
     def __init__(self, raw: IO[bytes], contents: Contents) -> None:
         self._raw, self._contents, self._count = raw, contents, 0
@@ -231,7 +231,7 @@ class _LimitedStream(io.RawIOBase):
         return len(data)
 
 
-def _decompressed(raw: IO[bytes], decompressor: Any, head: bytes = b"") -> IO[bytes]:
+def _decompressing_stream(raw: IO[bytes], decompressor: Any, head: bytes = b"") -> IO[bytes]:
     """Return a stream that decompresses `head` and the rest of the file in steps."""
     return io.BufferedReader(_DecompressedStream(raw, decompressor, head))
 

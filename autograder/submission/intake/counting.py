@@ -1,7 +1,7 @@
-"""Selects the files of a submission that count: those in `ws/src`, which `check` reads, too.
+"""Selects the files of a submission that count: those in `ws/src`, which `check` also reads.
 
-A file that is missing or still as released is taken from the notebook's cell that writes it. If other code makes the
-file, the notebook has to run.
+A file that is missing, or unchanged since its release, is taken from the cell of the notebook that writes it. If other
+code creates the file, the notebook has to run.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ class Cells:
     """The effects of a notebook's code cells.
 
     Attributes:
-        texts: the text of each file below `ws/src` that a cell writes. Of several cells, the last one with the fewest
-            stubs counts.
+        texts: the text of each file below `ws/src` that a cell writes. If several cells write it, the last
+            one with the fewest stubs counts.
         has_other_code: whether a cell that the student wrote does anything else.
     """
 
@@ -58,28 +58,28 @@ def read_code(cells: Sequence[Cell], exercises: Exercises) -> Cells:
                 if path not in texts or _stub_count(written[1]) <= _stub_count(current):
                     texts[path] = written[1]
         elif source.strip() and source.strip() not in exercises.course_cells:
-            answered = name in exercises.answers and same_text(source, exercises.answers[name])
-            has_other_code = has_other_code or not (answered or cell["cell_type"] == "markdown")
+            is_unanswered = name in exercises.answers and same_text(source, exercises.answers[name])
+            has_other_code = has_other_code or not (is_unanswered or cell["cell_type"] == "markdown")
     return Cells(texts, has_other_code)
 
 
 def with_given(source: Files, exercises: Exercises) -> dict[PurePosixPath, SubmittedFile]:
-    """Return a source tree together with those packages of the chapter that it does not contain."""
+    """Return a source tree, extended by the given packages of the chapter that it lacks."""
     existing = {path.parts[0] for path in source}
     return {**{p: file for p, file in exercises.given.items() if p.parts[0] not in existing}, **source}
 
 
 def count(source: Files, cells: Cells, exercises: Exercises) -> GradedPackages:
     """Return the packages to grade from a source tree and the cells of a notebook, without running it."""
-    changed = {path for path, file in source.items() if not exercises.is_as_released(path, file.data)}
-    missing = (exercises.targets.keys() | exercises.makes) - changed
-    if exercises.makes_unknown_files or (missing and (cells.has_other_code or missing & exercises.makes)):
+    changed_paths = {path for path, file in source.items() if not exercises.is_as_released(path, file.data)}
+    missing_paths = (exercises.targets.keys() | exercises.makes) - changed_paths
+    if exercises.makes_unknown_files or (missing_paths and (cells.has_other_code or missing_paths & exercises.makes)):
         return GradedPackages(None)
     files = with_given(source, exercises)
     from_cells = {
         path: text
         for path, text in cells.texts.items()
-        if path not in changed and not (path in files and is_stub(text, exercises.targets.get(path, "")))
+        if path not in changed_paths and not (path in files and is_stub(text, exercises.targets.get(path, "")))
     }
     _add_without_conflicts(
         files, (SubmittedFile(path, text.encode("utf-8", "replace")) for path, text in from_cells.items())
@@ -89,10 +89,10 @@ def count(source: Files, cells: Cells, exercises: Exercises) -> GradedPackages:
         text = cells.texts.get(path)
         if text is None or is_stub(text, exercises.targets[path]):
             continue
-        if path in changed and not same_text(text, text_of(source[path].data)):
+        if path in changed_paths and not same_text(text, text_of(source[path].data)):
             notices.append(difference_notice(path))
         elif path in from_cells and source:
-            notices.append(_from_cell(path, exists=path in source))
+            notices.append(_cell_notice(path, exists=path in source))
     return GradedPackages(tuple(files[path] for path in sorted(files)), tuple(notices))
 
 
@@ -102,14 +102,14 @@ def merge(source: Files, written: Sequence[SubmittedFile], exercises: Exercises)
     Changed files of the source tree take precedence, because `check` read them.
     """
     by_path = {file.path: file for file in written}
-    changed = {path: file for path, file in source.items() if not exercises.is_as_released(path, file.data)}
-    files = dict(changed)
-    _add_without_conflicts(files, (file for path, file in by_path.items() if path not in changed))
-    expected = exercises.targets.keys() | exercises.makes
+    changed_files = {path: file for path, file in source.items() if not exercises.is_as_released(path, file.data)}
+    files = dict(changed_files)
+    _add_without_conflicts(files, (file for path, file in by_path.items() if path not in changed_files))
+    expected_paths = exercises.targets.keys() | exercises.makes
     notices = [
         difference_notice(path)
-        for path in sorted(expected & changed.keys() & by_path.keys())
-        if not same_text(text_of(by_path[path].data), text_of(changed[path].data))
+        for path in sorted(expected_paths & changed_files.keys() & by_path.keys())
+        if not same_text(text_of(by_path[path].data), text_of(changed_files[path].data))
     ]
     return GradedPackages(tuple(files[path] for path in sorted(files)), tuple(notices))
 
@@ -122,7 +122,7 @@ def difference_notice(path: PurePosixPath) -> str:
     )
 
 
-def _from_cell(path: PurePosixPath, *, exists: bool) -> str:
+def _cell_notice(path: PurePosixPath, *, exists: bool) -> str:
     reason = "the file was still the released one" if exists else "there was no such file"
     return f"{SOURCE / path} was taken from the notebook's cell: {reason}. Run the cell before check(...)."
 

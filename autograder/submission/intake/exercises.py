@@ -28,11 +28,11 @@ class Exercises:
 
     Attributes:
         targets: the released text of each file that an exercise cell writes by `%%writefile`.
-        makes: the files that other cells make or change.
-        makes_unknown_files: whether an exercise cell makes files that no metadata names.
+        makes: the files that other cells create or change.
+        makes_unknown_files: whether an exercise cell creates files that no metadata names.
         answers: the released text of each cell that students write in, by its grade id.
         locked: the grade ids of the cells that students may not change.
-        ids: the grade id of each of these cells, by the cell's own id. Tools that drop metadata keep the id.
+        ids: the grade ids of all these cells, by cell id. Tools that drop metadata keep the cell id.
         course_cells: the texts of the course's own code cells.
         given: the files that the chapter gives.
         other_files: the chapter's other files, with paths relative to its folder.
@@ -50,7 +50,7 @@ class Exercises:
 
     @property
     def packages(self) -> frozenset[str]:
-        """The folders of `src` that the chapter gives or its exercises fill."""
+        """The names of the packages in `src` that the chapter gives or that its exercises write."""
         return frozenset(path.parts[0] for path in (*self.targets, *self.makes, *self.given))
 
     def grade_id(self, cell: Cell) -> str:
@@ -65,10 +65,10 @@ class Exercises:
         return is_stub(text, self.targets.get(path, ""))
 
     def is_complete(self, source: Mapping[PurePosixPath, bytes]) -> bool:
-        """Return whether a source tree contains each file that students write, and none is still as released."""
-        expected = self.targets.keys() | self.makes
+        """Return whether a source tree contains each file that students write, with changes since the release."""
+        expected_paths = self.targets.keys() | self.makes
         return not self.makes_unknown_files and all(
-            p in source and not self.is_as_released(p, source[p]) for p in expected
+            p in source and not self.is_as_released(p, source[p]) for p in expected_paths
         )
 
 
@@ -96,7 +96,7 @@ def exercises_of(assignment: str) -> Exercises | None:
             course_cells.add(cell["source"].strip())
         if not marks.get("solution"):
             continue
-        answers[name] = released = _released(cell)
+        answers[name] = released = _released_text(cell)
         written = written_file(released)
         if written is not None and written[0].is_relative_to(SOURCE):
             targets[written[0].relative_to(SOURCE)] = written[1]
@@ -110,15 +110,15 @@ def exercises_of(assignment: str) -> Exercises | None:
         frozenset(locked),
         ids,
         frozenset(course_cells),
-        {p: SubmittedFile(p, file.read_bytes(), os.access(file, os.X_OK)) for p, file in _below(folder / SOURCE)},
-        frozenset(p for p, _ in _below(folder) if not (p.is_relative_to(SOURCE) or is_notebook(p.name))),
+        {p: SubmittedFile(p, file.read_bytes(), os.access(file, os.X_OK)) for p, file in _files_below(folder / SOURCE)},
+        frozenset(p for p, _ in _files_below(folder) if not (p.is_relative_to(SOURCE) or is_notebook(p.name))),
     )
 
 
 def grade_id(cell: Mapping[str, Any]) -> str:
     """Return the grade id in a cell's metadata, or an empty string."""
-    marks = cell["metadata"].get("nbgrader")
-    name = marks.get("grade_id") if isinstance(marks, dict) else None
+    nbgrader = cell["metadata"].get("nbgrader")
+    name = nbgrader.get("grade_id") if isinstance(nbgrader, dict) else None
     return name if isinstance(name, str) else ""
 
 
@@ -132,25 +132,25 @@ def is_stub(text: str, released: str) -> bool:
     return STILL_TO_BE_WRITTEN in released and text.count(STILL_TO_BE_WRITTEN) >= released.count(STILL_TO_BE_WRITTEN)
 
 
-def _released(cell: Cell) -> str:
+def _released_text(cell: Cell) -> str:
     """Return the text of a solution cell as nbgrader releases it, with a stub in place of each solution."""
     stub = CODE_STUB if cell["cell_type"] == "code" else TEXT_STUB
     lines: list[str] = []
-    inside = replaced = False
+    is_inside = has_solution = False
     for line in cell["source"].split("\n"):
-        if not inside and BEGIN in line:
-            inside = replaced = True
+        if not is_inside and BEGIN in line:
+            is_inside = has_solution = True
             indent = line[: len(line) - len(line.lstrip())]
             lines += [indent + part for part in stub.split("\n")]
-        elif inside and END in line:
-            inside = False
-        elif not inside:
+        elif is_inside and END in line:
+            is_inside = False
+        elif not is_inside:
             lines.append(line)
-    return "\n".join(lines) if replaced else stub
+    return "\n".join(lines) if has_solution else stub
 
 
-def _below(top: Path) -> Iterator[tuple[PurePosixPath, Path]]:
-    """Yield the files below a folder of the course, without those that tools create."""
+def _files_below(top: Path) -> Iterator[tuple[PurePosixPath, Path]]:
+    """Yield the relative and full paths of the files below a folder of the course, except those that tools create."""
     for folder, folders, files in os.walk(top):
         folders[:] = [name for name in folders if not is_ignored(name)]
         for name in files:

@@ -15,10 +15,10 @@ from autograder.submission.intake.notebooks import without_outputs
 
 MAX_FILES = 2000
 MAX_FILE_BYTES = 16 * 1024 * 1024
-MAX_WRAPPED_BYTES = 64 * 1024 * 1024  # for a notebook whose outputs are dropped, and for an archive in an archive
+MAX_WRAPPED_BYTES = 64 * 1024 * 1024  # limit for a notebook whose outputs are dropped, and for an archive in an archive
 MAX_TOTAL_BYTES = 64 * 1024 * 1024
-MAX_READ_BYTES = 256 * 1024 * 1024  # that are read or decompressed
-# The output of decompressing all archives. A tar is read up to three times: its names, possible answers, the rest.
+MAX_READ_BYTES = 256 * 1024 * 1024  # read or decompressed, from one archive and for all files
+# Limit for the decompressed bytes of all archives. A tar is read up to three times: names, possible answers, the rest.
 MAX_UNPACKED_BYTES = 4 * MAX_READ_BYTES
 MAX_SCANNED = 100_000  # files and folders
 MAX_DEPTH = 16  # parts of a path
@@ -27,7 +27,7 @@ MAX_PATH_BYTES = 200  # file systems allow 255 for each part
 
 @dataclass(frozen=True)
 class SubmittedFile:
-    """A file of a submission, by its path below the root or a folder of it."""
+    """A file of a submission. Its path is relative to the root of the submission, or to a folder in it."""
 
     path: PurePosixPath
     data: bytes
@@ -39,8 +39,8 @@ class SkippedFile:
     """A file of a submission that was not read."""
 
     path: PurePosixPath
-    reason: str  # the sentence after the path
-    whole_sentence: str = ""  # a sentence without the path, used instead
+    reason: str  # the part of the sentence after the path
+    whole_sentence: str = ""  # if not empty, a sentence that replaces the path and the reason
     may_contain_answer: bool = False  # whether it is an archive or a notebook
 
     @property
@@ -51,12 +51,12 @@ class SkippedFile:
 
 @dataclass
 class Contents:
-    """The files of a submission, and those that were left out. Bytes are counted before they are read."""
+    """The files of a submission, and those that were skipped. Bytes are counted before they are read."""
 
     files: list[SubmittedFile] = field(default_factory=list)
     skipped: list[SkippedFile] = field(default_factory=list)
     bytes_in_memory: int = 0
-    bytes_read: int = 0  # read or decompressed
+    bytes_read: int = 0  # including decompressed bytes
     bytes_unpacked: int = 0  # decompressed, including those of skipped files
     scanned: int = 0
     archives: int = 0
@@ -73,7 +73,7 @@ class Contents:
         self.bytes_in_memory -= len(file.data)
 
     def drop(self, first: int) -> None:
-        """Remove the files from the index `first` on."""
+        """Remove the files from index `first` onwards."""
         self.bytes_in_memory -= sum(len(file.data) for file in self.files[first:])
         del self.files[first:]
 
@@ -84,8 +84,8 @@ class Contents:
 
     def add(self, path: PurePosixPath, size: int, read: Callable[[], bytes], executable: bool = False) -> None:
         """Read a file, or skip it if it exceeds a limit."""
-        wrapped = is_notebook(path.name) or is_archive(path.name)
-        limit = MAX_WRAPPED_BYTES if wrapped else MAX_FILE_BYTES
+        is_wrapped = is_notebook(path.name) or is_archive(path.name)
+        limit = MAX_WRAPPED_BYTES if is_wrapped else MAX_FILE_BYTES
         if len(path.parts) > MAX_DEPTH:
             self.skip(path, "", f"folders are nested more than {MAX_DEPTH} deep")
         elif len(os.fsencode(path)) > MAX_PATH_BYTES:

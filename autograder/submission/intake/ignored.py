@@ -8,16 +8,16 @@ from pathlib import PurePosixPath
 
 from autograder.submission.intake.files import MAX_DEPTH, unsafe
 
-# The output of colcon, files of Python, Jupyter, editors and version control, and files that systems add to folders.
+# The output of colcon, the files of Python, Jupyter and version control, and those that operating systems add.
 IGNORED = frozenset(
     {"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".pytest_cache", ".mypy_cache", ".ruff_cache"}
     | {".hypothesis", ".tox", ".nox", ".cache", ".git", ".svn", ".hg", ".venv", "venv", "node_modules", ".Trash"}
     | {"__MACOSX", ".DS_Store", "Thumbs.db", "desktop.ini", ".Spotlight-V100", ".fseventsd", "@eaDir"}
 )
-_APPLE_DOUBLE = "._"
-# A folder with one of these is an environment of Python or conda, whatever its name.
+_APPLE_DOUBLE = "._"  # the prefix of files in which macOS stores attributes of other files
+# A folder that contains one of these is an environment of Python or conda, whatever its name.
 _ENVIRONMENT_MARKS = frozenset({"pyvenv.cfg", "conda-meta"})
-# The files of an environment in the assignment's own folder.
+# If a folder with such a mark also contains an answer, only these entries belong to the environment.
 _ENVIRONMENT_PARTS = frozenset(
     {"bin", "lib", "lib64", "include", "share", "etc", "pyvenv.cfg", "conda-meta", "Scripts", "Lib", "Include"}
 )
@@ -27,7 +27,7 @@ MAX_ENVIRONMENTS = 1000
 
 
 def is_ignored(name: str) -> bool:
-    """Return whether a file or folder of this name is never part of a submission."""
+    """Return whether a file or folder with this name is never part of a submission."""
     return name in IGNORED or name.startswith(_APPLE_DOUBLE)
 
 
@@ -55,8 +55,8 @@ class _Folder:
 class IgnoredPaths:
     """Decides for each path of an archive whether it is part of the submission.
 
-    Each path is examined once, only as deep as answers can be. Raises StudentError if it has more environments than
-    is plausible.
+    Each path is examined once, and only to the depth that answers can have. Raises StudentError if the archive
+    contains more environments than is plausible.
     """
 
     def __init__(self, paths: Iterable[PurePosixPath]) -> None:

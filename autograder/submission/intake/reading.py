@@ -17,16 +17,16 @@ from autograder.submission.intake.ignored import environment_parts, is_ignored
 from autograder.submission.intake.names import is_archive, is_notebook, reading_rank
 
 MAX_ARCHIVES = 20  # in a submission, at any depth
-MAX_NESTING = 3
+MAX_NESTING = 3  # levels of archives in archives that are opened
 _EXECUTABLE = 0o100
 
 
 def read_contents(path: Path, assignment: str) -> Contents:
-    """Read the files of a submission, with paths below its root. Files of an inner archive are below its name.
+    """Read the files of a submission, with paths relative to its root. Those of an inner archive begin with its path.
 
     Raises:
         UsageError: `path` does not exist.
-        StudentError: it cannot be read, or is unsafe as a whole.
+        StudentError: the submission cannot be read, or is unsafe as a whole.
     """
     contents = Contents()
     if path.is_dir():
@@ -67,7 +67,7 @@ def _read_file(path: Path, contents: Contents) -> None:
 
 
 def _read_folder(root: Path, contents: Contents, *, unpack: bool = False) -> None:
-    """Read the files below a folder. With `unpack`, replace archives by their files."""
+    """Read the files below a folder. With `unpack`, replace archives with the files in them."""
     pending, files = [root], []
     while pending:
         folder = pending.pop()
@@ -77,7 +77,7 @@ def _read_folder(root: Path, contents: Contents, *, unpack: bool = False) -> Non
             contents.scan()
             if is_ignored(child.name) or child.name in environment:
                 continue
-            path, info = PurePosixPath(child.relative_to(root)), _info(child)
+            path, info = PurePosixPath(child.relative_to(root)), _status(child)
             if info is None:
                 contents.skip(path, "", f"the path {str(path)[:60]!r}... is longer than this system can open")
             elif stat.S_ISREG(info.st_mode):
@@ -96,7 +96,7 @@ def _read_folder(root: Path, contents: Contents, *, unpack: bool = False) -> Non
             contents.add(path, info.st_size, child.read_bytes, bool(info.st_mode & _EXECUTABLE))
 
 
-def _info(path: Path) -> os.stat_result | None:
+def _status(path: Path) -> os.stat_result | None:
     """Return the status of a path, or None if it is too long for the system."""
     try:
         return path.lstat()
@@ -107,7 +107,7 @@ def _info(path: Path) -> os.stat_result | None:
 
 
 def _open_archives(contents: Contents, nesting: int) -> None:
-    """Replace archives by their files."""
+    """Replace archives with the files in them."""
     packed = [file for file in contents.files if _may_contain_answer(file.path)]
     for file in packed:
         contents.remove(file)
@@ -120,7 +120,7 @@ def _open_archives(contents: Contents, nesting: int) -> None:
 
 
 def _may_contain_answer(path: PurePosixPath) -> bool:
-    """Return whether a file is an archive that may contain an answer. Those in source trees are data."""
+    """Return whether a file is an archive that may contain an answer. An archive in a source tree is data."""
     return is_archive(path.name) and "src" not in path.parts
 
 

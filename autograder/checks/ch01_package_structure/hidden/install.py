@@ -104,9 +104,9 @@ def test_grows(extended: ExtendedPackage) -> None:
     """A new subpackage, launch file and configuration are installed without a change of setup.py."""
     missing = extended.missing
     expect(not missing, f"The new {', '.join(missing)} stayed behind.", fraction=1.0 - len(missing) / 4)
-    given = contract.DANCE_LAUNCH, contract.DANCE_CONFIG
-    lost = [name for name in given if extended.installation.read(name) is None]
-    expect(not lost, f"When a new file lay beside it, {' and '.join(lost)} stayed behind.", fraction=0.5)
+    given_files = contract.DANCE_LAUNCH, contract.DANCE_CONFIG
+    lost_files = [name for name in given_files if extended.installation.read(name) is None]
+    expect(not lost_files, f"When a new file lay beside it, {' and '.join(lost_files)} stayed behind.", fraction=0.5)
 
 
 @check(points=1, covers=("tests-stay", "modules", "program"), needs=("builds",), doc=contract.SUBPACKAGES)

@@ -1,4 +1,4 @@
-"""Checks of package.xml, which colcon and rosdep read, of the package that the student makes."""
+"""Checks of the file package.xml, which colcon and rosdep read, in the package that the student makes."""
 
 from __future__ import annotations
 
@@ -51,16 +51,16 @@ def test_description(workspace: Workspace) -> None:
 @hint(*DECLARE_HINTS)
 def test_run_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the package's modules import, so that it is there when they run."""
-    needed = imports.imported(source_of(workspace, contract.SQUARE_DANCE), without=("test", "launch"))
-    expect_declared(needed, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
+    needed_imports = imports.imported(source_of(workspace, contract.SQUARE_DANCE), without=("test", "launch"))
+    expect_declared(needed_imports, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
 
 
 @check(points=1, covers="dependencies", after=("manifest",), doc=contract.ROSDEP)
 @hint(*DECLARE_HINTS)
 def test_launch_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the launch file imports, by <exec_depend> or <depend>."""
-    needed = imports.imported(source_of(workspace, contract.SQUARE_DANCE), within=("launch",))
-    expect_declared(needed, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
+    needed_imports = imports.imported(source_of(workspace, contract.SQUARE_DANCE), within=("launch",))
+    expect_declared(needed_imports, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
 
 
 @check(points=1, covers="dependencies", after=("manifest",), doc=contract.ROSDEP)
@@ -69,7 +69,7 @@ def test_test_dependencies(workspace: Workspace) -> None:
     """package.xml declares what test/ imports, by <test_depend>."""
     source = source_of(workspace, contract.SQUARE_DANCE)
     runtime_modules = {item.module for item in imports.imported(source, without=("test",))}
-    needed = [item for item in imports.imported(source, within=("test",)) if item.module not in runtime_modules]
-    declared = read_manifest(workspace, contract.SQUARE_DANCE)
-    expect_declared(needed, declared.needs("exec", "test"))
-    expect_rosdep_key(declared.needs(), "pytest")
+    needed_imports = [item for item in imports.imported(source, within=("test",)) if item.module not in runtime_modules]
+    package_manifest = read_manifest(workspace, contract.SQUARE_DANCE)
+    expect_declared(needed_imports, package_manifest.needs("exec", "test"))
+    expect_rosdep_key(package_manifest.needs(), "pytest")

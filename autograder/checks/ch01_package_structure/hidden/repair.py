@@ -21,7 +21,7 @@ from autograder.checks.ch01_package_structure.support.assertions import (
 )
 
 check = group("repair")
-MISSING_AT_FIRST = 4  # numpy and the three packages of the launch file
+MISSING_AT_FIRST = 4  # undeclared at first: numpy and the three packages that the launch file imports
 
 
 @check(points=2, covers="alarm-builds", doc=contract.COLCON)
@@ -61,8 +61,8 @@ def test_alarm_config(workspace: Workspace, installed_alarm: installed.Installed
 def test_alarm_dependencies(workspace: Workspace) -> None:
     """package.xml declares what its modules and its launch file import."""
     manifest = read_manifest(workspace, contract.WALL_ALARM)
-    needed = imports.imported(source_of(workspace, contract.WALL_ALARM), without=("test",))
-    expect_declared(needed, manifest.needs("exec"), MISSING_AT_FIRST)
+    needed_imports = imports.imported(source_of(workspace, contract.WALL_ALARM), without=("test",))
+    expect_declared(needed_imports, manifest.needs("exec"), MISSING_AT_FIRST)
     expect_rosdep_key(manifest.needs(), "numpy")
 
 

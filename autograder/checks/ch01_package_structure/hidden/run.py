@@ -1,4 +1,4 @@
-"""Checks of the dancer, started like with `ros2 run`."""
+"""Checks of the dancer, started as `ros2 run` starts it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class RunningDancer:
 
 @pytest.fixture(scope="module")
 def running_dancer(workspace: Workspace, seed: int) -> Iterator[RunningDancer]:
-    """A dancer that the checks of its start and of its dance share."""
+    """The dancer that the checks `starts` and `dances` share."""
     side = round(random.Random(f"{seed}:side").uniform(0.5, 1.5), 2)
     with robots.dancer(workspace, "-p", f"side:={side}") as harness:
         yield RunningDancer(harness, side)
@@ -71,6 +71,8 @@ def _side(text: bytes) -> float:
             side = student_yaml.load(text)["dancer"]["ros__parameters"]["side"]
         except (yaml.YAMLError, KeyError, TypeError):
             side = None
-    usable = isinstance(side, float) and 0.1 <= side <= 5.0
-    expect(usable, "The configuration does not set dancer: ros__parameters: side to a length in metres, such as 1.5.")
+    is_usable = isinstance(side, float) and 0.1 <= side <= 5.0
+    expect(
+        is_usable, "The configuration does not set dancer: ros__parameters: side to a length in metres, such as 1.5."
+    )
     return float(side or 0.0)

@@ -16,7 +16,7 @@ class ExtendedPackage:
     Attributes:
         installation: the files that colcon installed.
         shared: the new launch file and the new configuration.
-        modules: the new modules, each in its own subpackage; one is nested, with "test" within its name.
+        modules: the new modules, each in its own subpackage; one subpackage is nested, and its name contains "test".
     """
 
     installation: installed.Installed
@@ -35,7 +35,7 @@ def extend(workspace: Workspace, word: str) -> ExtendedPackage:
 
     Args:
         workspace: the built workspace, which is not changed.
-        word: the name of the new files, which no list written by hand contains.
+        word: a word for the names of the new files, which no handwritten list contains.
 
     Raises:
         StudentError: the copy does not build.

@@ -11,7 +11,7 @@ from autograder.checking import OK, CheckFailed, Diagnosis, StudentError, Worksp
 from autograder.checking.probes import files, imports, installed, manifest
 from autograder.checks.ch01_package_structure.support import contract
 
-MAX_BYTES = 1024 * 1024  # more of a file is not read
+MAX_BYTES = 1024 * 1024  # the largest part of a file that is read
 
 
 def source_of(workspace: Workspace, name: str) -> Path:
@@ -27,16 +27,21 @@ def expect_built(builds: Mapping[str, Diagnosis], name: str) -> None:
 
 
 def expect_manifest(workspace: Workspace, name: str) -> manifest.Manifest:
-    """Return a package's manifest; fail the check unless it describes a Python package of this name to ROS."""
-    parsed = manifest.read(source_of(workspace, name))
-    expect(parsed.format == 3, f'package.xml says format="{parsed.format}"; the format of ROS 2 today is 3.')
-    expect(parsed.name == name, f"package.xml names the package {parsed.name}, it should be {name}.")
-    build_type = parsed.build_type or "none, and colcon takes it for CMake"
+    """Return a package's manifest; fail the check unless it declares a Python package of this name."""
+    package_manifest = manifest.read(source_of(workspace, name))
     expect(
-        parsed.build_type == contract.BUILD_TYPE,
+        package_manifest.format == 3,
+        f'package.xml says format="{package_manifest.format}"; the format of ROS 2 today is 3.',
+    )
+    expect(
+        package_manifest.name == name, f"package.xml names the package {package_manifest.name}, it should be {name}."
+    )
+    build_type = package_manifest.build_type or "none, and colcon takes it for CMake"
+    expect(
+        package_manifest.build_type == contract.BUILD_TYPE,
         f"The build type in <export> is {build_type}; a Python package's is {contract.BUILD_TYPE}.",
     )
-    return parsed
+    return package_manifest
 
 
 def read_manifest(workspace: Workspace, name: str) -> manifest.Manifest:
@@ -50,29 +55,31 @@ def expect_licence(workspace: Workspace, name: str) -> None:
     expect(licences == (contract.LICENCE,), f"The licence is {', '.join(licences)}, it should be {contract.LICENCE}.")
 
 
-def expect_declared(needed: Collection[imports.Import], declared: Collection[str], missing_in_release: int = 0) -> None:
-    """Fail the check unless all imports are declared; some of them earn part of the points.
+def expect_declared(
+    needed_imports: Collection[imports.Import], declared_names: Collection[str], missing_in_release: int = 0
+) -> None:
+    """Fail the check unless all imports are declared; declaring some of them earns part of the points.
 
     Args:
-        needed: the imports.
-        declared: the names in package.xml that count.
-        missing_in_release: how many the released package does not declare; 0 if that is all of them.
+        needed_imports: the imports.
+        declared_names: the names in package.xml that count.
+        missing_in_release: how many imports the released package does not declare; 0 if it declares none of them.
     """
-    missing = imports.undeclared(needed, declared)
-    total = missing_in_release or len(needed)
+    missing = imports.undeclared(needed_imports, declared_names)
+    total = missing_in_release or len(needed_imports)
     fraction = max(0.0, 1.0 - len(missing) / total) if total else 0.0
     expect(not missing, f"package.xml does not declare everything: {imports.describe(missing)}.", fraction=fraction)
 
 
-def expect_rosdep_key(declared: Collection[str], module: str) -> None:
-    """Fail the check if package.xml names a module as pip does, even beside its rosdep key."""
+def expect_rosdep_key(declared_names: Collection[str], module: str) -> None:
+    """Fail the check if package.xml names a module as pip does, even if it also names the rosdep key."""
     key = imports.KEYS[module]
     message = f"package.xml declares {module}, a key that rosdep does not know: the key is {key} alone."
-    expect(module not in declared, message, fraction=0.75)
+    expect(module not in declared_names, message, fraction=0.75)
 
 
 def expect_executable(installation: installed.Installed, name: str) -> None:
-    """Fail the check unless a program is installed where `ros2 run` looks."""
+    """Fail the check unless a program is installed where `ros2 run` looks for it."""
     if name in installation.executables:
         return
     folder = f"lib/{installation.package}"
@@ -87,12 +94,13 @@ def expect_executable(installation: installed.Installed, name: str) -> None:
 
 
 def expect_modules(installation: installed.Installed, source: Path) -> None:
-    """Fail the check unless each Python file of the module was installed; some of them earn part of the points."""
+    """Fail the check unless each Python file of the module was installed; some installed files earn some points."""
     name = installation.package
     sources = sorted(path.relative_to(source) for path in (source / name).rglob("*.py"))
-    missing = [module for file in sources if (module := _module(file)) not in installation.modules]
-    deeper = sum(len(file.parts) > 2 for file in sources)  # any setup.py installs those of the module itself
-    fraction = max(0.0, 1.0 - len(missing) / deeper) if deeper else 0.0
+    missing = [module for file in sources if (module := _module_name(file)) not in installation.modules]
+    # Any setup.py installs the files that are directly in the module's folder.
+    nested_count = sum(len(file.parts) > 2 for file in sources)
+    fraction = max(0.0, 1.0 - len(missing) / nested_count) if nested_count else 0.0
     pronoun = "it" if len(missing) == 1 else "them"
     expect(
         not missing,
@@ -101,12 +109,12 @@ def expect_modules(installation: installed.Installed, source: Path) -> None:
     )
 
 
-def _module(file: Path) -> str:
+def _module_name(file: Path) -> str:
     return file.with_suffix("").as_posix().replace("/", ".").removesuffix(".__init__")
 
 
 def expect_shared(installation: installed.Installed, source: Path, name: str) -> None:
-    """Fail the check unless a file was installed unchanged, at the same path below share."""
+    """Fail the check unless a file was installed unchanged, under the same path below share."""
     data = installation.read(name)
     if data is None:
         same_name = [shared for shared in installation.shared if Path(shared).name == Path(name).name]
@@ -119,10 +127,10 @@ def expect_shared(installation: installed.Installed, source: Path, name: str) ->
 
 
 def expect_empty(source: Path, names: Collection[str]) -> None:
-    """Fail the check if one of these files contains text; other checks test whether it exists."""
-    not_empty = [name for name in names if (files.read_plain(source / name, MAX_BYTES) or b"").strip()]
-    message = f"There is text in {' and '.join(not_empty)}: the marker and each __init__.py should be empty."
-    expect(not not_empty, message, fraction=0.5)
+    """Fail the check if one of these files contains text; other checks test whether they exist."""
+    names_with_text = [name for name in names if (files.read_plain(source / name, MAX_BYTES) or b"").strip()]
+    message = f"There is text in {' and '.join(names_with_text)}: the marker and each __init__.py should be empty."
+    expect(not names_with_text, message, fraction=0.5)
 
 
 def expect_develop(source: Path, package: str) -> None:

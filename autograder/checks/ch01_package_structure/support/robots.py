@@ -13,7 +13,7 @@ from autograder.checking import ReceivedMessage, SteppedHarness, Workspace, expe
 from autograder.checks.ch01_package_structure.support import contract
 
 CMD_VEL, SCAN, ALARM = "/cmd_vel", "/scan", "/alarm"
-TOLERANCE = 1e-3  # m/s and rad/s: the node is given, and its numbers go through unchanged
+TOLERANCE = 1e-3  # m/s and rad/s: the node is given, and publishes its numbers unchanged
 
 
 @contextmanager
@@ -47,16 +47,16 @@ def expect_dance(harness: SteppedHarness, side: float) -> None:
     """Fail the check unless the dancer drives one side of this length and then turns to the left."""
     side_seconds = side / contract.SPEED
     harness.run(side_seconds + 2.0)
-    steps = harness.messages(CMD_VEL)
-    expect(bool(steps), "It published no command on /cmd_vel.")
-    before = [step for step in steps if step.seconds < side_seconds - 0.3]
-    after = [step for step in steps if step.seconds > side_seconds + 0.5]
+    commands = harness.messages(CMD_VEL)
+    expect(bool(commands), "It published no command on /cmd_vel.")
+    side_commands = [command for command in commands if command.seconds < side_seconds - 0.3]
+    corner_commands = [command for command in commands if command.seconds > side_seconds + 0.5]
     expect(
-        bool(before) and all(_matches(step, contract.SPEED, 0.0) for step in before),
+        bool(side_commands) and all(_matches(command, contract.SPEED, 0.0) for command in side_commands),
         f"With a side of {side:g} m it should drive straight on at {contract.SPEED} m/s for {side_seconds:.1f} s.",
     )
     expect(
-        bool(after) and all(_matches(step, 0.0, contract.TURN) for step in after),
+        bool(corner_commands) and all(_matches(command, 0.0, contract.TURN) for command in corner_commands),
         f"With a side of {side:g} m it should turn to the left after {side_seconds:.1f} s.",
     )
 
@@ -75,8 +75,10 @@ def expect_alarm(harness: SteppedHarness, distance: float, expected: bool) -> No
     expect(state is expected, f"With something at {distance:.2f} m the alarm is {state}, it should be {expected}.")
 
 
-def _matches(step: ReceivedMessage, linear: float, angular: float) -> bool:
-    return bool(abs(step.message.linear.x - linear) <= TOLERANCE and abs(step.message.angular.z - angular) <= TOLERANCE)
+def _matches(command: ReceivedMessage, linear: float, angular: float) -> bool:
+    return bool(
+        abs(command.message.linear.x - linear) <= TOLERANCE and abs(command.message.angular.z - angular) <= TOLERANCE
+    )
 
 
 def _ros_arguments(arguments: tuple[str, ...]) -> tuple[str, ...]:

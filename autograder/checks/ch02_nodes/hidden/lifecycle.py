@@ -1,4 +1,4 @@
-"""Checks of the program's end: after Ctrl-C, after a launch system's SIGTERM, and after an error of its own."""
+"""Checks of how the program ends: after Ctrl-C, after a launch system's SIGTERM, and after an error of its own."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, PACKAGE
 from autograder.checks.ch02_nodes.support.shutdown import HINTS, START_SECONDS, expect_clean_end, last_line
 
 check = group("lifecycle")
-LONG_NAME = "a" * 300  # ROS refuses names of 256 letters and more
+LONG_NAME = "a" * 300  # ROS refuses names of 256 letters or more
 
 
 @check(points=2, covers="ends", needs=("starts",))
@@ -38,7 +38,7 @@ def test_fails(workspace: Workspace) -> None:
     case = f"Started with a node name of {len(LONG_NAME)} letters, which ROS refuses,"
     expect(status is not None, f"{case} it did not end within {START_SECONDS:.0f} s.")
     expect(status != 0, f"{case} it ended with exit status 0, as if it had been asked to: the error was swallowed.")
-    # The class or text of an exception contains the word, and rclpy's warnings here do not.
+    # The class or the text of an exception contains "error"; the warnings that rclpy logs here do not.
     names_error = "error" in output.lower()
     expect(names_error, f"{case} it ended with exit status {status}, and did not say which error it was.", fraction=0.5)
     expect("another exception" not in output, f"{case} its clean-up failed, too: {last_line(output)}", fraction=0.5)

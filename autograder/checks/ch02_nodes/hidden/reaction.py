@@ -11,19 +11,27 @@ from autograder.checking import LOCKSTEP, group, hint
 from autograder.checking.drawn_cases import expect_each
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.drawn_scans import SEVERAL_TURNS, any_lidars, drawn_scans
-from autograder.checks.ch02_nodes.support.robot import SETTLED, Reactions, Robot, cases, expect_forward, expect_turn
+from autograder.checks.ch02_nodes.support.robot import (
+    SETTLED,
+    Reactions,
+    Robot,
+    case_count,
+    expect_forward,
+    expect_turn,
+)
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 
 check = group("reaction")
 TOPIC_CHECKS = ("subscribes_scan", "publishes_cmd_vel")
 REACTION_CHECKS = ("forward_when_clear", "turns_when_blocked")
 NEAR = 0.13, 0.18  # m: nearer than any limit that a robot may have, and above range_min
-EDGE = 1.0  # degrees around the sector's edge that are not tested; half a radian differs more from 30 degrees
-# A lidar's number of beams, and half the width of an obstacle in degrees. One beam of the first lidar reads it. Three
-# beams of the second read it, for a robot that ignores a single beam.
+# Degrees to each side of the sector's edge that are not tested; a half sector of 0.5 rad (28.6°) is still detected.
+EDGE = 1.0
+# A lidar's number of beams, and half the width of an obstacle in degrees. One beam of the coarse lidar hits the
+# obstacle. So do three beams of the fine one, for a robot that ignores a single beam.
 COARSE, FINE = (360, 0.6), (1800, 0.3)
-JUST_BELOW = 0.003  # m: a distance that is rounded to centimetres would be the limit
-SINGLE_SCAN_SECONDS = 0.4  # s after a single scan: there are commands after SETTLED, and the scan is not stale yet
+JUST_BELOW = 0.003  # m below the limit: rounded to centimetres, this distance is the limit
+SINGLE_SCAN_SECONDS = 0.4  # s to run after a single scan: more than SETTLED, and the scan is not stale yet
 
 
 @check(points=2, covers=("clear", "in-range"), needs=TOPIC_CHECKS)
@@ -39,10 +47,12 @@ def test_forward_when_clear(robot: Robot, draw: random.Random) -> None:
 def test_turns_when_blocked(robot: Robot, draw: random.Random) -> None:
     """It turns left on the spot while something stands within 1 m in front."""
     distance = draw.uniform(0.3, 0.8)
-    blocked = scan(Part(-5.0, 5.0, distance))
-    expect_turn(robot.see(blocked), f"With something {distance:.2f} m ahead")
-    single = scan(Part(0.0, 0.0, distance))
-    expect_turn(robot.see(single), f"With a single beam that reads {distance:.2f} m, straight ahead", fraction=0.75)
+    blocked_scan = scan(Part(-5.0, 5.0, distance))
+    expect_turn(robot.see(blocked_scan), f"With something {distance:.2f} m ahead")
+    single_beam = scan(Part(0.0, 0.0, distance))
+    expect_turn(
+        robot.see(single_beam), f"With a single beam that reads {distance:.2f} m, straight ahead", fraction=0.75
+    )
 
 
 @check(points=2, covers=("near", "clear"), needs=TOPIC_CHECKS, after=REACTION_CHECKS)
@@ -60,11 +70,11 @@ def test_threshold(robot: Robot, reactions: Reactions, draw: random.Random) -> N
     ):
         commands = robot.see(scan(Part(-3.0, 3.0, distance)))
         expect_reaction(commands, f"With something {distance:.3f} m ahead", fraction=fraction)
-    if robot.time == LOCKSTEP:  # in real time, no command may come in so short a time
+    if robot.time == LOCKSTEP:  # in real time, perhaps no command comes in so short a time
         for distance, expect_reaction in (
             (far, reactions.expect_forward),
             (near, reactions.expect_turn),
-        ):  # each differs from the scans before it
+        ):  # each scan calls for a different reaction than the scan before it
             start = robot.seconds
             robot.show(scan(Part(-3.0, 3.0, distance)), SINGLE_SCAN_SECONDS)
             commands = robot.messages("/cmd_vel", since=start + SETTLED)
@@ -118,6 +128,6 @@ def test_other_lidars(robot: Robot, reactions: Reactions, draw: random.Random) -
         reactions.expect_forward(robot.see(aside), f"With something {near:.2f} m to the left, {name}", fraction=0.5)
     readings, rest = st.sampled_from((near, 2.0)), st.just(3.0)
     for lidars, share in ((any_lidars(), 0.7), (SEVERAL_TURNS, 0.3)):
-        tame = drawn_scans(readings, rest, lidars=lidars)
-        count = math.ceil(share * cases(robot))
-        expect_each(tame, lambda case: reactions.expect_for(robot, case, fraction=0.75), draw, count=count)
+        scan_strategy = drawn_scans(readings, rest, lidars=lidars)
+        count = math.ceil(share * case_count(robot))
+        expect_each(scan_strategy, lambda case: reactions.expect_for(robot, case, fraction=0.75), draw, count=count)

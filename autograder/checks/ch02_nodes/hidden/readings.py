@@ -13,15 +13,17 @@ from autograder.checking.drawn_cases import expect_each
 from autograder.checks.ch02_nodes.hidden.reaction import NEAR, REACTION_CHECKS, TOPIC_CHECKS
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.drawn_scans import drawn_scans, scans_ahead
-from autograder.checks.ch02_nodes.support.robot import Reactions, Robot, cases, expect_stop
+from autograder.checks.ch02_nodes.support.robot import Reactions, Robot, case_count, expect_stop
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN, Part, scan
 
 check = group("readings")
 BESIDE = 4.0, 20.0  # degrees, a little to the left: the beam straight ahead still has a reading
 BLIND_HALF_WIDTH = 35.0  # degrees to each side, beyond the forward sector
-FAR = st.sampled_from((2.0, 3.0))  # m
+FAR = st.sampled_from((2.0, 3.0))  # m: readings of a clear path
+# Numbers of beams, bearings of beam 0, and steps in degrees.
 USUAL_LIDAR = st.sampled_from(((360, 0.0, 1.0), (360, -180.0, 1.0), (181, -90.0, 1.0)))
-# range_min and range_max of other lidars, in metres, with readings that count at the limits, and phantoms around them
+# For two other lidars, in metres: range_min and range_max, the reading of most beams, and two readings for the others,
+# one at a limit, which counts, and a phantom just beyond this limit.
 OTHER_LIMITS = (((0.15625, RANGE_MAX), 3.0, (0.15625, 0.140625)), ((RANGE_MIN, 0.1875), math.inf, (0.1875, 0.21875)))
 
 
@@ -36,9 +38,11 @@ def test_nan(robot: Robot, reactions: Reactions, draw: random.Random) -> None:
     )
     reactions.expect_forward(robot.see(scan(hole)), "With nothing ahead and a few nan beams")
     holes = scans_ahead(st.sampled_from((math.nan, near)), FAR)
-    expect_each(holes, lambda case: reactions.expect_for(robot, case, fraction=0.25), draw, count=cases(robot) // 2)
+    expect_each(
+        holes, lambda case: reactions.expect_for(robot, case, fraction=0.25), draw, count=case_count(robot) // 2
+    )
     rest = scans_ahead(st.sampled_from((near, 2.0)), st.just(math.nan))
-    expect_each(rest, lambda case: reactions.expect_for(robot, case, fraction=0.75), draw, count=cases(robot) // 2)
+    expect_each(rest, lambda case: reactions.expect_for(robot, case, fraction=0.75), draw, count=case_count(robot) // 2)
 
 
 @check(points=1, covers=("plus-inf", "readings"), needs=TOPIC_CHECKS, after=REACTION_CHECKS, doc=contract.REP_117)
@@ -54,7 +58,7 @@ def test_minus_inf(robot: Robot, reactions: Reactions, draw: random.Random) -> N
     """-inf means that something is too near to measure, and the way is blocked."""
     reactions.expect_turn(robot.see(scan(Part(-3.0, 3.0, -math.inf))), "With -inf straight ahead")
     both = scans_ahead(st.just(-math.inf) | FAR, FAR)
-    expect_each(both, lambda case: reactions.expect_for(robot, case, fraction=0.75), draw, count=cases(robot) // 4)
+    expect_each(both, lambda case: reactions.expect_for(robot, case, fraction=0.75), draw, count=case_count(robot) // 4)
 
 
 @check(points=2, covers=("phantom", "readings"), needs=TOPIC_CHECKS, after=REACTION_CHECKS, doc=contract.LASER_SCAN)
@@ -69,11 +73,11 @@ def test_phantoms(robot: Robot, reactions: Reactions, draw: random.Random) -> No
     phantoms = scans_ahead(
         st.sampled_from((0.0, -1.0, tiny, RANGE_MAX + 0.01, draw.uniform(*NEAR))), FAR | st.just(RANGE_MAX)
     )
-    expect_each(phantoms, lambda case: reactions.expect_for(robot, case), draw, count=cases(robot) // 2)
+    expect_each(phantoms, lambda case: reactions.expect_for(robot, case), draw, count=case_count(robot) // 2)
     for limits, fill, readings in OTHER_LIMITS:
         edges = scans_ahead(st.sampled_from(readings), st.just(fill), limits=limits)
         expect = partial(reactions.expect_for, robot, fraction=0.75 if math.isinf(fill) else 0.0)
-        expect_each(edges, expect, draw, count=cases(robot) // 4)
+        expect_each(edges, expect, draw, count=case_count(robot) // 4)
     far = scan(fill=5.0, limits=(RANGE_MIN, 10.0))
     reactions.expect_forward(
         robot.see(far), f"With 5 m of free space all around, from a lidar of {RANGE_MIN:g} to 10 m"
@@ -93,12 +97,12 @@ def test_blind(robot: Robot, reactions: Reactions, draw: random.Random) -> None:
         drawn_scans(nothing, nothing, lidars=USUAL_LIDAR),
         lambda case: reactions.expect_for(robot, case, fraction=0.5),
         draw,
-        count=cases(robot) // 4,
+        count=case_count(robot) // 4,
     )
     for message, situation in (
         (empty, "With scans that have no readings"),
         (scan(Part(-BLIND_HALF_WIDTH, BLIND_HALF_WIDTH, 0.0)), "With nothing but 0.0 in front"),
     ):
-        clear = robot.see(scan())  # it must not rely on this scan afterwards
+        clear = robot.see(scan())  # the robot must not rely on this scan afterwards
         expect_stop(robot.see(message), f"{situation}, after clear ones", fraction=0.75)
         reactions.expect_forward(clear, "With a clear way, which is no reason to stand still,")

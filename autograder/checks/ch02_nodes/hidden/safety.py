@@ -21,14 +21,14 @@ from autograder.checks.ch02_nodes.support.scans import Part, scan
 
 check = group("safety")
 TOPIC_CHECKS = ("subscribes_scan", "publishes_cmd_vel")
-MARGIN = 0.02  # s around the time-out, two of the shortest steps; a time-out that is a tenth too long is detected
+MARGIN = 0.02  # s before and after the time-out: two short steps; a time-out that is 10 % too long is detected
 # In real time, the time-out is somewhere between the last command that drives and the first that stops. The median of
 # many trials is accurate to a hundredth of a second.
 TRIALS = 12
-REAL_MARGIN = 0.04  # s; a time-out that is a tenth too long is detected, too
-STOP_SECONDS = 0.25  # s after the time-out, within which the first command that stops comes
-STAMP_AGE = 2.0  # s: the age of a scan's stamp, which must not count
-STEP = 0.01  # s: one step where the time of each command matters
+REAL_MARGIN = 0.04  # s; small enough to detect a time-out that is 10 % too long
+STOP_SECONDS = 0.25  # s after the time-out within which the first command that stops must come
+STAMP_AGE = 2.0  # s: the age of a scan's stamp, which the robot must ignore
+STEP = 0.01  # s: the length of a step where the time of each command matters
 # How fast the machine's clocks run, relative to ROS time, for a robot that must not use them.
 SLOW, FAST = 0.25, 8.0
 
@@ -74,9 +74,9 @@ def test_recovers(robot: Robot, reactions: Reactions, draw: random.Random) -> No
     distance = draw.uniform(1.5, 3.0)
     robot.see(scan(Part(-10.0, 10.0, 0.5)), 0.5)
     robot.leave_alone(1.0)
-    blind = robot.leave_alone(1.0)
+    blind_commands = robot.leave_alone(1.0)
     reactions.expect_forward(robot.see(scan(fill=distance)), "When scans come again after a break of 2 s")
-    expect_stop(blind, "In the last second of a break of 2 s, which began in front of a wall", fraction=0.5)
+    expect_stop(blind_commands, "In the last second of a break of 2 s, which began in front of a wall", fraction=0.5)
     commands = robot.see(scan(fill=distance), age=STAMP_AGE)
     reactions.expect_forward(
         commands, f"With scans that arrive now, and whose stamps are {STAMP_AGE:g} s old", fraction=0.5
@@ -88,7 +88,8 @@ def _expect_timeout(robot: Robot, reactions: Reactions, message: LaserScan) -> N
     timeouts = []
     for trial in range(TRIALS):
         robot.see(message, 2 * SCAN_SECONDS)
-        robot.run(SCAN_SECONDS * trial / TRIALS)  # so that its timer fires at a different age of the scan in each trial
+        # In each trial, the robot's timer fires at a different age of the scan.
+        robot.run(SCAN_SECONDS * trial / TRIALS)
         arrival = robot.seconds
         robot.show(message, contract.STALE_AFTER + STOP_SECONDS)
         commands = robot.messages("/cmd_vel", since=arrival)
@@ -103,12 +104,14 @@ def _expect_timeout(robot: Robot, reactions: Reactions, message: LaserScan) -> N
 
 
 def _expect_ros_time(workspace: Workspace, reactions: Reactions, message: LaserScan) -> None:
-    """Fail the check if the age of a scan depends on another clock than ROS time."""
+    """Fail the check if the age of a scan depends on a clock other than ROS time."""
     with Robot(workspace, clock_rate=SLOW) as robot:
         robot.see(message)
         robot.run(contract.STALE_AFTER + MARGIN)
-        blind = robot.leave_alone(contract.STALE_AFTER)
-        expect_stop(blind, f"Where ROS time runs {1 / SLOW:g} times as fast as the machine's clocks, without a scan")
+        blind_commands = robot.leave_alone(contract.STALE_AFTER)
+        expect_stop(
+            blind_commands, f"Where ROS time runs {1 / SLOW:g} times as fast as the machine's clocks, without a scan"
+        )
     with Robot(workspace, clock_rate=FAST) as robot:
         commands = robot.see(message)
         situation = f"Where the machine's clocks run {FAST:g} times as fast as ROS time, with a clear way"
@@ -116,7 +119,7 @@ def _expect_ros_time(workspace: Workspace, reactions: Reactions, message: LaserS
 
 
 def _show_before_command(robot: Robot, message: LaserScan, age: float) -> float:
-    """Publish a scan so that a command comes when it is `age` seconds old; return the time of its arrival."""
+    """Publish a scan so that a command comes when the scan is `age` seconds old; return when the scan arrived."""
     _run_in_short_steps(robot, SCAN_SECONDS)
     commands = robot.messages("/cmd_vel")
     expect(bool(commands), "No command came on /cmd_vel.")

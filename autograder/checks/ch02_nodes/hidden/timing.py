@@ -1,4 +1,4 @@
-"""Checks of timing: ten commands a second, and a log with the required messages that stays readable."""
+"""Checks of timing: ten commands a second, and a log that has the required messages and stays readable."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ from autograder.checks.ch02_nodes.support.robot import SETTLED, WRITTEN_SECONDS,
 from autograder.checks.ch02_nodes.support.scans import JUST_AHEAD, Part, scan
 
 check = group("timing")
-SECONDS = 20.0
-QUEUE = 10  # statuses that a queue of depth 10 holds
-RATE_SECONDS = 4.0  # s, in which 40 commands come
+FLOOD_SECONDS = 20.0  # s in front of a wall, in which the warnings are counted
+QUEUE_DEPTH = 10  # how many statuses the subscription's queue holds
+RATE_SECONDS = 4.0  # s in which 40 commands should come
 MAX_RATE, MAX_REAL_RATE = 1.0, 1.1  # warnings a second; more in real time, where lines may be late
-LONG_SECONDS = 9.0  # s in front of a wall: with a warning every 1.8 s, one is missing
-ALTERNATE_SECONDS, ALTERNATIONS = 0.2, 15  # s with an obstacle, and then without; the number of times
-# The obstacles, in turn. Two throttles, whichever obstacles each is for, let two warnings through within 1.2 s.
+LONG_SECONDS = 9.0  # s in front of a wall: long enough that one warning is missing if they come every 1.8 s
+ALTERNATE_SECONDS, ALTERNATIONS = 0.2, 15  # s with an obstacle, and then without one; how many times
+# The obstacles, shown in turn. If a node throttles two warnings separately, whichever obstacles each is for, two come
+# within 1.2 s.
 OBSTACLES = (Part(10.0, 20.0, 0.9), Part(-5.0, 5.0, -math.inf), Part(-20.0, -10.0, 0.3))
 _ENTRY_START = re.compile(r"^(?=\[(?:DEBUG|INFO|WARN|ERROR|FATAL)\] )", re.MULTILINE)  # where a log entry begins
 
@@ -54,8 +55,8 @@ def test_ten_hertz(robot: Robot) -> None:
 def test_no_flood(robot: Robot) -> None:
     """It warns at most once a second while it is blocked, or blocked again and again."""
     start, warnings_before = robot.seconds, len(_log_entries(robot, "WARN"))
-    robot.see(scan(JUST_AHEAD), SECONDS)
-    _expect_few_warnings(robot, start, warnings_before, f"Blocked for {SECONDS:.0f} s,")
+    robot.see(scan(JUST_AHEAD), FLOOD_SECONDS)
+    _expect_few_warnings(robot, start, warnings_before, f"Blocked for {FLOOD_SECONDS:.0f} s,")
     start, warnings_before = robot.seconds, len(_log_entries(robot, "WARN"))
     for number in range(ALTERNATIONS):
         robot.see(scan(OBSTACLES[number % len(OBSTACLES)]), ALTERNATE_SECONDS)
@@ -78,7 +79,7 @@ def test_warns(fresh_robot: Robot, reactions: Reactions) -> None:
         warnings_before = len(_log_entries(fresh_robot, "WARN"))
         commands = fresh_robot.see(scan(Part(-10.0, 10.0, reading)), seconds)
         if math.isinf(reading) and not reactions.turns(commands):
-            return  # the robot does not react to it, which `minus_inf` reports
+            return  # the robot does not react to this reading, which `minus_inf` reports
         has_enough = _wait_for_log(fresh_robot, "WARN", more_than=warnings_before + int(seconds / SILENT_SECONDS) - 1)
         warnings = len(_log_entries(fresh_robot, "WARN")) - warnings_before
         message = f"Blocked for {seconds:.0f} s{suffix}, it logged {warnings} warnings, not one a second."
@@ -99,22 +100,24 @@ def test_logs_status(robot: Robot, draw: random.Random) -> None:
         robot.run(0.3)
         is_logged = _wait_for_log(robot, "INFO", words, more_than=count)
         expect(is_logged, f"The status {words!r} came{suffix}, and it logged nothing of it at level info.")
-    burst = [f"{words}, number {number}." for number in range(QUEUE)]
+    burst = [f"{words}, number {number}." for number in range(QUEUE_DEPTH)]
     for text in burst:
         robot.publish("/status", String(data=text))
     robot.run(0.3)
 
-    def logged_of_burst() -> int:
+    def count_logged() -> int:
         return sum(bool(_log_entries(robot, "INFO", text)) for text in burst)
 
-    robot.wait_for(lambda: logged_of_burst() == QUEUE, WRITTEN_SECONDS)
-    count = logged_of_burst()
-    message = f"Of {QUEUE} statuses that came at once, it logged {count}: a queue of {QUEUE} holds them all."
-    expect(count == QUEUE, message, fraction=0.5)
+    robot.wait_for(lambda: count_logged() == QUEUE_DEPTH, WRITTEN_SECONDS)
+    count = count_logged()
+    message = (
+        f"Of {QUEUE_DEPTH} statuses that came at once, it logged {count}: a queue of {QUEUE_DEPTH} holds them all."
+    )
+    expect(count == QUEUE_DEPTH, message, fraction=0.5)
 
 
 def _expect_few_warnings(robot: Robot, start: float, before: int, situation: str, *, fraction: float = 0.0) -> None:
-    """Fail the check if it logged more than a warning a second since `start`, after the first `before` warnings."""
+    """Fail the check if the node logged more than a warning a second since `start`, after `before` earlier ones."""
     seconds, warnings = robot.seconds - start, len(_log_entries(robot, "WARN")) - before
     limit, real_limit = (round(rate * seconds) + 1 for rate in (MAX_RATE, MAX_REAL_RATE))
     expect(

@@ -1,4 +1,4 @@
-"""Hidden worlds, drawn from the seed: each has walls with names, and free space around the start."""
+"""Hidden worlds, drawn from the seed: each has named walls, and free space around the start."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import random
 
 from sim import BOX_NAMES, Pose, World, box
 
-FREE = 1.2  # m: the radius around the start without an obstacle
+FREE_RADIUS = 1.2  # m: the radius of the free space around the start
 WALLS = [f"the {name}" for name in BOX_NAMES]
 GAP = 1.4  # m between two obstacles, so that a robot fits through
 
@@ -60,11 +60,11 @@ def _start(draw: random.Random) -> Pose:
 
 
 def _places(draw: random.Random, count: int, half_width: float, half_height: float) -> list[tuple[float, float]]:
-    """Draw places for `count` obstacles, or fewer if they do not fit, apart from each other and from the start."""
+    """Draw `count` places, or fewer if not all of them fit, that are apart from each other and from the start."""
     places: list[tuple[float, float]] = []
     for _ in range(60):
         x, y = draw.uniform(-half_width, half_width), draw.uniform(-half_height, half_height)
-        if math.hypot(x, y) > FREE and all(math.hypot(x - a, y - b) > GAP for a, b in places):
+        if math.hypot(x, y) > FREE_RADIUS and all(math.hypot(x - a, y - b) > GAP for a, b in places):
             places.append((x, y))
         if len(places) == count:
             break

@@ -1,4 +1,4 @@
-"""Scans of all lidars that the contract allows, and the contract's reaction to each of them."""
+"""Scans from any lidar that the contract allows, and the reading on which the reaction to each scan depends."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN
 # that are not drawn.
 EDGE = 3.5
 MIN_WIDTH = 3  # beams of an arc, for a robot that ignores a single beam
-# Lidars that see a direction more than once: their numbers of beams, bearings of beam 0, and steps in degrees.
+# Lidars that see some directions more than once: their numbers of beams, bearings of beam 0, and steps in degrees.
 SEVERAL_TURNS = st.tuples(
     st.sampled_from((720, 721, 1081)), st.sampled_from((0.0, -180.0, 95.0, -620.0)), st.sampled_from((1.0, -1.0))
 )
@@ -26,7 +26,7 @@ PHANTOMS = (0.0, -1.0)  # m: finite readings that no lidar can measure
 
 @dataclass(frozen=True)
 class Arc:
-    """Neighbouring beams that read the same: the first one's number, their count, and the reading in metres."""
+    """Neighbouring beams with the same reading: the number of the first one, their count, and the reading in metres."""
 
     first: int
     beams: int
@@ -40,11 +40,12 @@ class DrawnScan:
     Attributes:
         beams: the number of beams.
         first: the unwrapped bearing of beam 0.
-        step: from one beam to the next; negative if the lidar counts clockwise.
+        step: the angle from one beam to the next; negative if the lidar turns clockwise.
         limits: `range_min` and `range_max`.
         fill: the reading of all beams that are in no arc.
         arcs: the beams with other readings.
-        overshoot: how many steps `angle_max` is beyond the last beam; many drivers count a full turn twice.
+        overshoot: how many steps `angle_max` is beyond the last beam. Many drivers count one direction of a full turn
+            twice.
     """
 
     beams: int
@@ -87,12 +88,12 @@ class DrawnScan:
 def nearest_ahead(message: LaserScan) -> set[float | None]:
     """Return the smallest forward reading that counts, for each choice of beams on the sector's edges.
 
-    Requirements: bearings wrap around, the forward sector is 30 degrees to each side, and readings count as REP 117
-    says. None means that no reading counts, and minus infinity that something is too near to be measured.
+    The requirements: bearings wrap around, the forward sector extends 30 degrees to each side, and REP 117 says which
+    readings count. None means that no reading counts, and minus infinity that something is too near to be measured.
     """
     ranges = np.asarray(message.ranges)
-    unwrapped = message.angle_min + np.arange(len(ranges)) * message.angle_increment
-    degrees = np.degrees(np.remainder(unwrapped + math.pi, math.tau) - math.pi)
+    unwrapped_bearings = message.angle_min + np.arange(len(ranges)) * message.angle_increment
+    degrees = np.degrees(np.remainder(unwrapped_bearings + math.pi, math.tau) - math.pi)
     counts = np.isinf(ranges) | ((ranges >= message.range_min) & (ranges <= message.range_max))
     inside = counts & (np.abs(degrees) < HALF_SECTOR - EDGE)
     on_edge = counts & ~inside & (np.abs(degrees) <= HALF_SECTOR + EDGE)
@@ -124,17 +125,17 @@ def drawn_scans(
     lidars: st.SearchStrategy[tuple[int, float, float]] = any_lidars(),  # noqa: B008 - a strategy does not change
     limits: tuple[float, float] = (RANGE_MIN, RANGE_MAX),
 ) -> DrawnScan:
-    """Draw a scan with up to three arcs of these readings, most of them around a bearing ahead or at its sides."""
+    """Draw a scan with up to three arcs of these readings, most of which are ahead or to the sides."""
     beams, first, step = draw(lidars)
     arcs = []
     for reading in draw(st.lists(readings, max_size=3)):
         bearing = draw(st.integers(-45, 45) | st.integers(-180, 180))
-        # The beams that look in this direction, or the nearest of one that has none.
+        # The numbers of the beams that look in this direction: one for each turn of the lidar.
         turn = 360.0 / abs(step)
         start = (bearing - first) / step % turn
         starts = [round(start + number * turn) for number in range(3) if start + number * turn < beams]
         width = draw(st.integers(MIN_WIDTH, max(MIN_WIDTH, beams // 8)))
-        last = starts[-1] if starts else beams - 1  # the last turn, where a lidar makes several
+        last = starts[-1] if starts else beams - 1  # the beam in the last turn, or else the lidar's last beam
         arcs.append(Arc(draw(st.sampled_from([*starts, last])), width, reading))
     return DrawnScan(beams, first, step, limits, draw(fills), tuple(arcs), draw(st.integers(0, 1)))
 

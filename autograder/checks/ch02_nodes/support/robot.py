@@ -18,7 +18,7 @@ from autograder.checks.ch02_nodes.support.drawn_scans import DrawnScan, is_near,
 
 PUBLISHES = {"/scan": LaserScan, "/status": String}
 SUBSCRIBES = {"/cmd_vel": Twist}
-REPEAT_SECONDS = 0.5  # s for which each of many scans is repeated
+REPEAT_SECONDS = 0.5  # s for which a check with many scans repeats each of them
 SETTLED = 0.25  # s after which a controller at 10 Hz has reacted to a scan
 WRITTEN_SECONDS = 5.0  # s of real time to wait for a log line; only a node that logs nothing takes so long
 
@@ -32,7 +32,7 @@ class Robot(AutoHarness):
         )
 
     def see(self, scan: LaserScan, seconds: float = 1.0, *, age: float = 0.0) -> list[ReceivedMessage]:
-        """Publish a scan ten times a second; return the commands after the controller's reaction time."""
+        """Publish a scan ten times a second; return the commands that come after the controller's reaction time."""
         start = self.seconds
         for _ in range(round(seconds / SCAN_SECONDS)):
             self.show(scan, age=age)
@@ -45,13 +45,13 @@ class Robot(AutoHarness):
         self.run(seconds)
 
     def leave_alone(self, seconds: float) -> list[ReceivedMessage]:
-        """Publish no scan for a while; return the commands of that time."""
+        """Publish no scan for a while; return the commands that come meanwhile."""
         start = self.seconds
         self.run(seconds)
         return self.messages("/cmd_vel", since=start)
 
 
-def cases(robot: Robot) -> int:
+def case_count(robot: Robot) -> int:
     """Return how many drawn cases a check can afford: fewer in real time."""
     return 100 if robot.time == LOCKSTEP else 6
 
@@ -81,10 +81,10 @@ STOP, DRIVE, SPIN = Velocity(0.0, 0.0), Velocity(FORWARD, 0.0), Velocity(0.0, TU
 
 @dataclass(frozen=True)
 class Reactions:
-    """The commands with which a robot drives on and turns: those of the contract, or those of one robot.
+    """The commands with which a robot drives on and turns: those of the contract, or one robot's own.
 
     Only two checks test the velocities. The others test which of its reactions a robot shows, so a wrong velocity
-    costs the points of its own requirement only.
+    costs only the points of the check that tests it.
     """
 
     forward: Velocity = DRIVE
@@ -107,7 +107,7 @@ class Reactions:
         _expect(commands, self.turn, situation, "turn left on the spot at 0.5 rad/s", fraction)
 
     def expect_for(self, robot: Robot, scan: DrawnScan, *, fraction: float = 0.0) -> None:
-        """Fail the check unless the robot reacts to a drawn scan as the contract says."""
+        """Fail the check unless the robot reacts to a drawn scan as the contract requires."""
         message = scan.message()
         commands = robot.see(message, REPEAT_SECONDS)
         distances = nearest_ahead(message)
@@ -142,10 +142,10 @@ def is_stop(received: ReceivedMessage) -> bool:
 
 
 def observed_reactions(clear: Sequence[ReceivedMessage], blocked: Sequence[ReceivedMessage]) -> Reactions:
-    """Return a robot's reactions, from its commands for a clear way and for an obstacle just in front of it.
+    """Return a robot's reactions, given its commands for a clear path and for an obstacle just in front of it.
 
-    The contract's reaction replaces one that the robot lacks: it must drive on where the way is clear, always with the
-    same command, and publish another one where the way is blocked.
+    The contract's reaction replaces one that the robot lacks. A robot has both if it drives on where the path is clear,
+    always with the same command, and publishes another command where the path is blocked.
     """
     forward, turn = _constant_velocity(clear), _constant_velocity(blocked)
     moves = forward is not None and not _matches(forward, STOP)
@@ -157,10 +157,10 @@ def observed_reactions(clear: Sequence[ReceivedMessage], blocked: Sequence[Recei
 
 
 def _constant_velocity(commands: Sequence[ReceivedMessage]) -> Velocity | None:
-    """Return the velocity that all commands have, or None if they differ or there are none."""
+    """Return the velocity that all commands have, or None if they differ or if there are no commands."""
     velocities = [_velocity(received) for received in commands]
-    finite = bool(velocities) and all(map(math.isfinite, velocities[0]))
-    return velocities[0] if finite and all(_matches(other, velocities[0]) for other in velocities) else None
+    is_finite = bool(velocities) and all(map(math.isfinite, velocities[0]))
+    return velocities[0] if is_finite and all(_matches(other, velocities[0]) for other in velocities) else None
 
 
 def describe_command(command: Twist) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from sensor_msgs.msg import LaserScan
 
-RANGE_MIN, RANGE_MAX = 0.12, 3.5  # m, as an LDS-01
+RANGE_MIN, RANGE_MAX = 0.12, 3.5  # m: the limits of an LDS-01 lidar
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Part:
     value: float
 
 
-# Just above range_min, and nearer than any limit that a robot may have.
+# An obstacle just beyond range_min, and nearer than any limit that a robot may have.
 JUST_AHEAD = Part(-10.0, 10.0, 0.15)
 
 

@@ -1,4 +1,4 @@
-"""Tests whether a program ends cleanly, after Ctrl-C and after a launch system's SIGTERM."""
+"""Tests whether a program ends cleanly after Ctrl-C and after a launch system's SIGTERM."""
 
 from __future__ import annotations
 
@@ -13,30 +13,32 @@ from autograder.checking import RealTimeHarness, Workspace, expect
 from autograder.checking.probes import rclpy_races
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, NODE, PACKAGE
 
-START_SECONDS = 30.0  # s of real time
+START_SECONDS = 30.0  # s of real time within which the program starts
 COMMAND_TYPE = "geometry_msgs/msg/Twist"
-ANSWER_SECONDS = 10.0  # s of real time
+ANSWER_SECONDS = 10.0  # s of real time to wait for an answer
 MAX_CPU_SECONDS = 10.0  # s of processor time until the first command; a node that works needs about 1 s
-QUIET = 0.05  # s after a command, half a period of a node at 10 Hz, which then waits for work
-TRIALS = 3
+QUIET_SECONDS = 0.05  # s after a command: half a period at 10 Hz, so the node is waiting for its timer
+TRIALS = 3  # attempts, if rclpy itself fails
 # A line that the node logs.
 LOG_LINE = re.compile(rf"^\[[A-Z]+\] \[(?P<seconds>\d+\.\d+)\] \[{NODE[1:]}\]: .*", re.MULTILINE)
-STOP_SECONDS = 15.0  # s of real time; a node that ends cleanly needs 0.2
+STOP_SECONDS = 15.0  # s of real time; a node that ends cleanly needs 0.2 s
 HINTS = (
     "except (KeyboardInterrupt, ExternalShutdownException): pass, around rclpy.spin(node).",
     "In finally: node.destroy_node() and rclpy.try_shutdown(); rclpy.shutdown() raises once the context is down.",
 )
 
 
-def expect_clean_end(workspace: Workspace, number: signal.Signals) -> None:
+def expect_clean_end(workspace: Workspace, stop_signal: signal.Signals) -> None:
     """Fail the check unless the node, sent this signal while it spins, ends with exit status 0."""
     for _ in range(TRIALS):
-        status, output, late_lines = _stop_while_spinning(workspace, number)
+        status, output, late_lines = _stop_while_spinning(workspace, stop_signal)
         if not rclpy_races.crashed(status) and (status != 1 or not rclpy_races.lost_a_race(output)):
             break
-    expect(status is not None, f"{STOP_SECONDS:.0f} s after {number.name} it was still running, and had to be killed.")
-    expect(status == 0, f"After {number.name} it ended with exit status {status}: {last_line(output)}")
-    message = f"After {number.name}, when its context was gone, it still logged: {''.join(late_lines[:1])}"
+    expect(
+        status is not None, f"{STOP_SECONDS:.0f} s after {stop_signal.name} it was still running, and had to be killed."
+    )
+    expect(status == 0, f"After {stop_signal.name} it ended with exit status {status}: {last_line(output)}")
+    message = f"After {stop_signal.name}, when its context was gone, it still logged: {''.join(late_lines[:1])}"
     expect(not late_lines, message, fraction=0.5)
 
 
@@ -58,11 +60,11 @@ def _answers_requests(harness: RealTimeHarness) -> bool:
     )
 
 
-def _stop_while_spinning(workspace: Workspace, number: signal.Signals) -> tuple[int | None, str, list[str]]:
+def _stop_while_spinning(workspace: Workspace, stop_signal: signal.Signals) -> tuple[int | None, str, list[str]]:
     """Start the program, and send it a signal while it spins.
 
     Returns:
-        The exit status, or None if it does not end; the output; the lines that it logged after the signal.
+        The program's exit status, or None if it does not end; its output; the lines that it logged after the signal.
     """
     with RealTimeHarness(workspace, PACKAGE, EXECUTABLE, subscribes={"/cmd_vel": Twist}) as harness:
         # A node is in the graph before its __init__ has returned. A command or an answer shows that it spins.
@@ -72,8 +74,8 @@ def _stop_while_spinning(workspace: Workspace, number: signal.Signals) -> tuple[
         )
         is_spinning = bool(harness.messages("/cmd_vel")) or _answers_requests(harness)
         expect(is_spinning, "Started as ros2 run does, it published no command, and did not answer: it does not spin.")
-        harness.run(QUIET)
+        harness.run(QUIET_SECONDS)
         signal_time = time.time()
-        status = harness.stop(number, STOP_SECONDS)
+        status = harness.stop(stop_signal, STOP_SECONDS)
     late_lines = [line[0] for line in LOG_LINE.finditer(harness.output) if float(line["seconds"]) > signal_time]
     return status, harness.output, late_lines

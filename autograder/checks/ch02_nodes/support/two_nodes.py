@@ -22,29 +22,29 @@ class TwoNodes:
     """The results of creating the nodes, of reading a namespace, and of a scan that only the first one receives.
 
     Attributes:
-        created: the creation of the first node, with a namespace as a keyword argument.
+        creation: the creation of the first node, with a namespace as a keyword argument.
         namespace: the namespace of the first node.
         clearance: the clearance of the second node, which has received no scan.
     """
 
-    created: calls.StepResult
+    creation: calls.StepResult
     namespace: calls.StepResult
     clearance: calls.StepResult
 
     def wrong_arguments(self) -> str:
-        """Return what is wrong with a node that was created with a keyword argument of Node's, or ""."""
+        """Return what is wrong with a node that was created with a keyword argument of Node, or "" if nothing is."""
         call = f"{CLASS}(namespace={NAMESPACES[0]!r})"
-        if self.created.raised == MISSING:
+        if self.creation.raised == MISSING:
             return ""
-        if self.created.raised:
-            return f"{call} raised {self.created.raised}: {self.created.message}"
+        if self.creation.raised:
+            return f"{call} raised {self.creation.raised}: {self.creation.message}"
         if self.namespace.value == NAMESPACES[0]:
             return ""
         return f"{call} is in the namespace {self.namespace.value}: hand all keyword arguments on to Node."
 
     def shared_scan(self) -> str:
-        """Return how a node that has received no scan uses the scan of another one, or ""."""
-        if self.created.raised or self.clearance.raised == MISSING or self.clearance.value is None:
+        """Return how a node that has received no scan uses the scan of another one, or "" if it does not."""
+        if self.creation.raised or self.clearance.raised == MISSING or self.clearance.value is None:
             return ""
         clearance = self.clearance.value
         return f"A {CLASS} that had received no scan used the scan of another one: its clearance was {clearance} m."

@@ -1,4 +1,4 @@
-"""Checks of the student's robot controller: its reactions to a few scans, and its end."""
+"""Checks of the student's robot controller: its reactions to a few scans, and how it ends."""
 
 from __future__ import annotations
 
@@ -157,5 +157,5 @@ def test_warns(robot: Robot) -> None:
 @hint(*HINTS)
 def test_ends(workspace: Workspace) -> None:
     """Ctrl-C and SIGTERM end it with exit status 0."""
-    for number in (signal.SIGINT, signal.SIGTERM):
-        expect_clean_end(workspace, number)
+    for stop_signal in (signal.SIGINT, signal.SIGTERM):
+        expect_clean_end(workspace, stop_signal)

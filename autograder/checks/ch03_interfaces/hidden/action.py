@@ -28,13 +28,13 @@ from autograder.checks.ch03_interfaces.support.driver_qos import expect_volatile
 
 check = group("action")
 SERVER_CHECK, MOTION_CHECK = ("drive_serves",), ("drive_moves",)
-SLACK = 0.02  # m; and m/s, a tenth of the default speed
-PUSH = 0.2  # m, which the robot drives again within a second
-SOON = 0.25  # s after a push: there is feedback, and less than half of the push is driven again
+SLACK = 0.02  # m, and m/s: 10 % of the default speed
+PUSH = 0.2  # m of a push, which the robot drives again within a second
+SOON = 0.25  # s after a push: feedback has come, and less than half of the push has been driven again
 SILENCE = 2.0  # s without odometry before a goal
 DISCOVERY_SECONDS = 5.0  # s of real time until an action is in the graph
-SHORT_OF, GOAL, BEYOND = 0.3055, 0.308, 0.3095  # m: before the goal, the goal and beyond it, within 5 mm
-CREEP = 0.01  # m/s, a millimetre in each tenth of a second
+SHORT_OF, GOAL, BEYOND = 0.3055, 0.308, 0.3095  # m: just short of the goal, the goal, just beyond it
+CREEP = 0.01  # m/s: a millimetre between two commands
 HOLD_SECONDS = 0.8  # s for which the wheels are held, too short for the goal to be aborted
 LONG_SECONDS = 20.0  # s to wait for what takes a second or two; in real time, the machine may be busy
 STATUS_NAMES = {
@@ -59,8 +59,8 @@ def test_drive_serves(driver: Driver) -> None:
         actions.update(get_action_names_and_types(driver.node))
         return ACTION in actions
 
-    served = driver.wait_for(is_served, DISCOVERY_SECONDS)
-    expect(served, f"There is no action {ACTION}; the node serves {', '.join(sorted(actions)) or 'no action'}.")
+    has_action = driver.wait_for(is_served, DISCOVERY_SECONDS)
+    expect(has_action, f"There is no action {ACTION}; the node serves {', '.join(sorted(actions)) or 'no action'}.")
     expected = f"{contract.INTERFACES}/action/DriveDistance"
     expect(
         actions[ACTION] == [expected], f"{ACTION} has the type {', '.join(actions[ACTION])}, it should be {expected}."
@@ -120,7 +120,7 @@ def test_drive_moves(placed_driver: Driver, draw: random.Random) -> None:
 def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
     """The goal succeeds once the robot has gone the distance, in whichever direction it looks, and the robot stops."""
     for speed, least in ((0.5, 1.8), (0.4, 1.5)):
-        distance = draw.uniform(least, least + 0.2)  # a tenth of it is more than the tolerance
+        distance = draw.uniform(least, least + 0.2)  # 10 % of it is more than the tolerance
         x, y = placed_driver.x, placed_driver.y
         goal = placed_driver.start(distance, speed)
         commands = placed_driver.finish(goal, LONG_SECONDS, f"With {distance:.2f} m to drive")
@@ -152,7 +152,7 @@ def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
 def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     """The result says how far the robot has come, and gives no reason when all is well."""
     x, y = placed_driver.x, placed_driver.y
-    goal = placed_driver.start(draw.uniform(1.4, 1.8), 0.5)  # a tenth of it is more than the tolerance
+    goal = placed_driver.start(draw.uniform(1.4, 1.8), 0.5)  # 10 % of it is more than the tolerance
     placed_driver.roll(goal, LONG_SECONDS, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.6)
     peak, push_time = math.dist((x, y), (placed_driver.x, placed_driver.y)), placed_driver.seconds
     placed_driver.shift(-PUSH)
@@ -161,7 +161,7 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     expect(
         abs(goal.result.driven - driven) <= 0.1, f"The result says {goal.result.driven:.2f} m, it was {driven:.2f} m."
     )
-    reported = [item.message.driven for item in goal.feedback if push_time < item.seconds <= push_time + SOON]
+    distances = [item.message.driven for item in goal.feedback if push_time < item.seconds <= push_time + SOON]
     x, y = placed_driver.x, placed_driver.y
     goal = placed_driver.start(1.0, 0.5)
     placed_driver.roll(goal, LONG_SECONDS, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.5)
@@ -184,11 +184,11 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     expect_volatile(placed_driver.node, ODOMETRY)
     if placed_driver.time == LOCKSTEP:  # in real time, a busy machine may use up the second without progress
         _expect_exact_arrival(placed_driver)
-    if reported and placed_driver.time == LOCKSTEP:  # in real time, the robot may have driven the push again
+    if distances and placed_driver.time == LOCKSTEP:  # in real time, the robot may have driven the push again
         message = (
-            f"Pushed back from {peak:.2f} m to {peak - PUSH:.2f} m, the feedback said {min(reported):.2f} m or more."
+            f"Pushed back from {peak:.2f} m to {peak - PUSH:.2f} m, the feedback said {min(distances):.2f} m or more."
         )
-        expect(min(reported) <= peak - PUSH / 2, message, fraction=0.75)
+        expect(min(distances) <= peak - PUSH / 2, message, fraction=0.75)
 
 
 @check(points=2, covers=("drives", "driven"), needs=SERVER_CHECK, after=MOTION_CHECK, doc=contract.ACTION)
@@ -279,7 +279,7 @@ def drives_straight(command: Twist, speed: float) -> bool:
 
 
 def _expect_exact_arrival(driver: Driver) -> None:
-    """Fail the check unless a held robot's goal succeeds when it is pushed beyond the goal, and not just before it."""
+    """Fail the check unless a held robot's goal succeeds once the robot is pushed beyond it, and not just before."""
     driver.stuck = True
     goal = driver.start(GOAL, CREEP)
     driver.roll(goal, 0.3)

@@ -14,8 +14,8 @@ from autograder.checks.ch03_interfaces.support.driver import Driver
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
 from autograder.checks.ch03_interfaces.support.types import Types
 
-ODD_PERIOD = 0.7  # s; most statuses come between two whole seconds
-FAST, SLOW = 4.0, 0.02  # s by the machine's clocks in 1 s of ROS time
+ODD_PERIOD = 0.7  # s, so that most statuses come between two whole seconds
+FAST, SLOW = 4.0, 0.02  # s that the machine's clocks count in 1 s of ROS time
 
 
 @pytest.fixture(scope="session")
@@ -26,7 +26,7 @@ def tuned_name(seed: int) -> str:
 
 @pytest.fixture(scope="session")
 def shared_tuned_reporter(workspace: Workspace, types: Types, tuned_name: str) -> Iterator[Shared[Reporter]]:
-    """Keeps the status publisher with other parameters."""
+    """The status publisher with other parameters, which several checks share."""
     arguments = (
         "--ros-args",
         *parameters.override_arguments({"status_period": TUNED_PERIOD, "robot_name": tuned_name}),
@@ -51,7 +51,7 @@ def hasty_reporter(workspace: Workspace, types: Types) -> Iterator[Reporter]:
 
 @pytest.fixture
 def tardy_driver(workspace: Workspace, types: Types) -> Iterator[Driver]:
-    """A distance driver on a machine whose clocks are slower than ROS time; it has received its pose."""
+    """A distance driver that has received its pose, on a machine whose clocks are slower than ROS time."""
     with Driver(workspace, types, clock_rate=SLOW) as driver:
         driver.place(0.0, 0.0, 0.7)
         yield driver

@@ -8,7 +8,7 @@ from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.reading import expect_definition, read_definition
 
 check = group("definitions")
-AFTER = ("readable",)
+READABLE_CHECK = ("readable",)
 FIELDS = (interfaces.Aspect.FIELDS, interfaces.Aspect.TYPES)
 TABLE_HINTS = (
     "Compare your file with the exercise's table, line by line: name, type, order.",
@@ -36,7 +36,7 @@ def test_readable(workspace: Workspace) -> None:
         "status-charging",
         "status-joints",
     ),
-    after=AFTER,
+    after=READABLE_CHECK,
     doc=contract.DEFINE,
 )
 @hint(*TABLE_HINTS)
@@ -56,7 +56,7 @@ def test_robot_status(workspace: Workspace) -> None:
         "trip-at-end",
         "trip-reason-field",
     ),
-    after=AFTER,
+    after=READABLE_CHECK,
     doc=contract.LANGUAGE,
 )
 @hint(*TABLE_HINTS)
@@ -76,7 +76,7 @@ def test_check_trip(workspace: Workspace) -> None:
         "result-reason",
         "feedback-fields",
     ),
-    after=AFTER,
+    after=READABLE_CHECK,
     doc=contract.LANGUAGE,
 )
 @hint(*TABLE_HINTS)
@@ -85,7 +85,12 @@ def test_drive_distance(workspace: Workspace) -> None:
     expect_definition(workspace, contract.DRIVE_DISTANCE, *FIELDS)
 
 
-@check(points=1, covers=("battery-unknown", "metres-per-percent", "goal-constants"), after=AFTER, doc=contract.LANGUAGE)
+@check(
+    points=1,
+    covers=("battery-unknown", "metres-per-percent", "goal-constants"),
+    after=READABLE_CHECK,
+    doc=contract.LANGUAGE,
+)
 @hint("A constant is written `type NAME = value`, with an equals sign and in capitals; it is never sent.")
 def test_constants(workspace: Workspace) -> None:
     """The four constants of the definitions have the contract's names, types and values."""
@@ -95,7 +100,7 @@ def test_constants(workspace: Workspace) -> None:
 @check(
     points=1,
     covers=("status-level", "trip-reserve", "trip-at-end", "goal-speed"),
-    after=AFTER,
+    after=READABLE_CHECK,
     doc=contract.LANGUAGE,
 )
 @hint("A default stands behind the field's name, without an equals sign: `int32 reserve 20`.")
@@ -107,7 +112,7 @@ def test_defaults(workspace: Workspace) -> None:
 @check(
     points=1,
     covers=("trip-legs", "trip-reason-field", "result-reason", "status-joints"),
-    after=AFTER,
+    after=READABLE_CHECK,
     doc=contract.LANGUAGE,
 )
 @hint("`float64[<=8] legs` holds at most eight, `float64[8] legs` exactly eight; `string<=80` at most 80 characters.")
@@ -117,15 +122,15 @@ def test_bounds(workspace: Workspace) -> None:
 
 
 def _expect_all(workspace: Workspace, aspect: interfaces.Aspect, count: int) -> None:
-    """Fail the check unless every definition is right in one aspect, which `count` elements have."""
+    """Fail the check unless every definition is right in one aspect; `count` elements of the contract have it."""
     wrong = []
     for definition in contract.DEFINITIONS:
         try:
-            submitted = read_definition(workspace, definition)
-        except CheckFailed as error:  # such a definition has none of them, and the others count
+            student_definition = read_definition(workspace, definition)
+        except CheckFailed as error:  # such a definition has no right element; the other definitions count
             wrong += [error.message] * sum(1 for _ in interfaces.elements(definition, aspect))
         else:
-            differences = interfaces.compare(definition, submitted)
+            differences = interfaces.compare(definition, student_definition)
             wrong += [difference.sentence for difference in differences if difference.aspect is aspect]
     if wrong:
         raise CheckFailed(" ".join([*dict.fromkeys(wrong)][:3]), fraction=round(max(0.0, 1.0 - len(wrong) / count), 2))

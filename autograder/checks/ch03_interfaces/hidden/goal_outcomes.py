@@ -26,14 +26,15 @@ from autograder.checks.ch03_interfaces.support.driver import COMMANDS, STEP, Dri
 check = group("action", doc=contract.ACTION)
 LATE = {LOCKSTEP: 0.4, REAL: 2.0}  # s beyond PATIENCE: two commands, and the harness's steps until the result
 TOLERANCE = {LOCKSTEP: 0.05, REAL: 0.25}  # s by which a command may come too early or, in lockstep, too late
-PUSH_AFTER = 0.5  # s after the start of a goal
+PUSH_AFTER = 0.5  # s from the start of a goal to the push
 FIRST_SPEED = 0.3  # m/s of a goal during which others are sent
-HEIGHT = 1.0  # m, which must not count as distance
+HEIGHT = 1.0  # m of height, which must not count as distance
 TOO_LITTLE, ENOUGH = 0.0095, 0.0105  # m: just below and just above a centimetre
 SLOW = 0.007  # m/s, less than a centimetre in 1 s
 ROLL_BACK = 0.015  # m in each step, far more than a centimetre in 1 s
 REACHED, CANCELLED, CANCELLED_AT_ONCE, STUCK = "reached", "cancelled", "cancelled before it moved", "given up"
 CANCELS = st.tuples(st.integers(0, 5), st.booleans())  # tenths of a second, and whether the wheels are held
+# The ways in which goals end, one after the other.
 ENDINGS = (REACHED, CANCELLED, CANCELLED_AT_ONCE, STUCK, REACHED)
 SHORT_DISTANCE, LOW_SPEED = 0.04, 0.015  # m, m/s: a little more than a centimetre in 1 s
 
@@ -71,26 +72,26 @@ def test_drive_cancels(placed_driver: Driver, draw: random.Random) -> None:
     )
 
 
-def _expect_cancelled(driver: Driver, tenths: int, held: bool) -> None:
-    """Fail the check unless a cancel, after some tenths of a second of a goal, ends it with a stop and a reason."""
+def _expect_cancelled(driver: Driver, tenths: int, is_held: bool) -> None:
+    """Fail the check unless a cancel, some tenths of a second after the start, ends a goal with a stop and a reason."""
     x, y = driver.x, driver.y
     goal = driver.start(4.5, 0.5)
-    driver.stuck = held
+    driver.stuck = is_held
     if tenths:
         driver.roll(goal, tenths / 10.0)
     goal.cancel()
     driver.roll(goal, 3.0)
     driver.stuck = False
-    situation = f"Cancelled {tenths / 10.0:.1f} s after the start{', with wheels that do not turn' * held}"
+    situation = f"Cancelled {tenths / 10.0:.1f} s after the start{', with wheels that do not turn' * is_held}"
     outcome = STATUS_NAMES.get(goal.status, "not at all")
     is_cancelled = goal.result is not None and goal.status == GoalStatus.STATUS_CANCELED
     expect(is_cancelled, f"{situation}, the goal ended {outcome}.", fraction=0.5)
     commands = [received.message for received in driver.commands()]
     expect(has_stopped(commands), f"{situation}, the last command was no stop.", fraction=0.7)
-    driven, reported = math.dist((x, y), (driver.x, driver.y)), goal.result.driven
+    driven, reported_distance = math.dist((x, y), (driver.x, driver.y)), goal.result.driven
     expect(
-        abs(reported - driven) <= 0.15,
-        f"{situation}, the result says {reported:.2f} m of {driven:.2f} m.",
+        abs(reported_distance - driven) <= 0.15,
+        f"{situation}, the result says {reported_distance:.2f} m of {driven:.2f} m.",
         fraction=0.7,
     )
     expect(goal.result.reason.strip() != "", f"{situation}, the result gives no reason.", fraction=0.8)
@@ -174,8 +175,8 @@ def test_drive_blind(tardy_driver: Driver) -> None:
     goal = tardy_driver.start(4.5, 0.5)
     tardy_driver.roll(goal, 0.6)
     tardy_driver.height = HEIGHT
-    tardy_driver.place(tardy_driver.x, tardy_driver.y, tardy_driver.heading)  # so that it knows its exact pose
-    driven = math.hypot(tardy_driver.x, tardy_driver.y)  # from (0, 0)
+    tardy_driver.place(tardy_driver.x, tardy_driver.y, tardy_driver.heading)  # so that the driver knows its exact pose
+    driven = math.hypot(tardy_driver.x, tardy_driver.y)  # the start is (0, 0)
     tardy_driver.is_silent, silence_start = True, tardy_driver.seconds
     commands = tardy_driver.finish(goal, LONG_SECONDS, "With odometry that fell silent")
     seconds = tardy_driver.seconds - silence_start
@@ -184,9 +185,12 @@ def test_drive_blind(tardy_driver: Driver) -> None:
     expect(has_stopped(commands), "After the goal had been given up, the last command was no stop.", fraction=0.75)
     is_late = seconds > PATIENCE + LATE[tardy_driver.time]
     expect(not is_late, f"The goal was given up {seconds:.1f} s of ROS time after the last odometry.", fraction=0.5)
-    reported = goal.result.driven
-    message = f"The last odometry was {driven:.2f} m away, and {HEIGHT:g} m higher; the result says {reported:.2f} m."
-    expect(abs(reported - driven) <= 0.1, message, fraction=0.75)
+    reported_distance = goal.result.driven
+    message = (
+        f"The last odometry was {driven:.2f} m away, and {HEIGHT:g} m higher; "
+        f"the result says {reported_distance:.2f} m."
+    )
+    expect(abs(reported_distance - driven) <= 0.1, message, fraction=0.75)
     length = len(goal.result.reason)
     expect(length <= MAX_REASON, f"The reason has {length} characters, instead of at most {MAX_REASON}.", fraction=0.75)
 
@@ -195,11 +199,11 @@ def test_drive_blind(tardy_driver: Driver) -> None:
 class _OverlappingGoals:
     """The results of goals that were sent while a first one was driven."""
 
-    speed: float  # m/s at which the first goal was driven before them
-    accepted: list[bool]  # whether each of them was accepted
+    speed: float  # m/s at which the first goal was driven before the others came
+    accepted: list[bool]  # whether each of the others was accepted
     is_running: bool  # whether the first goal had not ended
-    between: list[Twist]  # the commands after the answer to each of them
-    commands: list[Twist]  # all commands since the first of them was sent
+    between: list[Twist]  # the commands after the answers to the others
+    commands: list[Twist]  # all commands since the first of the others was sent
 
 
 def _send_others(driver: Driver) -> _OverlappingGoals:

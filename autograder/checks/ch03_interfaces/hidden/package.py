@@ -10,6 +10,7 @@ from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import INTERFACES
 
 check = group("package", doc=contract.DEFINE)
+# The packages that definitions use, each with a definition that uses it.
 USES = {"std_msgs": "RobotStatus", "action_msgs": "DriveDistance"}
 HINTS = (
     "Compare it with the package.xml of chapter_interfaces in this chapter.",
@@ -22,8 +23,8 @@ HINTS = (
 def test_manifest(workspace: Workspace) -> None:
     """package.xml says that the package is built by CMake and what the generators and the users need."""
     packages, _ = find_packages(workspace.root / "src")
-    parsed = manifest.read(packages.get(INTERFACES, workspace.root / "src" / INTERFACES))
-    wrong = packaging.wrong_for_interfaces(parsed, USES)
+    package_manifest = manifest.read(packages.get(INTERFACES, workspace.root / "src" / INTERFACES))
+    wrong = packaging.wrong_for_interfaces(package_manifest, USES)
     expect(not wrong, f"In package.xml {'; '.join(wrong)}.", fraction=round(max(0.0, 1.0 - len(wrong) / 7), 2))
 
 
@@ -48,9 +49,11 @@ def test_generated(workspace: Workspace) -> None:
         if f"{INTERFACES}.{kind}._{_module_name(name)}" not in installation.modules:
             absent.append(definition.path)
     if absent:
-        copied = [path for path in absent if path in installation.shared]
+        copied_paths = [path for path in absent if path in installation.shared]
         reason = (
-            "the text was installed, but nothing was generated from it" if copied else "CMakeLists.txt does not name it"
+            "the text was installed, but nothing was generated from it"
+            if copied_paths
+            else "CMakeLists.txt does not name it"
         )
         fraction = round(1.0 - len(absent) / len(contract.DEFINITIONS), 2)
         raise CheckFailed(f"There is no class for {', '.join(absent)}: {reason}.", fraction=fraction)

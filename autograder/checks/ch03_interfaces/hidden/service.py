@@ -27,10 +27,11 @@ from autograder.checks.ch03_interfaces.support.reporter import PERIOD, SERVICE, 
 check = group("service", doc=contract.SERVICE)
 MIN_REASON = 3  # characters: a shorter text is not a reason
 SERVICE_CHECK = ("trip_answers",)
-MIN_SHOWN_LEVEL = 50  # percent: from here on, trips are tested with the level that the status shows
+MIN_SHOWN_LEVEL = 50  # percent: from this level on, trips are tested with the level that the status shows
 REASON_FRACTION = 0.8  # of the points, if only the reason is missing
 DISCOVERY_SECONDS = 5.0  # s of real time until a service is in the graph
-DELIVERY_SECONDS = {LOCKSTEP: 0.1, REAL: PERIOD + 0.2}  # in lockstep, long before the next status
+# s to deliver a message; in lockstep, long before the next status.
+DELIVERY_SECONDS = {LOCKSTEP: 0.1, REAL: PERIOD + 0.2}
 WITH_ZERO = Trip(80, (12.5, 0.0, 30.0, 0.3), excess=0.4)  # a leg may be 0 m long
 PLAIN_TRIPS = Trip(50, (5.0,), RESERVE), Trip(50, (500.0,), RESERVE)  # possible, and not possible
 RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT), and possible when that is at least reserve."
@@ -74,7 +75,7 @@ def test_trip_unknown_battery(silent_reporter: Reporter, reporter: Reporter, dra
         situation = f"Since the percentage is {percentage:.7g}, which is not from 0 to 1"
         _expect_answer(reporter, Trip(UNKNOWN, (10.0,)), situation, fraction=0.75)
 
-    expect_each(NO_PERCENTAGES, judge, draw, count=_cases(reporter, 4))
+    expect_each(NO_PERCENTAGES, judge, draw, count=_case_count(reporter, 4))
 
 
 @check(points=2, covers="trip-rule", needs=SERVICE_CHECK, after=("status_battery",))
@@ -85,13 +86,13 @@ def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
     def judge(trip: Trip) -> None:
         level = _charge(reporter, trip.level, trip.excess)
         trip = replace(trip, level=level)
-        reported = reporter.ask(trip.legs, 0).battery_at_end
+        actual = reporter.ask(trip.legs, 0).battery_at_end
         expected = {at_end for _, at_end in answers(level, trip.legs, 0)}
-        message = f"{_sentence(trip)}, battery_at_end is {reported}, not {' or '.join(map(str, expected))}."
-        expect(reported in expected, message)
+        message = f"{_sentence(trip)}, battery_at_end is {actual}, not {' or '.join(map(str, expected))}."
+        expect(actual in expected, message)
 
     judge(WITH_ZERO)
-    expect_each(short_trips(), judge, draw, count=_cases(reporter, 12))
+    expect_each(short_trips(), judge, draw, count=_case_count(reporter, 12))
 
 
 @check(points=2, covers=("trip-rule", "trip-enough"), needs=SERVICE_CHECK, after=("trip_level",))
@@ -102,14 +103,14 @@ def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
 
     def judge(drawn: tuple[tuple[float, ...], int]) -> None:
         legs, more = drawn
-        at_end = reporter.ask(legs, 0).battery_at_end  # `trip_level` tests whether that is right
+        at_end = reporter.ask(legs, 0).battery_at_end  # `trip_level` tests whether this is right
         reserve = at_end + more
         answer = reporter.ask(legs, reserve)
         situation = f"At {level} %, with {at_end} % left, of which {reserve} % is the reserve"
         answer_text = "possible" if answer.possible else "not possible"
         expect(answer.possible is (more <= 0), f"{situation}, the trip is said to be {answer_text}.")
 
-    expect_each(reserves(), judge, draw, count=_cases(reporter, 14))
+    expect_each(reserves(), judge, draw, count=_case_count(reporter, 14))
     answer = reporter.ask([level * METRES_PER_PERCENT], 0)
     message = f"With a reserve of 0, a trip that takes all {level} % is said to be not possible."
     expect(answer.possible, message, fraction=0.75)
@@ -121,7 +122,9 @@ def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
     """A trip that is longer than the battery lasts leaves 0 percent, never less, and is not possible."""
     level = _charge(reporter, draw.randrange(10, 40))
     trips = st.builds(Trip, st.just(level), long_legs(level), st.sampled_from((0, 5, 20, -200)))
-    expect_each(trips, lambda trip: _expect_answer(reporter, trip, _sentence(trip)), draw, count=_cases(reporter, 12))
+    expect_each(
+        trips, lambda trip: _expect_answer(reporter, trip, _sentence(trip)), draw, count=_case_count(reporter, 12)
+    )
     reporter.set_battery(0)
     at_end = reporter.ask([], 0).battery_at_end
     expect(at_end == 0, f"At 0 %, which is known, and without legs, battery_at_end is {at_end}, not 0.", fraction=0.5)
@@ -138,7 +141,9 @@ def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
         trip = Trip(level, (5.0, leg))
         _expect_answer(reporter, trip, _sentence(trip))
     trips = st.builds(Trip, st.just(level), wrong_legs())
-    expect_each(trips, lambda trip: _expect_answer(reporter, trip, _sentence(trip)), draw, count=_cases(reporter, 12))
+    expect_each(
+        trips, lambda trip: _expect_answer(reporter, trip, _sentence(trip)), draw, count=_case_count(reporter, 12)
+    )
 
 
 @check(points=1, covers="trip-reason", needs=SERVICE_CHECK, after=("trip_possible",))
@@ -148,10 +153,10 @@ def test_trip_reason(reporter: Reporter, draw: random.Random) -> None:
     reporter.set_battery(50)
     for trip in PLAIN_TRIPS:
         _expect_reason(reporter, trip, fraction=0.0)
-    expect_each(any_trips(50), lambda trip: _expect_reason(reporter, trip, 0.5), draw, count=_cases(reporter, 12))
+    expect_each(any_trips(50), lambda trip: _expect_reason(reporter, trip, 0.5), draw, count=_case_count(reporter, 12))
 
 
-def _cases(reporter: Reporter, count: int) -> int:
+def _case_count(reporter: Reporter, count: int) -> int:
     """Return how many drawn cases a check can afford: fewer in real time."""
     return count if reporter.time == LOCKSTEP else 4
 
@@ -162,7 +167,7 @@ def _sentence(trip: Trip) -> str:
 
 
 def _expect_reason(reporter: Reporter, trip: Trip, fraction: float) -> None:
-    """Fail the check unless the reason fits what the answer says of a trip; other checks test whether that is right."""
+    """Fail the check unless the reason fits the rest of the answer for a trip; other checks test the rest."""
     answer = reporter.ask(trip.legs, trip.reserve)
     length = len(answer.reason.strip())
     if answer.possible:
@@ -189,8 +194,8 @@ def _expect_answer(reporter: Reporter, trip: Trip, situation: str, fraction: flo
 def _charge(reporter: Reporter, percent: int, excess: float = 0.25) -> int:
     """Charge the battery; return the level with which trips are tested, in percent.
 
-    It is the level that the status shows, so a level that is rounded down costs no points here. If the status shows
-    far less, it is `percent`.
+    This is the level that the status shows, so a level that is rounded down costs no points here. If the status shows
+    far less, `percent` is returned.
     """
     shown_level = reporter.set_battery(percent, excess)
     return shown_level if min(percent, MIN_SHOWN_LEVEL) <= shown_level <= 100 else percent

@@ -1,4 +1,4 @@
-"""Batteries and trips of all kinds that the contract allows, and the answers that it asks for."""
+"""Batteries and trips of all kinds that the contract allows, and the answers that it requires."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from autograder.checks.ch03_interfaces.support.contract import MAX_LEGS, METRES_PER_PERCENT, RESERVE, UNKNOWN
 
-ROUNDING = 1e-6  # percent, far more than adding up the legs in another order can change
-EIGHTH = METRES_PER_PERCENT / 8  # m; legs that are whole multiples are added up exactly
-ENOUGH = 51  # percent, more than SHORT_LEGS take, also for a program that rounds it down
+ROUNDING = 1e-6  # percent: far more than the order in which the legs are added up can change
+EIGHTH = METRES_PER_PERCENT / 8  # m; legs that are whole multiples of it are added up exactly
+ENOUGH = 51  # percent: more than SHORT_LEGS take, even if a program rounds the level down
 FULL_LEGS = (100.125,) * MAX_LEGS  # m; a text that lists them is longer than a reason may be
 
 
@@ -37,7 +37,7 @@ class Trip:
 
 
 def answers(level: int, legs: tuple[float, ...], reserve: int) -> set[tuple[bool, int]]:
-    """Return whether a trip is possible, and the percent at its end: more than one pair if rounding decides."""
+    """Return whether a trip is possible, and the percent at its end: more than one pair if rounding errors decide."""
     if level == UNKNOWN or not all(0.0 <= leg < math.inf for leg in legs):
         return {(False, UNKNOWN)}
     left = level - math.fsum(legs) / METRES_PER_PERCENT
@@ -47,7 +47,7 @@ def answers(level: int, legs: tuple[float, ...], reserve: int) -> set[tuple[bool
 
 
 def whole_percents(percentage: float) -> set[int]:
-    """Return the level of a battery state: halves go up, and two levels are right where rounding decides."""
+    """Return the right levels of a battery state: halves are rounded up; two are right if rounding errors decide."""
     if not 0.0 <= percentage <= 1.0:
         return {UNKNOWN}
     percent = percentage * 100.0
@@ -55,7 +55,7 @@ def whole_percents(percentage: float) -> set[int]:
     return {math.floor(percent + 0.5 + error) for error in ((0.0,) if is_exact else (-1e-4, 1e-4))}
 
 
-# Every thousandth, and halves that float32 represents exactly.
+# Multiples of 0.001, and half percents that float32 represents exactly.
 PERCENTAGES = st.integers(0, 1000).map(lambda number: number / 1000) | st.sampled_from((0.125, 0.375, 0.625, 0.875))
 NO_PERCENTAGES = st.sampled_from(
     (math.nan, math.inf, -math.inf, 1.00001, -0.00001, 1.004, -0.004, 1.5, -0.5, 85.0, 100.0)
@@ -73,7 +73,7 @@ def short_trips() -> st.SearchStrategy[Trip]:
 
 @st.composite
 def reserves(draw: st.DrawFn) -> tuple[tuple[float, ...], int]:
-    """Draw legs, and a number of percent to add to what they leave: about 0, or any other that fits."""
+    """Draw legs, and by how many percent the reserve exceeds what they leave: about 0, or any number."""
     return draw(st.lists(_EXACT_LEG, max_size=MAX_LEGS).map(tuple)), draw(
         st.sampled_from((0, 1, -1)) | st.integers(-200, 200) | st.just(-(10**9))
     )
@@ -81,7 +81,7 @@ def reserves(draw: st.DrawFn) -> tuple[tuple[float, ...], int]:
 
 @st.composite
 def long_legs(draw: st.DrawFn, level: int) -> tuple[float, ...]:
-    """Draw legs that take more than a level in percent: hardly more, or far more."""
+    """Draw legs that take more than `level` percent of the charge: hardly more, or far more."""
     excess = draw(st.sampled_from((0.25, 2.5, 4.375, 5.0, 500.0, 1e6)))
     legs = draw(st.lists(st.integers(0, 8 * level // MAX_LEGS).map(lambda n: n * EIGHTH), max_size=MAX_LEGS - 2))
     return (*legs, level * METRES_PER_PERCENT - sum(legs), excess)

@@ -14,8 +14,8 @@ from autograder.checks.ch03_interfaces.support.contract import DRIVER, PACKAGE, 
 from autograder.checks.ch03_interfaces.support.types import Types
 
 COMMANDS, ODOMETRY, ACTION = "/cmd_vel", "/odom", "/drive_distance"
-_RAISED = re.compile(r"Error raised in execute callback: (.{1,200})")  # as logged by rclpy
-_NOT_ENDED = "Goal state not set"
+_EXCEPTION_LINE = re.compile(r"Error raised in execute callback: (.{1,200})")  # as logged by rclpy
+_NOT_ENDED_TEXT = "Goal state not set"
 STEP = 0.05  # s: one step of the simulated robot
 ANSWER_SECONDS = 10.0  # s to wait for an answer; in lockstep, the server answers at once
 
@@ -23,7 +23,7 @@ ANSWER_SECONDS = 10.0  # s to wait for an answer; in lockstep, the server answer
 class Driver(AutoHarness):
     """A harness that sends goals and simulates the robot.
 
-    A program that has been sent goals and then rejects a valid one is started again: another check tests whether it
+    A program that has been sent goals and then rejects a valid one is restarted: another check tests whether it
     is ready for the next goal.
 
     Attributes:
@@ -43,7 +43,7 @@ class Driver(AutoHarness):
         self._first_command = 0  # the number of commands before the last goal was sent
 
     def restart(self) -> None:
-        """Start the program again, and publish the robot's pose."""
+        """Restart the program, and publish the robot's pose."""
         stuck, is_silent = self.stuck, self.is_silent
         self.__exit__(None, None, None)
         self.__enter__()
@@ -90,25 +90,25 @@ class Driver(AutoHarness):
         return self.messages(COMMANDS)[self._first_command :]
 
     def abort_reason(self) -> str:
-        """Return why execute did not end its goal, from rclpy's log, or an empty string."""
-        errors = _RAISED.findall(self.output)
+        """Return why execute did not end its goal, according to rclpy's log, or an empty string."""
+        errors = _EXCEPTION_LINE.findall(self.output)
         if errors:
             return f" execute raised an exception: {errors[-1]}."
-        return " execute returned without succeed(), canceled() or abort()." if _NOT_ENDED in self.output else ""
+        return " execute returned without succeed(), canceled() or abort()." if _NOT_ENDED_TEXT in self.output else ""
 
     def roll(self, goal: Goal, seconds: float, *, until: Any = None) -> list[Twist]:
         """Move the robot until the goal has ended, a condition holds or the time is up; return the commands.
 
         Each command moves the robot for a tenth of a second, or for the time since the previous one if that is less.
         """
-        first = applied = len(self.messages(COMMANDS))
+        first = applied_count = len(self.messages(COMMANDS))
         deadline = self.seconds + seconds
         while self.seconds < deadline and goal.result is None and not (until and until()):
             self.run(STEP)
-            applied = self._apply_commands(applied)
+            applied_count = self._apply_commands(applied_count)
             self._publish_odometry()
         self.run(2 * STEP)  # the last command may come with the result
-        self._apply_commands(applied)
+        self._apply_commands(applied_count)
         return [received.message for received in self.messages(COMMANDS)[first:]]
 
     def finish(self, goal: Goal, seconds: float, situation: str) -> list[Twist]:
@@ -151,6 +151,6 @@ def has_stopped(commands: list[Twist]) -> bool:
 
 
 def is_remaining(distance: float, driven: float, remaining: float, slack: float) -> bool:
-    """Return whether `remaining` fits a goal, all in m; beyond the goal, it may be 0 or negative."""
+    """Return whether `remaining` fits the other distances, all in m; beyond the goal, it may be 0 or negative."""
     exact = distance - driven
     return any(abs(remaining - expected) <= slack for expected in (exact, max(0.0, exact)))

@@ -10,7 +10,7 @@ STUB = "YOUR CODE HERE"  # marks the missing answer in a released cell
 
 
 def expect_definition(workspace: Workspace, expected: interfaces.Interface, *aspects: interfaces.Aspect) -> None:
-    """Fail the check unless a definition agrees with the contract in these aspects; earn points for what agrees."""
+    """Fail the check unless a definition agrees with the contract in these aspects; parts that agree earn points."""
     differences = [
         difference
         for difference in interfaces.compare(expected, read_definition(workspace, expected))
@@ -26,10 +26,10 @@ def read_definition(workspace: Workspace, expected: interfaces.Interface) -> int
     folder = packages.get(INTERFACES, workspace.root / "src" / INTERFACES)
     path = folder / expected.path
     if path.is_symlink() or not path.is_file():
-        present = [
+        present_paths = [
             f"{file.parent.name}/{file.name}" for file in sorted(folder.glob("*/*")) if file.parent.name != "src"
         ]
-        similar = interfaces.closest(expected.path, present)
+        similar = interfaces.closest(expected.path, present_paths)
         raise CheckFailed(f"There is no {INTERFACES}/{expected.path}" + (f", but a {similar}." if similar else "."))
     try:
         text = path.read_bytes()[: interfaces.MAX_BYTES + 1].decode()

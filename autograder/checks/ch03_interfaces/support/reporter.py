@@ -59,7 +59,7 @@ class Reporter(AutoHarness):
         """Return the next status; fail the check if none comes."""
         start = self.seconds
         self.run(PERIOD + 0.2)
-        self.until(lambda: bool(self.messages(TOPIC, since=start)), EXTRA_SECONDS)  # another check tests its period
+        self.until(lambda: bool(self.messages(TOPIC, since=start)), EXTRA_SECONDS)  # another check tests the period
         statuses = self.messages(TOPIC, since=start)
         expect(bool(statuses), f"No message came on robot_status for {PERIOD + EXTRA_SECONDS:.0f} s.")
         return statuses[-1].message

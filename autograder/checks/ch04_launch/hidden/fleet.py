@@ -42,12 +42,12 @@ def test_includes(launches: Launches) -> None:
     """It includes robot.launch.py, so that what is changed there is changed for both robots."""
     expected = [f"/{FIRST}/wheels", f"/{SECOND}/wheels"]
     nodes = launch_probe.settle(launches.renamed_fleet(), expected)
-    included = [name for name in nodes if name.endswith("/wheels")]  # other checks test the namespaces
+    wheel_nodes = [name for name in nodes if name.endswith("/wheels")]  # other checks test the namespaces
     message = (
         "The checks put a robot.launch.py with one node, wheels, and report:=false beside your file; it started "
         f"{', '.join(nodes) or 'nothing'} instead of {' and '.join(expected)}."
     )
-    expect(len(included) == len(nodes) == 2, message, fraction=0.5 if nodes and included == nodes else 0.0)
+    expect(len(wheel_nodes) == len(nodes) == 2, message, fraction=0.5 if nodes and wheel_nodes == nodes else 0.0)
 
 
 @check(points=1, covers=("first", "second", "fleet-speed", "fleet-described"), doc=contract.SUBSTITUTIONS)
@@ -55,7 +55,7 @@ def test_includes(launches: Launches) -> None:
 @hint("DeclareLaunchArgument('first', default_value='robot1', description='...')")
 def test_fleet_arguments(launches: Launches) -> None:
     """two_robots.launch.py declares first, second and speed, each with its default and a description."""
-    # They include the arguments of the included file.
+    # These include the arguments that the included file declares.
     arguments = launch_probe.declared_arguments(launches.fleet_workspace(), PACKAGE, FLEET)
     for name, default in (("first", FIRST), ("second", SECOND), ("speed", str(contract.SPEED))):
         launch_probe.expect_argument(arguments, name, default)
@@ -65,7 +65,7 @@ def test_fleet_arguments(launches: Launches) -> None:
 @hint("PushRosNamespace takes a substitution: PushRosNamespace(LaunchConfiguration('first')).", GROUP_HINT)
 def test_spaces(launches: Launches, inputs: Inputs) -> None:
     """First and second name the two namespaces."""
-    launch_probe.expect_nodes(_renamed(launches, inputs), nodes_in_namespaces(*inputs.names))
+    launch_probe.expect_nodes(_drawn_fleet(launches, inputs), nodes_in_namespaces(*inputs.names))
 
 
 @check(points=2, covers=("first", "second"), after=("spaces",), doc=contract.LARGE)
@@ -73,7 +73,7 @@ def test_spaces(launches: Launches, inputs: Inputs) -> None:
 @hint("A robot's robot_name is its own namespace's name.")
 def test_robot_names(launches: Launches, inputs: Inputs) -> None:
     """Each robot reports under its own name."""
-    harness = _renamed(launches, inputs)
+    harness = _drawn_fleet(launches, inputs)
     reporters = _both_nodes(harness, inputs.names, REPORTER)
     actual = {node: (harness.parameters(node, ["robot_name"]) or {}).get("robot_name") for node in reporters}
     expected = {f"/{name}{REPORTER}": name for name in inputs.names}
@@ -91,13 +91,15 @@ def test_robot_names(launches: Launches, inputs: Inputs) -> None:
 @hint("launch_arguments={..., 'speed': LaunchConfiguration('speed')}.items()")
 def test_fleet_speed(launches: Launches, inputs: Inputs) -> None:
     """The argument speed reaches both drivers."""
-    harness = _renamed(launches, inputs)
+    harness = _drawn_fleet(launches, inputs)
     for node in _both_nodes(harness, inputs.names, DRIVER):
         launch_probe.expect_parameters(harness, node, {"speed": inputs.speed})
     own_fleet = launches.own_fleet()
     for node in (f"/{FIRST}{DRIVER}", f"/{SECOND}{DRIVER}") if _starts_robots(own_fleet, FIRST, SECOND) else ():
         speed = _speed(own_fleet, node)
-        if not parameters.same(speed, inputs.speed) and parameters.same(_speed(launches.alone(), DRIVER), inputs.speed):
+        if not parameters.same(speed, inputs.speed) and parameters.same(
+            _speed(launches.lone_robot(), DRIVER), inputs.speed
+        ):
             message = f"With your robot.launch.py and speed:={inputs.speed}, {node} has speed = {speed!r}"
             raise CheckFailed(f"{message}; alone, in no namespace, it has {inputs.speed!r}.", fraction=0.5)
 
@@ -109,7 +111,7 @@ def test_status(launches: Launches, inputs: Inputs) -> None:
     """Both robots report on /fleet/status."""
     for names, harness, fraction in (
         ((FIRST, SECOND), launches.fleet(), 0.0),
-        (inputs.names, _renamed(launches, inputs), 0.8),
+        (inputs.names, _drawn_fleet(launches, inputs), 0.8),
     ):
         expected = _both_nodes(harness, names, REPORTER)
         harness.wait_for(partial(_are_publishers, harness, expected), MATCH_SECONDS)
@@ -132,16 +134,16 @@ def test_status(launches: Launches, inputs: Inputs) -> None:
 @hint("ros2 topic info -v /robot1/cmd_vel names who is at which end.")
 def test_own_commands(launches: Launches, inputs: Inputs) -> None:
     """Each robot has a cmd_vel of its own, from its driver to its reporter."""
-    checked = 0
+    checked_count = 0
     for harness, names, prefix in (
         (launches.fleet(), (FIRST, SECOND), ""),
-        (_renamed(launches, inputs), inputs.names, "With other names of the robots, "),
+        (_drawn_fleet(launches, inputs), inputs.names, "With other names of the robots, "),
         (launches.own_fleet(), (FIRST, SECOND), "With your robot.launch.py, "),
     ):
         for name in names if _starts_robots(harness, *names) else ():
-            _expect_own_commands(harness, name, prefix, fraction=0.75 if checked else 0.0)
-            checked += name == names[-1]
-    expect(checked > 0, "Two robots, each with driver and reporter in its namespace, were not started.")
+            _expect_own_commands(harness, name, prefix, fraction=0.75 if checked_count else 0.0)
+            checked_count += name == names[-1]
+    expect(checked_count > 0, "Two robots, each with driver and reporter in its namespace, were not started.")
 
 
 @check(points=1, covers="fleet-ctrl-c", after=("two_robots",))
@@ -167,7 +169,7 @@ def _endpoints(harness: LaunchHarness, name: str) -> tuple[list[str], list[str]]
 
 
 def _starts_robots(harness: LaunchHarness, *names: str) -> bool:
-    """Return whether a launch starts these robots and nothing else; other checks report if it does not."""
+    """Return whether a launch starts these robots and nothing else; other checks report a launch that does not."""
     with suppress(StudentError):
         return launch_probe.settle(harness, nodes_in_namespaces(*names)) == nodes_in_namespaces(*names)
     return False
@@ -183,10 +185,10 @@ def _both_nodes(harness: LaunchHarness, names: tuple[str, str], suffix: str) -> 
     Other checks test the namespaces.
     """
     nodes = launch_probe.settle(harness, nodes_in_namespaces(*names))
-    matching = sorted(name for name in nodes if name.endswith(suffix))
+    matching_nodes = sorted(name for name in nodes if name.endswith(suffix))
     message = f"The graph holds {', '.join(nodes) or 'no node'}, and not two that are called {suffix[1:]}."
-    expect(len(matching) == 2, f"{message} {launch_probe.failure(harness.output)}".strip())
-    return matching
+    expect(len(matching_nodes) == 2, f"{message} {launch_probe.failure(harness.output)}".strip())
+    return matching_nodes
 
 
 def _are_publishers(harness: LaunchHarness, nodes: list[str]) -> bool:
@@ -198,6 +200,6 @@ def _has_messages(harness: LaunchHarness) -> bool:
     return bool(harness.messages(SHARED))
 
 
-def _renamed(launches: Launches, inputs: Inputs) -> LaunchHarness:
+def _drawn_fleet(launches: Launches, inputs: Inputs) -> LaunchHarness:
     first, second = inputs.names
     return launches.fleet(first=first, second=second, speed=inputs.speed)

@@ -1,6 +1,6 @@
 """The programs and parameters that are given with the package; the checks launch them as they were given.
 
-A check tests what a launch file does. A reporter that restarts itself would do this in the launch file's place.
+A check tests what a launch file does. A changed reporter that restarts itself could do this instead.
 """
 
 from __future__ import annotations

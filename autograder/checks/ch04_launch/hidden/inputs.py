@@ -18,12 +18,12 @@ class Inputs:
         speed: a robot's speed in m/s, with a fraction.
         whole_speed: a robot's speed in m/s, without a decimal point.
         number_name: a robot's name that looks like a number.
-        quoted_name: a robot's name with quotation marks of both kinds, and other marks that YAML and Python know.
+        quoted_name: a robot's name with quotation marks of both kinds, and other characters special to YAML or Python.
         names: the names of two robots.
         enough: a battery level that passes the self-test, in percent, with a fraction.
-        whole_battery: another one, without a decimal point.
-        empty: a battery level that fails it.
-        refused: texts for the argument report that are neither true nor false, though some conditions take them.
+        whole_battery: another level that passes it, without a decimal point.
+        empty: a battery level that fails the self-test.
+        refused: texts for the argument report that are neither true nor false, though some conditions accept them.
     """
 
     file: dict[str, float]

@@ -16,7 +16,7 @@ from autograder.checks.ch04_launch.support.contract import DRIVER, PACKAGE, REPO
 check = group("robot")
 SHOWN_SECONDS = 5.0  # s of real time until a running node's line is shown
 REFUSE_SECONDS = 15.0  # s of real time until a launch that refuses an argument has ended
-TYPED = "ParameterValue(LaunchConfiguration(...), value_type=...) says which type the text becomes."
+TYPE_HINT = "ParameterValue(LaunchConfiguration(...), value_type=...) says which type the text becomes."
 
 
 @check(points=2, covers=("robot-name", "speed", "report", "described"), doc=contract.SUBSTITUTIONS)
@@ -34,12 +34,12 @@ def test_arguments(launches: Launches) -> None:
 @hint("A value that is none of the choices ends the launch before anything is started.")
 def test_choices(workspace: Workspace, launches: Launches, inputs: Inputs) -> None:
     """Report can be true or false, and nothing else."""
-    declared = launches.robot_arguments().get("report")
-    expect(declared is not None, "The launch file declares no argument report.")
-    choices = declared.choices if declared else ()
+    argument = launches.robot_arguments().get("report")
+    expect(argument is not None, "The launch file declares no argument report.")
+    choices = argument.choices if argument else ()
     message = f"The argument report takes {', '.join(choices)}, instead of true and false."
     expect(sorted(choices) in ([], ["false", "true"]), message)
-    # A launch file without choices may refuse a value by other means, so only a launch shows it.
+    # A launch file without choices may refuse a value by other means, so only a launch shows whether it does.
     for value in inputs.refused[:1] if choices else inputs.refused:
         with LaunchHarness(workspace, PACKAGE, ROBOT, {"report": value}) as harness:
             harness.wait_for(partial(_has_ended, harness), REFUSE_SECONDS)
@@ -54,13 +54,13 @@ def test_choices(workspace: Workspace, launches: Launches, inputs: Inputs) -> No
 def test_starts(workspace: Workspace, launches: Launches) -> None:
     """robot.launch.py starts driver and reporter, which are as they were given, and nothing else."""
     launch_probe.expect_nodes(launches.robot(), [DRIVER, REPORTER])
-    changed = " and ".join(changed_files(workspace)[:3])
-    message = f"{changed} is not as it was given. The checks started it as it was."
-    expect(not changed, message, fraction=0.75)
+    changed_names = " and ".join(changed_files(workspace)[:3])
+    message = f"{changed_names} is not as it was given. The checks started it as it was."
+    expect(not changed_names, message, fraction=0.75)
 
 
 @check(points=1, covers=("argument-wins", "robot-name", "speed", "screen"), after=("starts",))
-@hint("The arguments' defaults are robot1 and 0.2, and they win over the file.", TYPED)
+@hint("The arguments' defaults are robot1 and 0.2, and they win over the file.", TYPE_HINT)
 @hint("output='screen' is an argument of each Node.")
 def test_defaults(launches: Launches) -> None:
     """Without arguments, it is robot1 at 0.2 m/s, whatever the parameters file says, and both nodes are on screen."""
@@ -88,7 +88,7 @@ def test_parameters_file(launches: Launches, inputs: Inputs) -> None:
 
 
 @check(points=2, covers=("speed", "driver"), after=("starts",), doc=contract.SUBSTITUTIONS)
-@hint("{'speed': LaunchConfiguration('speed')} is read when the launch runs, not when the file is.", TYPED)
+@hint("{'speed': LaunchConfiguration('speed')} is read when the launch runs, not when the file is.", TYPE_HINT)
 def test_speed(launches: Launches, inputs: Inputs) -> None:
     """The argument speed reaches the driver."""
     harness = launches.robot(speed=inputs.speed, robot_name=inputs.number_name)
@@ -97,7 +97,7 @@ def test_speed(launches: Launches, inputs: Inputs) -> None:
 
 
 @check(points=2, covers=("robot-name", "reporter"), after=("starts",), doc=contract.SUBSTITUTIONS)
-@hint("42 is a number for YAML, and the reporter's robot_name is a text.", TYPED)
+@hint("42 is a number for YAML, and the reporter's robot_name is a text.", TYPE_HINT)
 @hint("Quotation marks put around a text by hand end at the first one inside it; value_type=str takes any text.")
 def test_name(launches: Launches, inputs: Inputs) -> None:
     """The argument robot_name reaches the reporter as it was given, like a number or with quotation marks."""
@@ -108,7 +108,7 @@ def test_name(launches: Launches, inputs: Inputs) -> None:
         f"With robot_name:={inputs.number_name}, the reporter does not run. {launch_probe.failure(harness.output)}",
     )
     launch_probe.expect_parameters(harness, reporter, {"robot_name": inputs.number_name})
-    harness = launches.quoted()
+    harness = launches.quoted_robot()
     launch_probe.settle(harness, [reporter])
     value = (harness.parameters(reporter, ["robot_name"]) or {}).get("robot_name")
     value_text = "not there" if value is None else repr(value)
@@ -127,13 +127,13 @@ def test_quiet(launches: Launches, inputs: Inputs) -> None:
         REPORTER not in nodes and "reporter" not in programs,
         "With report:=false, the reporter is started all the same.",
     )
-    # Other checks test whether the driver keeps running: one that dies of its speed is in the graph only by chance.
+    # Other checks test whether the driver keeps running: if it dies of its speed, it is in the graph only by chance.
     expect(bool(programs), f"With report:=false, nothing is started. {launch_probe.failure(harness.output)}".strip())
     expect(len(nodes) < 2, f"With report:=false, {', '.join(nodes)} run, instead of {DRIVER} alone.", fraction=0.75)
 
 
 @check(points=1, covers=("speed", "screen"), after=("speed",))
-@hint("Without a type, 1 is an integer, and the driver's speed is a float: the driver dies.", TYPED)
+@hint("Without a type, 1 is an integer, and the driver's speed is a float: the driver dies.", TYPE_HINT)
 def test_whole_speed(launches: Launches, inputs: Inputs) -> None:
     """speed:=1, without a point, is a speed too."""
     harness = launches.robot(report="false", speed=inputs.whole_speed)

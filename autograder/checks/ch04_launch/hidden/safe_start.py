@@ -7,27 +7,31 @@ import signal
 from autograder.checking import LaunchHarness, expect, group, hint
 from autograder.checking.probes import launch_probe
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
-from autograder.checks.ch04_launch.hidden.launches import UNUSUAL, Launches
+from autograder.checks.ch04_launch.hidden.launches import UNUSUAL_SELF_TESTS, Launches
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import DRIVER, REPORTER
 from autograder.checks.ch04_launch.support.respawn import expect_respawn
 
 check = group("safe_start")
-END_SECONDS = 12.0  # s of real time; a node that gets SIGINT while it starts may need SIGTERM 5 s later
+# Seconds of real time until everything has ended: a node that gets SIGINT while it starts may need SIGTERM 5 s later.
+END_SECONDS = 12.0
 ENDS = 6  # how often the scripted reporter ends before the check trusts that it is always restarted
-WAITS = "RegisterEventHandler(OnProcessExit(target_action=self_test, on_exit=after_self_test))"
-FOLLOWS = "RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))"
+WAIT_HINT = "RegisterEventHandler(OnProcessExit(target_action=self_test, on_exit=after_self_test))"
+SHUTDOWN_HINT = "RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))"
 
 
 @check(points=3, covers=("self-test", "safe-driver"), doc=contract.EVENTS)
-@hint("The driver is in no list but the one that after_self_test returns.", WAITS)
+@hint("The driver is in no list but the one that after_self_test returns.", WAIT_HINT)
 def test_order(launches: Launches, inputs: Inputs) -> None:
     """The driver starts once the self-test has passed, and not before."""
     harness = launches.safe(battery=inputs.enough)
     nodes = launch_probe.settle(harness, [DRIVER, REPORTER])
-    started = launch_probe.started(harness.output)
-    expect("self_test" in started, f"The self-test was not started; {', '.join(started) or 'nothing'} was.")
-    count = started.count("self_test")  # too many, if a launch file itself prints such lines
+    started_programs = launch_probe.started(harness.output)
+    expect(
+        "self_test" in started_programs,
+        f"The self-test was not started; {', '.join(started_programs) or 'nothing'} was.",
+    )
+    count = started_programs.count("self_test")  # more than 1 if the launch file itself prints such lines
     expect(count == 1, f"The self-test was started {count} times by what was printed, instead of once.")
     expect(
         DRIVER in nodes,
@@ -63,8 +67,8 @@ def test_fails_safe(launches: Launches, inputs: Inputs) -> None:
 @hint("Only 0 is success: event.returncode == 0.")
 def test_killed(launches: Launches) -> None:
     """When the self-test is killed, or ends with exit status 3, all ends without the driver; it has its own name."""
-    for ending in UNUSUAL:
-        harness = launches.unusual(ending)
+    for ending in UNUSUAL_SELF_TESTS:
+        harness = launches.unusual_start(ending)
         _expect_refusal(harness, f"When the self-test ends {ending},")
         others = launch_probe.node_names(harness.output, "self_test") - {"self_test"}
         expect(not others, f"The self-test is called {', '.join(others)}, not self_test.")
@@ -79,9 +83,9 @@ def test_whole_battery(launches: Launches, inputs: Inputs) -> None:
     nodes = launch_probe.settle(harness, [DRIVER, REPORTER])
     message = f"With battery:={inputs.whole_battery}, the driver does not run."
     expect(DRIVER in nodes, f"{message} {launch_probe.failure(harness.output)}".strip())
-    declared = launches.safe_arguments().get("battery")
-    expect(declared is not None, "safe_start.launch.py does not declare the argument battery.", fraction=0.5)
-    default = "80" if declared and declared.is_computed else declared.default if declared else None
+    argument = launches.safe_arguments().get("battery")
+    expect(argument is not None, "safe_start.launch.py does not declare the argument battery.", fraction=0.5)
+    default = "80" if argument and argument.is_computed else argument.default if argument else None
     default_text = "no default" if default is None else f"the default {default!r}"
     expect(default == "80", f"The argument battery has {default_text}, instead of '80'.", fraction=0.5)
 
@@ -91,19 +95,19 @@ def test_whole_battery(launches: Launches, inputs: Inputs) -> None:
 def test_respawns(launches: Launches, inputs: Inputs) -> None:
     """A reporter that dies is started again."""
     expect_respawn(launches.safe(battery=inputs.enough))
-    harness = launches.scripted()
-    is_restarted = harness.wait_for(lambda: _count_reporters(harness.output) > ENDS, launch_probe.START_SECONDS)
-    count = _count_reporters(harness.output)
+    harness = launches.scripted_start()
+    is_restarted = harness.wait_for(lambda: _count_reporter_starts(harness.output) > ENDS, launch_probe.START_SECONDS)
+    count = _count_reporter_starts(harness.output)
     message = f"A reporter that ends by itself, with exit status 0, was started {count} times, and then no more."
     expect(is_restarted, message, fraction=0.75)
 
 
 @check(points=2, covers="safe-driver", after=("order",), doc=contract.EVENTS)
-@hint("The handler's target_action is the very Node that is started.", FOLLOWS)
+@hint("The handler's target_action is the very Node that is started.", SHUTDOWN_HINT)
 def test_driver_crash(launches: Launches, inputs: Inputs) -> None:
     """When the driver crashes, everything ends."""
     _expect_end(launches.safe(battery=inputs.enough), signal.SIGKILL, "The driver was killed")
-    harness = launches.scripted()
+    harness = launches.scripted_start()
     is_ready = harness.wait_for(lambda: _is_driver_ready(harness), launch_probe.START_SECONDS)
     expect(is_ready, f"After a self-test of 3 s, no driver runs. {launch_probe.failure(harness.output)}", fraction=0.75)
     before = harness.output.partition("[driver-")[0]
@@ -111,8 +115,8 @@ def test_driver_crash(launches: Launches, inputs: Inputs) -> None:
     is_in_order = "self_test" in launch_probe.ended(before) and not launches.is_early(harness)
     expect(is_in_order, message, fraction=0.75)
     _expect_end(harness, signal.SIGTERM, "The driver ended with exit status 3", fraction=0.75)
-    # One may be starting when the driver ends. A reporter that is restarted for 2 s starts more often.
-    count = _count_reporters(harness.output.partition("exit code 3,")[2])
+    # A reporter may be starting when the driver ends. One that is restarted for another 2 s starts more often.
+    count = _count_reporter_starts(harness.output.partition("exit code 3,")[2])
     late_message = (
         f"After the driver had ended, the reporter was started {count} times more before everything shut down."
     )
@@ -120,11 +124,11 @@ def test_driver_crash(launches: Launches, inputs: Inputs) -> None:
 
 
 @check(points=1, covers=("safe-driver", "battery"), after=("whole_battery",), doc=contract.EVENTS)
-@hint("It does not matter how the driver ends: no look at event.returncode here.", FOLLOWS)
+@hint("It does not matter how the driver ends: no look at event.returncode here.", SHUTDOWN_HINT)
 def test_driver_end(launches: Launches, inputs: Inputs) -> None:
     """The driver has its own defaults; when it ends by itself, with exit status 0, everything ends too."""
     harness = launches.safe(battery=inputs.whole_battery)
-    if DRIVER not in harness.nodes():  # `whole_battery` reports it; here, the battery has a decimal point
+    if DRIVER not in harness.nodes():  # `whole_battery` reports this; here, the battery has a decimal point
         harness = launches.safe(battery=f"{inputs.enough:.3f}")
         launch_probe.settle(harness, [DRIVER, REPORTER])
     launch_probe.expect_parameters(harness, DRIVER, contract.NO_FILE[DRIVER])
@@ -137,23 +141,26 @@ def _expect_refusal(harness: LaunchHarness, situation: str) -> None:
     harness.wait_for(lambda: "self_test" in launch_probe.ended(harness.output), launch_probe.START_SECONDS)
     has_ended = harness.wait_for(lambda: harness.status is not None, END_SECONDS)
     launch_probe.require_written(harness.output)
-    started = launch_probe.started(harness.output)
-    expect("self_test" in started, f"The self-test was not started. {launch_probe.failure(harness.output)}".strip())
-    expect("driver" not in started, f"{situation} the driver was started.")
+    started_programs = launch_probe.started(harness.output)
+    expect(
+        "self_test" in started_programs,
+        f"The self-test was not started. {launch_probe.failure(harness.output)}".strip(),
+    )
+    expect("driver" not in started_programs, f"{situation} the driver was started.")
     expect(has_ended, f"{situation} the driver was not started, but the launch goes on.", fraction=0.5)
     expect(not harness.left(), f"The launch ended, but left a process running: {', '.join(harness.left())[:200]}.")
 
 
-def _expect_end(harness: LaunchHarness, number: signal.Signals, situation: str, fraction: float = 0.0) -> None:
+def _expect_end(harness: LaunchHarness, stop_signal: signal.Signals, situation: str, fraction: float = 0.0) -> None:
     missing = f"There is not one driver. {launch_probe.failure(harness.output)}".strip()
-    expect(harness.kill("driver", number) == 1, missing, fraction=fraction)
+    expect(harness.kill("driver", stop_signal) == 1, missing, fraction=fraction)
     has_ended = harness.wait_for(lambda: harness.status is not None, END_SECONDS)
     expect(has_ended, f"{situation}, and the launch goes on without it.", fraction=fraction)
     left_message = f"{situation} and the launch with it, but this still runs: {', '.join(harness.left())[:200]}."
     expect(not harness.left(), left_message, fraction=fraction)
 
 
-def _count_reporters(output: str) -> int:
+def _count_reporter_starts(output: str) -> int:
     """Return how many times the reporter was started, according to a launch's output."""
     return launch_probe.started(output).count("reporter")
 

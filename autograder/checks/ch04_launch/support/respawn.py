@@ -6,17 +6,17 @@ import time
 
 from autograder.checking import LaunchHarness, RunningProgram, expect
 
-RESPAWN_SECONDS = 10.0  # s of real time; the machine may be busy
-DELAY = 0.5  # s
-LATE = 0.95  # s; a busy machine adds to the delay, but hardly so much in each of three trials
+RESPAWN_SECONDS = 10.0  # s of real time to wait for a new reporter; the machine may be busy
+DELAY = 0.5  # s from the end of a reporter to the start of the next one
+LATE = 0.95  # s: such a delay is too long; a busy machine hardly causes it in each of three trials
 TIMES = ("once", "twice", "three times")
 
 
 def expect_respawn(harness: LaunchHarness) -> None:
-    """Kill the reporter three times; fail the check unless a new one starts half a second later each time.
+    """Kill the reporter three times; fail the check unless each time, a new one starts half a second later.
 
     Raises:
-        CheckFailed: no new one starts, one starts too early, all start too late, or the launch ends.
+        CheckFailed: no new reporter starts, one starts too early, all start too late, or the launch ends.
     """
     seconds = [_respawn(harness, times) for times in TIMES]
     template = f"The reporter was started again {{:.2f}} s after it had been killed, instead of after {DELAY:g} s."
@@ -26,17 +26,17 @@ def expect_respawn(harness: LaunchHarness) -> None:
 
 def _respawn(harness: LaunchHarness, count_text: str) -> float:
     """Kill the reporter; return the seconds until the kernel started the next one."""
-    before, started = _reporters(harness), list[float]()
+    before, start_times = _reporters(harness), list[float]()
     kill_time = time.clock_gettime(time.CLOCK_BOOTTIME)
     harness.kill("reporter")
 
     def has_restarted() -> bool:
-        started.extend(filter(None, (program.start_seconds for program in _reporters(harness) - before)))
-        return bool(started)
+        start_times.extend(filter(None, (program.start_seconds for program in _reporters(harness) - before)))
+        return bool(start_times)
 
     expect(harness.wait_for(has_restarted, RESPAWN_SECONDS), f"The reporter was killed {count_text}, and stayed away.")
     expect(harness.status is None, "The reporter was killed, and the launch ended with it.")
-    return min(started) - kill_time
+    return min(start_times) - kill_time
 
 
 def _reporters(harness: LaunchHarness) -> set[RunningProgram]:

@@ -1,4 +1,4 @@
-"""Checks of the nodes that the three launch files start, and of the launches' end."""
+"""Checks of the nodes that the three launch files start, and of how the launches end."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from autograder.checks.ch04_launch.support.contract import DRIVER, FLEET, PACKAG
 from autograder.checks.ch04_launch.support.respawn import expect_respawn
 from autograder.checks.ch04_launch.support.status import REPORT_SECONDS, reporting_robots
 
-NAMES = ("tram", "lorry")  # of the two robots
+NAMES = ("tram", "lorry")  # the names of the two robots
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Launches:
 
 @pytest.fixture(scope="module")
 def launches(workspace: Workspace) -> Iterator[Launches]:
-    """Start all launches with the first check: together, they need half the time, and a student waits for them."""
+    """Start all launches with the first check: together, they need half the time, and the student is waiting."""
     with ExitStack() as stack:
 
         def start(file: str, arguments: dict[str, str], subscribes: dict[str, type] | None = None) -> LaunchHarness:
@@ -106,9 +106,9 @@ def test_safe_start(launches: Launches) -> None:
     """safe_start.launch.py starts the driver with a full battery, and ends without it when the battery is empty."""
     launch_probe.expect_nodes(launches.full, [DRIVER, REPORTER])
     harness = launches.empty
-    ended = harness.wait_for(lambda: harness.status is not None, launch_probe.START_SECONDS)
+    has_ended = harness.wait_for(lambda: harness.status is not None, launch_probe.START_SECONDS)
     expect("driver" not in launch_probe.started(harness.output), "With the battery at 5 %, the driver was started.")
-    expect(ended, "With the battery at 5 %, the launch did not end by itself.")
+    expect(has_ended, "With the battery at 5 %, the launch did not end by itself.")
 
 
 @check(points=1, covers="safe-reporter", group="safe_start", after=("safe_start",), doc=contract.LAUNCH)
@@ -124,5 +124,5 @@ def test_driver_stops(launches: Launches) -> None:
     """When the driver gets SIGTERM and ends, everything shuts down."""
     harness = launches.full
     expect(harness.kill("driver", signal.SIGTERM) == 1, "There is not one driver.")
-    ended = harness.wait_for(lambda: harness.status is not None, launch_probe.START_SECONDS)
-    expect(ended, "The driver ended, and the launch goes on without it.")
+    has_ended = harness.wait_for(lambda: harness.status is not None, launch_probe.START_SECONDS)
+    expect(has_ended, "The driver ended, and the launch goes on without it.")

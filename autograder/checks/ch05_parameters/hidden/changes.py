@@ -1,4 +1,4 @@
-"""Parameter changes at run time: validated together, without side effects, and applied immediately."""
+"""Checks of parameter changes at run time: validated together, without side effects, and applied immediately."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, 
 
 check = group("changes")
 DEFAULT_SPEED = 0.3  # m/s
-UNEVEN_RATES = (31.6, 40.6, 46.5)  # Hz: about 1 % off, or more, in whole hertz or in whole milliseconds
-LOCKSTEP_TOLERANCE = 0.005  # of the expected rate, in lockstep
+UNEVEN_RATES = (31.6, 40.6, 46.5)  # Hz: rounded to whole hertz or whole milliseconds, they are off by about 1 % or more
+LOCKSTEP_TOLERANCE = 0.005  # the tolerance in lockstep, as a share of the expected rate
 
 
 @check(
@@ -58,7 +58,7 @@ def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None
     safety, far = (robot.allowed("safety_distance", distance) for distance in (safety, far))
     slow, near = (robot.allowed("slow_distance", distance) for distance in (slow, near))
     current = {"safety_distance": safety, "slow_distance": slow}
-    for name in reversed(DISTANCES):  # each also fits the default of the other
+    for name in reversed(DISTANCES):  # each distance also fits the default of the other one
         _change(robot, {name: current[name]})
     requests = [{"safety_distance": far}, {"slow_distance": near}, {"slow_distance": near, "safety_distance": far}]
     pairs: list[dict[str, float]] = [{**current, **request} for request in requests]
@@ -68,10 +68,10 @@ def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None
     for request, pair, outcome in zip(requests, pairs, outcomes, strict=True):
         answer = robot.change(request)
         reason, sentence = answer.reason, parameters.shortened(str(outcome.value))
-        asked = values_text(request)
-        expect(not answer.accepted, f"With {values_text(current)}, it took {asked}.", fraction=0.5)
+        request_text = values_text(request)
+        expect(not answer.accepted, f"With {values_text(current)}, it took {request_text}.", fraction=0.5)
         missing = missing_from(reason, pair)
-        observation = f"With {values_text(current)}, its reason to refuse {asked} is “{reason}”"
+        observation = f"With {values_text(current)}, its reason to refuse {request_text} is “{reason}”"
         fraction = 0.5 if reason or request is not requests[0] else 0.0
         expect(not missing, f"{observation}: it does not name {', '.join(missing)}.", fraction=fraction)
         expect(sentence[:100] in reason, f"{observation}; contradiction says “{sentence}”.", fraction=0.5)
@@ -158,7 +158,7 @@ def test_distance_change(robot: Robot, draw: random.Random) -> None:
     for distance, speed in ((safety - 0.1, 0.0), ((safety + slow) / 2, DEFAULT_SPEED / 2), (slow + 0.1, DEFAULT_SPEED)):
         situation = f"With {safety:.2f} m and {slow:.2f} m, and a wall {distance:.2f} m ahead"
         expect_speed(robot.speed_at(distance), speed, situation)
-    near = robot.allowed("slow_distance", round(safety + 0.004, 3))  # 4 mm apart, if its steps are fine enough
+    near = robot.allowed("slow_distance", round(safety + 0.004, 3))  # 4 mm above it, if the steps are fine enough
     if near > safety:
         _change(robot, {"slow_distance": near}, fraction=0.75)
 
@@ -168,8 +168,8 @@ def test_distance_change(robot: Robot, draw: random.Random) -> None:
 def test_threshold_change(robot: Robot) -> None:
     """A new battery_threshold decides immediately whether it stands still."""
     robot.publish_charge(50.0)
-    driven = robot.speed_at(2.5) > 0.0  # at any speed
-    expect(driven, "With a threshold of 20 percent and a charge of 50, it does not drive.")
+    drives = robot.speed_at(2.5) > 0.0  # at any speed
+    expect(drives, "With a threshold of 20 percent and a charge of 50, it does not drive.")
     _change(robot, {"battery_threshold": 60})
     expect_speed(robot.speed_at(2.5), 0.0, "After battery_threshold was set to 60, with a charge of 50")
 
@@ -182,15 +182,15 @@ def test_rate_change(robot: Robot, draw: random.Random) -> None:
     for frequency in (draw.choice((20.0, 25.0, 50.0)), draw.choice((4.0, 5.0))):
         _change(robot, {"control_frequency": frequency})
         expect_rate(robot.command_rate(1.0), frequency, f"After control_frequency was set to {frequency}")
-    uneven = robot.allowed("control_frequency", draw.choice(UNEVEN_RATES))
+    uneven_rate = robot.allowed("control_frequency", draw.choice(UNEVEN_RATES))
     slow = robot.allowed("slow_distance", 1.2, up=True)
-    request = {"battery_threshold": 25, "control_frequency": uneven, "slow_distance": slow}
+    request = {"battery_threshold": 25, "control_frequency": uneven_rate, "slow_distance": slow}
     _change(robot, robot.without_read_only(request), fraction=0.75)
     rate, situation = robot.command_rate(4.0), f"After one request for {values_text(request)}"
-    expect_rate(rate, uneven, situation, fraction=0.5)
+    expect_rate(rate, uneven_rate, situation, fraction=0.5)
     if robot.time == LOCKSTEP:  # in real time, no rate is exact enough
-        expectation = f"{situation}, it published {rate:.2f} commands a second; it should publish {uneven:.2f}."
-        expect(abs(rate - uneven) <= LOCKSTEP_TOLERANCE * uneven, expectation, fraction=0.5)
+        expectation = f"{situation}, it published {rate:.2f} commands a second; it should publish {uneven_rate:.2f}."
+        expect(abs(rate - uneven_rate) <= LOCKSTEP_TOLERANCE * uneven_rate, expectation, fraction=0.5)
 
 
 @check(
@@ -207,7 +207,7 @@ def test_undisturbed(robot: Robot) -> None:
     expect(before > 0.0, "It publishes no commands.")
     start, change_count = robot.seconds, 40
     for i in range(change_count):
-        share = i // 2 / (change_count // 2 - 1)  # of the way from one limit to the other
+        share = i // 2 / (change_count // 2 - 1)  # how far from one limit to the other
         if i % 2 == 0:
             robot.publish("/scan", scan(2.5))
         name, value = ("battery_threshold", round(100 * share)) if i % 2 else ("max_linear_velocity", share)
@@ -220,7 +220,7 @@ def test_undisturbed(robot: Robot) -> None:
 @hint("A request may name no distance at all, or only rclpy's own use_sim_time: let it pass.")
 def test_passes(robot: Robot, draw: random.Random) -> None:
     """Requests that have nothing to do with the distances pass."""
-    _change(robot, robot.parameters.values("use_sim_time"))  # unchanged, because the harness sets the clock by it
+    _change(robot, robot.parameters.values("use_sim_time"))  # unchanged, because the harness's clock depends on it
     for name, value in (("battery_threshold", 30), ("max_linear_velocity", 0.4)):
         _change(robot, robot.without_read_only({name: value}))
     expect_answers(robot, dialogues(APART, others=ANY), draw, judged=(True,), fraction=0.5)
@@ -236,26 +236,26 @@ def test_passes(robot: Robot, draw: random.Random) -> None:
 @hint("ROS stores what is in the very list that validate gets: leave the list as it is.")
 def test_beside_others(robot: Robot, draw: random.Random, workspace: Workspace) -> None:
     """In a request that also names use_sim_time, the rest is judged and carried out as usual, in any order."""
-    beside = dialogues(REFUSED, TAKEN, APART, is_tame=True, names_foreign=True)
-    expect_answers(robot, beside, draw, fraction=0.5)
-    other = robot.parameters.values(FOREIGN)
+    mixed_dialogues = dialogues(REFUSED, TAKEN, APART, is_tame=True, names_foreign=True)
+    expect_answers(robot, mixed_dialogues, draw, fraction=0.5)
+    foreign_values = robot.parameters.values(FOREIGN)
     for frequency in (draw.choice((20.0, 25.0)), draw.choice((4.0, 5.0))):
         rate: dict[str, parameters.Value] = {"control_frequency": frequency}
-        request = {**other, **rate} if frequency > 10.0 else {**rate, **other}
+        request = {**foreign_values, **rate} if frequency > 10.0 else {**rate, **foreign_values}
         _change(robot, request)
         expect_rate(robot.command_rate(1.0), frequency, f"After {values_text(request)}", fraction=0.5)
-    stored = bench.set_use_sim_time(workspace)
+    final_value = bench.set_use_sim_time(workspace)
     observation = "After a request for use_sim_time = True and slow_distance = 1.5, use_sim_time is still False"
-    expect(stored is not False, f"{observation}: it is stored like any other.", fraction=0.5)
+    expect(final_value is not False, f"{observation}: it is stored like any other.", fraction=0.5)
 
 
 def draw_contradictions(draw: random.Random) -> tuple[float, float]:
-    """Return a safety distance above the default slow distance, and a slow one below the default safety distance."""
+    """Draw a safety distance above the default slow distance, and a slow one below the default safety distance."""
     return round(draw.uniform(1.1, 2.5), 2), round(draw.uniform(0.25, 0.45), 2)
 
 
 def draw_distances(draw: random.Random) -> tuple[float, float, float, float]:
-    """Return a safety and a slow distance that fit, then a safety and a slow distance that contradict these."""
+    """Draw a safety and a slow distance that fit, then a safety and a slow distance that contradict these."""
     safety, slow, far, near = ((10 * tenths + draw.randrange(2, 9)) / 100 for tenths in (7, 13, 19, 6))
     return safety, slow, far, near
 

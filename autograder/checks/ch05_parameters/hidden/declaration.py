@@ -1,4 +1,4 @@
-"""Declared parameters: names, types, defaults, limits and descriptions."""
+"""Checks of the declared parameters: their names, types, defaults, limits and descriptions."""
 
 from __future__ import annotations
 
@@ -88,13 +88,15 @@ def test_defaults(robot: Robot) -> None:
 @hint("ParameterDescriptor(description='...') is declare_parameter's third argument.")
 def test_descriptions(robot: Robot) -> None:
     """Each has a description, which names the unit where there is one."""
-    described = {name: descriptor.description for name, descriptor in robot.descriptors.items()}
-    poor = [name for name, spec in SPECIFICATIONS.items() if not _is_description(described.get(name, ""), spec.unit)]
-    poor_texts = [f"{name} ({parameters.value_text(described.get(name))})" for name in poor]
+    descriptions = {name: descriptor.description for name, descriptor in robot.descriptors.items()}
+    poor_names = [
+        name for name, spec in SPECIFICATIONS.items() if not _is_description(descriptions.get(name, ""), spec.unit)
+    ]
+    poor_texts = [f"{name} ({parameters.value_text(descriptions.get(name))})" for name in poor_names]
     expect(
-        not poor,
+        not poor_names,
         f"The description is missing, or names no unit: {', '.join(poor_texts)}.",
-        fraction=_fraction(len(poor)),
+        fraction=_fraction(len(poor_names)),
     )
 
 
@@ -116,18 +118,20 @@ def test_descriptions(robot: Robot) -> None:
 @hint("An integer has integer_range=[IntegerRange(...)]; a floating_point_range does not guard it.")
 def test_ranges(robot: Robot, draw: random.Random) -> None:
     """Values outside the limits of the table are refused, and the descriptors say the limits."""
-    limited = {name: spec for name, spec in SPECIFICATIONS.items() if spec.low is not None}
+    limited_specs = {name: spec for name, spec in SPECIFICATIONS.items() if spec.low is not None}
     wrong = {
-        name: fault for name, spec in limited.items() if (fault := _range_fault(spec, robot.descriptors.get(name)))
+        name: fault
+        for name, spec in limited_specs.items()
+        if (fault := _range_fault(spec, robot.descriptors.get(name)))
     }
-    for name, spec in limited.items():
+    for name, spec in limited_specs.items():
         for value in _values_outside(spec, draw):
             answer = robot.change({name: value})
             if answer.accepted or (not answer.reason and name not in wrong):
                 text = parameters.value_text(value)
                 wrong[name] = f"it took {text}" if answer.accepted else f"it refused {text} without a reason"
     faults = "; ".join(f"{name}: {fault}" for name, fault in wrong.items())
-    expect(not wrong, f"{faults}.", fraction=round(0.8 * (1 - len(wrong) / len(limited)), 2))
+    expect(not wrong, f"{faults}.", fraction=round(0.8 * (1 - len(wrong) / len(limited_specs)), 2))
 
 
 @check(points=1, covers="robot_name", needs=("starts",), after=("names",))
@@ -151,7 +155,7 @@ def test_read_only(robot: Robot) -> None:
 @hint("dynamic_typing in a descriptor lets a value of any type in: leave it out.")
 def test_typed(robot: Robot) -> None:
     """A value of another type is refused."""
-    accepted = [
+    accepted_values = [
         f"{parameters.value_text(value)} for {name}"
         for name, value in (
             ("slow_distance", 2),
@@ -162,7 +166,7 @@ def test_typed(robot: Robot) -> None:
         )
         if name in robot.initial and robot.parameters.change({name: value}).accepted
     ]
-    expect(not accepted, f"It took {', '.join(accepted)}.", fraction=_fraction(len(accepted)))
+    expect(not accepted_values, f"It took {', '.join(accepted_values)}.", fraction=_fraction(len(accepted_values)))
     missing = parameters.near_misses(SPECIFICATIONS, robot.initial)
     expect(not missing, parameters.missing_sentence(SPECIFICATIONS, robot.initial), fraction=_fraction(len(missing)))
 
@@ -180,13 +184,13 @@ def test_no_others(robot: Robot, draw: random.Random) -> None:
     expect(not robot.parameters.change({name: 1.0}).accepted, f"It took 1.0 for {name}, a name that nobody declared.")
 
 
-def _fraction(wrong: int) -> float:
+def _fraction(wrong_count: int) -> float:
     """Return the fraction of the points if this many of the six parameters are wrong."""
-    return round(0.8 * max(0.0, 1 - wrong / len(SPECIFICATIONS)), 2)
+    return round(0.8 * max(0.0, 1 - wrong_count / len(SPECIFICATIONS)), 2)
 
 
 def _is_description(text: str, unit: str) -> bool:
-    """Return whether a description has words that include the unit, abbreviated or spelt out."""
+    """Return whether a description is not empty and names the unit, abbreviated or spelt out."""
     words = {word.strip(".,;:()[]") for word in text.lower().replace("/", " ").replace("%", " percent ").split()}
     if unit == "m" and words & UNIT_SPELLINGS["s"]:
         return False  # m/s is a speed, not a distance

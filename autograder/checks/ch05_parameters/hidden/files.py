@@ -1,4 +1,4 @@
-"""The parameter file of the fleet, which ROS reads for each robot, without the student's node."""
+"""Checks of the fleet's parameter file: ROS reads it for each robot, and the student's node does not run."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ Values = Callable[[str], dict[str, parameters.Value]]
 
 @pytest.fixture(scope="session")
 def fleet(workspace: Workspace) -> Callable[[], Entries]:
-    """Return a function that reads the installed file, so that the check fails and not the fixture."""
+    """A function that reads the installed file, so that an error fails the check and not the fixture."""
     return lambda: parameters.read_file(fleet_path(workspace))
 
 
 @pytest.fixture(scope="session")
 def start_values(workspace: Workspace) -> Values:
-    """Return a function that returns a robot's start values: the table's defaults, overridden by the file."""
+    """A function that maps a robot's name to its start values: the table's defaults, overridden by the file."""
     by_robot: dict[str, dict[str, parameters.Value]] = {}
 
     def values(name: str) -> dict[str, parameters.Value]:
@@ -88,21 +88,24 @@ def test_porter(start_values: Values) -> None:
 def test_stands_once(fleet: Callable[[], Entries]) -> None:
     """What every robot has stands once, under /**."""
     entries = fleet()
-    everywhere = set(entries.get("/**", {})) & set(SHARED)
-    expect(bool(everywhere), "Under /** there is nothing that every robot has.")
-    # Robots start correctly without these, because they equal the defaults; `any_robot` reports the others.
-    absent = sorted({name for name, value in SHARED.items() if value == DEFAULTS[name]} - everywhere)
-    message = f"{', '.join(absent)}, which every robot has, does not stand under /**"
-    expect(not absent, f"{message}: a default of the declaration may change.")
+    shared_names = set(entries.get("/**", {})) & set(SHARED)
+    expect(bool(shared_names), "Under /** there is nothing that every robot has.")
+    # Robots start correctly without these values, which equal the defaults; `any_robot` reports any others.
+    missing_names = sorted({name for name, value in SHARED.items() if value == DEFAULTS[name]} - shared_names)
+    message = f"{', '.join(missing_names)}, which every robot has, does not stand under /**"
+    expect(not missing_names, f"{message}: a default of the declaration may change.")
     names_of_any = {name for values in PER_ROBOT.values() for name in values}  # other checks report a misspelt robot
     for key, values in entries.items():
-        allowed = set(PER_ROBOT.get(key.rpartition("/")[2], names_of_any))
-        repeated = sorted(set(values) & set(SHARED) - allowed) if key != "/**" else []
-        expect(not repeated, f"{', '.join(repeated)}, which every robot has, stands under {parameters.shortened(key)}.")
+        allowed_names = set(PER_ROBOT.get(key.rpartition("/")[2], names_of_any))
+        repeated_names = sorted(set(values) & set(SHARED) - allowed_names) if key != "/**" else []
+        expect(
+            not repeated_names,
+            f"{', '.join(repeated_names)}, which every robot has, stands under {parameters.shortened(key)}.",
+        )
 
 
 def _expect_values(start_values: Values, name: str) -> None:
-    """Fail the check unless a robot has its own values, and otherwise those of the table or of any other robot."""
+    """Fail the check unless a robot has its own values and, for the rest, those of the exercise or of any robot."""
     values = start_values(name)
     wrong = parameters.differences(values, fleet_values(name)) and parameters.differences(
         values, {**start_values(OTHER_ROBOT), **PER_ROBOT[name]}
@@ -111,7 +114,7 @@ def _expect_values(start_values: Values, name: str) -> None:
 
 
 def _start_values(workspace: Workspace, names: tuple[str, ...]) -> dict[str, dict[str, parameters.Value]]:
-    """Return the values with which nodes of these names would start if they declared the table of exercise 1.
+    """Return the values with which nodes of these names would start if they declared the parameters of exercise 1.
 
     Raises:
         CheckFailed: ROS cannot read the file.

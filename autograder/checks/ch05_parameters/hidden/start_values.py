@@ -1,4 +1,4 @@
-"""The node's behaviour when it is started with values other than its defaults."""
+"""Checks of the node's behaviour when it is started with values other than its defaults."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, 
 from sim import Pose, RobotSpec, Simulation, World, box
 
 check = group("start")
-STARTS = {REFUSED: 12, TAKEN: 4}  # numbers of drawn starts, all in one process
-RADIUS = 0.18  # m
-SECONDS = 16.0
-STOP_MARGIN = 0.02  # m between where it stands and where it should
+STARTS = {REFUSED: 12, TAKEN: 4}  # how many starts are drawn, all in one process
+RADIUS = 0.18  # m: the robot's radius
+DRIVE_SECONDS = 16.0  # s: the length of the drive
+STOP_MARGIN = 0.02  # m between where the robot stands and where it should stand
 
 
 @dataclass(frozen=True)
-class Configured:
+class ConfiguredRobot:
     """A node that was started with drawn values, and these values."""
 
     robot: Robot
@@ -48,29 +48,34 @@ class Configured:
 
 
 def start_numbers(seed: int) -> dict[str, float]:
-    """Return drawn numbers for the five parameters that have limits, in the order of `Configured`."""
-    drawn = Random(f"{seed}:custom")
-    velocity, safety = drawn.randrange(40, 80) / 100, drawn.randrange(70, 110) / 100
+    """Draw numbers for the five parameters that have limits, in the order of `ConfiguredRobot`."""
+    generator = Random(f"{seed}:custom")
+    velocity, safety = generator.randrange(40, 80) / 100, generator.randrange(70, 110) / 100
     return {
         "max_linear_velocity": velocity,
         "safety_distance": safety,
-        "slow_distance": round(safety + drawn.randrange(30, 60) / 100, 2),
-        "control_frequency": drawn.choice((20.0, 25.0, 50.0)),
-        "battery_threshold": drawn.randrange(35, 65),
+        "slow_distance": round(safety + generator.randrange(30, 60) / 100, 2),
+        "control_frequency": generator.choice((20.0, 25.0, 50.0)),
+        "battery_threshold": generator.randrange(35, 65),
     }
 
 
 @pytest.fixture(scope="module")
-def configured(workspace: Workspace, shared_robot: Shared[Robot], seed: int) -> Iterator[Configured]:
+def configured(workspace: Workspace, shared_robot: Shared[Robot], seed: int) -> Iterator[ConfiguredRobot]:
     """A node that was started with drawn values for all six parameters."""
-    present = shared_robot.get()
+    default_robot = shared_robot.get()
     numbers = start_numbers(seed)
-    drawn = {name: present.allowed(name, number, up=name == "slow_distance") for name, number in numbers.items()}
-    velocity, safety, slow, frequency, threshold = drawn.values()
-    values: dict[str, parameters.Value] = {"robot_name": f"Robot{Random(f'{seed}:name').randrange(100, 999)}", **drawn}
-    values = parameters.as_declared({**values, "battery_threshold": int(threshold)}, present.initial)
+    drawn_numbers = {
+        name: default_robot.allowed(name, number, up=name == "slow_distance") for name, number in numbers.items()
+    }
+    velocity, safety, slow, frequency, threshold = drawn_numbers.values()
+    values: dict[str, parameters.Value] = {
+        "robot_name": f"Robot{Random(f'{seed}:name').randrange(100, 999)}",
+        **drawn_numbers,
+    }
+    values = parameters.as_declared({**values, "battery_threshold": int(threshold)}, default_robot.initial)
     with Robot(workspace, values) as robot:
-        yield Configured(robot, values, velocity, safety, slow, frequency, int(threshold))
+        yield ConfiguredRobot(robot, values, velocity, safety, slow, frequency, int(threshold))
 
 
 @check(
@@ -82,7 +87,7 @@ def configured(workspace: Workspace, shared_robot: Shared[Robot], seed: int) -> 
 )
 @hint("declare_parameter takes an override by itself; a set_parameters after it would undo that.")
 @hint("ignore_override=True lets the default win over a file: leave it out.")
-def test_overrides(configured: Configured) -> None:
+def test_overrides(configured: ConfiguredRobot) -> None:
     """Started with values from the command line, it has these values."""
     wrong = parameters.differences(configured.robot.parameters.values(*configured.values), configured.values)
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=round(0.8 * (1 - len(wrong) / len(configured.values)), 2))
@@ -90,7 +95,7 @@ def test_overrides(configured: Configured) -> None:
 
 @check(points=2, covers="max_linear_velocity", needs=("starts",), after=("overrides",))
 @hint("speed, which is given, asks for max_linear_velocity at each command: leave it so.")
-def test_start_speed(configured: Configured) -> None:
+def test_start_speed(configured: ConfiguredRobot) -> None:
     """Where the way is clear, it drives at the speed that it was started with."""
     speed = configured.robot.speed_at(configured.slow + 0.3)
     expect_speed(speed, configured.velocity, f"Started with max_linear_velocity {configured.velocity}")
@@ -98,7 +103,7 @@ def test_start_speed(configured: Configured) -> None:
 
 @check(points=2, covers="control_frequency", needs=("starts",), after=("overrides",))
 @hint("create_timer gets a period in seconds: 1.0 / frequency.")
-def test_start_rate(configured: Configured) -> None:
+def test_start_rate(configured: ConfiguredRobot) -> None:
     """It publishes at the frequency that it was started with."""
     expect_rate(
         configured.robot.command_rate(), configured.frequency, f"Started with control_frequency {configured.frequency}"
@@ -107,7 +112,7 @@ def test_start_rate(configured: Configured) -> None:
 
 @check(points=1, covers="battery_threshold", needs=("starts",), after=("overrides",))
 @hint("A battery below battery_threshold, in percent, means: stand still.")
-def test_start_threshold(configured: Configured) -> None:
+def test_start_threshold(configured: ConfiguredRobot) -> None:
     """It stands still with a battery below its threshold, and drives with one above."""
     situation = f"With a threshold of {configured.threshold} percent and a charge of"
     low, high = configured.threshold - 5, configured.threshold + 5
@@ -121,9 +126,9 @@ def test_start_threshold(configured: Configured) -> None:
 @check(points=3, covers="safety_distance", needs=("starts",), after=("overrides", "start_speed"))
 @hint("Look at the picture: where does it stand, and where should it?")
 @hint("Drive it yourself: drive(..., parameters={'safety_distance': 0.9, 'slow_distance': 1.4}).")
-def test_stops(configured: Configured, draw: Random, artifacts: Artifacts) -> None:
+def test_stops(configured: ConfiguredRobot, draw: Random, artifacts: Artifacts) -> None:
     """In the simulator, it drives up to a wall and stops at its safety distance."""
-    recording = drive(configured.robot, _hall(draw), SECONDS).recording
+    recording = drive(configured.robot, _hall(draw), DRIVE_SECONDS).recording
     ahead = (recording.simulation.world.bounds[2] - recording.poses[:, 0, 0]).tolist()
     final_distance = ahead[-1]
     sentence = (
@@ -133,7 +138,7 @@ def test_stops(configured: Configured, draw: Random, artifacts: Artifacts) -> No
         "gap > 0", recording.times.tolist(), {"gap": [x - configured.safety + STOP_MARGIN for x in ahead]}
     )
     rules = {f"the distance to the wall, in m, is above {configured.safety - STOP_MARGIN:.2f}": verdict}
-    artifacts.track("track", recording, sentence, mark=SECONDS, note=f"{final_distance:.2f} m", rules=rules)
+    artifacts.track("track", recording, sentence, mark=DRIVE_SECONDS, note=f"{final_distance:.2f} m", rules=rules)
     if verdict.violated_at is not None:
         raise CheckFailed(f"It came nearer than {configured.safety} m at t = {verdict.violated_at:.1f} s. {sentence}")
     expect(
@@ -154,17 +159,17 @@ def test_contradictory_start(robot: Robot, workspace: Workspace, draw: Random) -
     error = start_error(workspace, parameters.as_declared(values, robot.initial))
     expect(error is not None, f"Started with {values_text(values)}, the node runs.")
     expect(not missing_from(error or "", values), f"It ends, but does not name {values_text(values)}.", fraction=0.5)
-    drawn: list[Request] = []
+    drawn_starts: list[Request] = []
     for kind, count in STARTS.items():
-        expect_each(starts(kind), drawn.append, draw, count=count)
-    beyond: dict[str, parameters.Value] = {"control_frequency": draw.randrange(55, 90) + 0.5}
-    inside = [allowed_start(robot, start) for start in ((), *drawn)]
-    *outcomes, outcome_beyond = bench.declare(workspace, [*inside, beyond])
-    for start, outcome in sorted(zip(inside, outcomes, strict=True), key=lambda pair: subtlety(pair[0])):
+        expect_each(starts(kind), drawn_starts.append, draw, count=count)
+    out_of_range: dict[str, parameters.Value] = {"control_frequency": draw.randrange(55, 90) + 0.5}
+    in_range = [allowed_start(robot, start) for start in ((), *drawn_starts)]
+    *outcomes, outcome_out_of_range = bench.declare(workspace, [*in_range, out_of_range])
+    for start, outcome in sorted(zip(in_range, outcomes, strict=True), key=lambda pair: subtlety(pair[0])):
         expect_start(start, outcome)
-    observation = f"Started with {values_text(beyond)}, declare_configuration raised nothing"
+    observation = f"Started with {values_text(out_of_range)}, declare_configuration raised nothing"
     expect(
-        bool(outcome_beyond.declared.raised),
+        bool(outcome_out_of_range.declared.raised),
         f"{observation}: ROS refuses what is not in 1.0 to 50.0, and so should it.",
         fraction=0.75,
     )

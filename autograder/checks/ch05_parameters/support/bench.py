@@ -11,7 +11,8 @@ from autograder.checks.ch05_parameters.support.contract import DEFAULTS, EXECUTA
 
 CONFIGURATION = f"{PACKAGE}.configuration"
 MODULE = f"{PACKAGE}.nodes.{EXECUTABLE}"
-BARE: dict[str, Any] = {"start_parameter_services": False, "enable_rosout": False}  # such nodes are made quickly
+# Options of a node that is created quickly.
+BARE_OPTIONS: dict[str, Any] = {"start_parameter_services": False, "enable_rosout": False}
 
 
 class Start(NamedTuple):
@@ -22,7 +23,7 @@ class Start(NamedTuple):
 
 
 def declare(workspace: Workspace, starts: Sequence[Mapping[str, parameters.Value]]) -> list[Start]:
-    """Call declare_configuration on a node of its own for each of these sets of values."""
+    """For each of these sets of values, call declare_configuration on a new node."""
     plan = calls.Plan()
     add = plan.add
     add(calls.call("init", module="rclpy"))
@@ -30,7 +31,7 @@ def declare(workspace: Workspace, starts: Sequence[Mapping[str, parameters.Value
     for values in starts:
         distances = (values.get(name, DEFAULTS[name]) for name in ("safety_distance", "slow_distance"))
         arguments = ["--ros-args", *parameters.override_arguments(values)]
-        node = add(calls.call("Node", "bench", module="rclpy.node", cli_args=arguments, **BARE))
+        node = add(calls.call("Node", "bench", module="rclpy.node", cli_args=arguments, **BARE_OPTIONS))
         declared = add(calls.call("declare_configuration", calls.result_of(node)))
         steps.append((add(calls.call("contradiction", *distances)), declared))
     outcomes = calls.calls(workspace, CONFIGURATION, *plan.steps, network=True)
@@ -41,8 +42,8 @@ def call_validate(workspace: Workspace) -> tuple[parameters.Value, parameters.Va
     """Call only validate, so that nothing is stored.
 
     Returns:
-        The timer's period in ns before and after a call with 25 Hz, and whether a call with a safety distance of 1.5 m,
-        after one with a slow distance of 2.0 m, accepts it. None for each that a node with other names lacks.
+        The timer's period in ns before and after a call with 25 Hz; and whether a safety distance of 1.5 m is accepted
+        after a call with a slow distance of 2.0 m. Each is None if the node lacks the names that the call needs.
     """
     plan = calls.Plan()
     add = plan.add
@@ -61,22 +62,22 @@ def call_validate(workspace: Workspace) -> tuple[parameters.Value, parameters.Va
 
     node = add(calls.call("ConfiguredNode"))
     request = add(calls.call("list", module="builtins"))
-    before = period()
+    period_before = period()
     validate(parameter("control_frequency", 25.0))
-    after = period()
+    period_after = period()
     validate(parameter("slow_distance", 2.0))
-    accepted = add(calls.attribute("successful", on=validate(parameter("safety_distance", 1.5))))
+    acceptance = add(calls.attribute("successful", on=validate(parameter("safety_distance", 1.5))))
     outcomes = calls.calls(workspace, MODULE, *plan.steps, network=True)
-    return outcomes[before].value, outcomes[after].value, outcomes[accepted].value
+    return outcomes[period_before].value, outcomes[period_after].value, outcomes[acceptance].value
 
 
 def set_use_sim_time(workspace: Workspace) -> parameters.Value:
-    """Set use_sim_time to true, and a distance, in one request.
+    """Set use_sim_time to true, together with a distance, in one request.
 
     A harness cannot do this, because its clock depends on use_sim_time.
 
     Returns:
-        The value of use_sim_time after that; None from a node with other names.
+        The value of use_sim_time afterwards; None if the node's class has another name.
     """
     plan = calls.Plan()
     add = plan.add
@@ -86,6 +87,6 @@ def set_use_sim_time(workspace: Workspace) -> parameters.Value:
         parameter = add(calls.call("Parameter", name, value=new, module="rclpy.parameter"))
         add(calls.call("append", calls.result_of(parameter), on=request))
     add(calls.call("set_parameters_atomically", calls.result_of(request), on=node))
-    stored = add(calls.attribute("value", on=add(calls.call("get_parameter", "use_sim_time", on=node))))
-    value: parameters.Value = calls.calls(workspace, MODULE, *plan.steps, network=True)[stored].value
+    value_step = add(calls.attribute("value", on=add(calls.call("get_parameter", "use_sim_time", on=node))))
+    value: parameters.Value = calls.calls(workspace, MODULE, *plan.steps, network=True)[value_step].value
     return value

@@ -21,9 +21,9 @@ class Specification:
     Attributes:
         type: a constant of ParameterType.
         default: its value if it is not set.
-        low: the lowest value; None without a range.
-        high: the highest value; None without a range.
-        unit: the unit that its description must name; '' without a unit.
+        low: the lowest value; None if there is no range.
+        high: the highest value; None if there is no range.
+        unit: the unit that its description must name; '' if there is none.
     """
 
     type: int
@@ -42,11 +42,12 @@ SPECIFICATIONS = {
     "control_frequency": Specification(DOUBLE, 10.0, 1.0, 50.0, "Hz"),
     "battery_threshold": Specification(ParameterType.PARAMETER_INTEGER, 20, 0, 100, "percent"),
 }
-TABLE_ROWS = tuple(SPECIFICATIONS)  # ids of requirements: the rows of the table of parameters
-FLEET_ROWS = tuple(f"fleet-{name.replace('_', '-')}" for name in SPECIFICATIONS)  # the rows of the table of robots
+TABLE_ROWS = tuple(SPECIFICATIONS)  # the ids of the requirements in the table of parameters
+FLEET_ROWS = tuple(f"fleet-{name.replace('_', '-')}" for name in SPECIFICATIONS)  # those in the table of robots
 DEFAULTS = {name: specification.default for name, specification in SPECIFICATIONS.items()}
 CHANGEABLE = {name: value for name, value in DEFAULTS.items() if name != "robot_name"}
 
+# The values that every robot of the fleet has, and the values of single robots.
 SHARED: dict[str, parameters.Value] = {
     "max_linear_velocity": 0.3,
     "safety_distance": 0.6,

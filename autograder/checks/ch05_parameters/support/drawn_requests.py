@@ -13,18 +13,18 @@ from autograder.checks.ch05_parameters.support.contract import DEFAULTS
 Values = Mapping[str, parameters.Value]
 Request = tuple[tuple[str, parameters.Value], ...]  # names and values, in the order in which they are asked for
 SAFETY, SLOW = DISTANCES = ("safety_distance", "slow_distance")
-FOREIGN = "use_sim_time"  # rclpy's own parameter; a request names it with the value that it has
+FOREIGN = "use_sim_time"  # rclpy's own parameter, which a request sets to the value that it has
 LOW, HIGH = 20, 300  # cm: the limits of both distances
-LENGTH = 5  # requests at most in a dialogue
-GAP, MARGIN = 30, 5  # cm: by any reasonable rule, distances so far apart fit, and are so far from their limits allowed
+LENGTH = 5  # the largest number of requests in a dialogue
+GAP, MARGIN = 30, 5  # cm: distances so far apart, and so far from their limits, fit by any reasonable rule
 REFUSED, TAKEN, APART = "refused", "taken", "apart"  # the contract's answer, or a request without distances
 Others = Mapping[str, st.SearchStrategy[parameters.Value]]
-OTHERS: Others = {  # they have nothing to do with the distances
+OTHERS: Others = {  # parameters that have nothing to do with the distances
     "max_linear_velocity": st.sampled_from((0.4, 0.25)),
     "control_frequency": st.sampled_from((20.0, 12.5)),
     "battery_threshold": st.integers(10, 90),
 }
-ANY: Others = {  # all values within the limits
+ANY: Others = {  # the same parameters, with any value within the limits
     "max_linear_velocity": st.sampled_from((0.0, 1.0)) | st.integers(1, 99).map(lambda percent: percent / 100),
     "control_frequency": st.sampled_from((1.0, 50.0)) | st.integers(3, 99).map(lambda halves: halves / 2),
     "battery_threshold": st.sampled_from((0, 100)) | st.integers(1, 99),
@@ -34,7 +34,7 @@ ANY: Others = {  # all values within the limits
 
 @dataclass(frozen=True)
 class Dialogue:
-    """Requests one after the other, and the safety distance and slow distance before the first one, in m."""
+    """A sequence of requests, and the safety distance and slow distance before the first one, in m."""
 
     present: tuple[float, float]
     requests: tuple[Request, ...]
@@ -45,12 +45,12 @@ class Dialogue:
 
 
 def fits(values: Values) -> bool:
-    """Return whether the distances fit each other. One that is not named has its default."""
+    """Return whether the distances fit each other. A distance that is not named has its default."""
     return distance(values, SAFETY) < distance(values, SLOW)
 
 
 def distance(values: Values, name: str) -> float:
-    """Return a distance in m, by its name."""
+    """Return the distance with this name, in m."""
     value = {**DEFAULTS, **values}[name]
     assert isinstance(value, int | float), value
     return float(value)
@@ -62,25 +62,25 @@ def values_text(request: Values) -> str:
 
 
 def pairs(gap: int = 1, margin: int = 0) -> st.SearchStrategy[dict[str, int]]:
-    """Draw both distances in cm, which fit, at least `gap` apart and `margin` from the limits."""
+    """Draw two distances in cm that fit each other, at least `gap` apart and `margin` from the limits."""
     low, high = LOW + margin, HIGH - margin
     edges = st.sampled_from(((50, 100), (low, high), (low, low + gap), (high - gap, high)))
     anywhere = st.integers(low, high - gap).flatmap(lambda at: st.tuples(st.just(at), st.integers(at + gap, high)))
-    return (edges | anywhere).map(_both)
+    return (edges | anywhere).map(_named_distances)
 
 
 def contradictions(safety: int, slow: int) -> st.SearchStrategy[dict[str, int]]:
-    """Draw one or both distances in cm that contradict these present ones, some of them by equal values."""
+    """Draw one or both distances in cm that contradict each other or the present one; the two may be equal."""
     both = st.integers(LOW, HIGH).flatmap(lambda low: st.tuples(st.integers(low, HIGH), st.just(low)))
     return (
         (st.just(slow) | st.integers(slow, HIGH)).map(lambda new: {SAFETY: new})
         | (st.just(safety) | st.integers(LOW, safety)).map(lambda new: {SLOW: new})
-        | both.map(_both)
+        | both.map(_named_distances)
     )
 
 
 def matches(safety: int, slow: int, gap: int, margin: int) -> st.SearchStrategy[dict[str, int]]:
-    """Draw one or both distances in cm that fit each other, or the present one that they leave."""
+    """Draw one or both distances in cm that fit each other, or the present value of the other one."""
     choices = [pairs(gap, margin)]
     if slow - gap >= LOW + margin:
         choices.append(st.integers(LOW + margin, slow - gap).map(lambda new: {SAFETY: new}))
@@ -93,9 +93,9 @@ def matches(safety: int, slow: int, gap: int, margin: int) -> st.SearchStrategy[
 def requests(draw: st.DrawFn, distances: Mapping[str, int], others: Others, *, names_foreign: bool = False) -> Request:
     """Draw a request for these distances in cm and other values, with the names in any order."""
     values: dict[str, parameters.Value] = {name: new / 100 for name, new in distances.items()}
-    beside = draw(st.lists(st.sampled_from(list(others)), unique=True, min_size=not values))
+    other_names = draw(st.lists(st.sampled_from(list(others)), unique=True, min_size=not values))
     values |= {FOREIGN: None} if names_foreign else {}
-    values |= {name: draw(others[name]) for name in beside}
+    values |= {name: draw(others[name]) for name in other_names}
     return tuple(draw(st.permutations(list(values.items()))))
 
 
@@ -108,19 +108,19 @@ def dialogues(
     is_tame: bool = False,
     names_foreign: bool = False,
 ) -> Dialogue:
-    """Draw requests.
+    """Draw a dialogue.
 
     Args:
         draw: draws from a strategy.
-        kinds: what the requests are: `REFUSED`, `TAKEN` or `APART`.
-        first: what the first one is, if it differs.
-        others: what a request may name beside the distances.
+        kinds: the kinds of the requests: `REFUSED`, `TAKEN` or `APART`.
+        first: the kind of the first request, if it differs.
+        others: what a request may name besides the distances.
         is_tame: whether distances that fit are far apart, and not at their limits.
         names_foreign: whether each request names `FOREIGN`.
     """
     gap, margin = (GAP, MARGIN) if is_tame else (1, 0)
     before = now = draw(pairs(GAP, MARGIN))
-    asked = []
+    drawn_requests = []
     for index in range(draw(st.integers(1 + bool(first), LENGTH))):
         kind = first if first and index == 0 else draw(st.sampled_from(kinds))
         distances: dict[str, int] = {}
@@ -129,15 +129,15 @@ def dialogues(
         elif kind == TAKEN:
             distances = draw(matches(now[SAFETY], now[SLOW], gap, margin))
             now = {**now, **distances}
-        asked.append(draw(requests(distances, others, names_foreign=names_foreign)))
-    return Dialogue((before[SAFETY] / 100, before[SLOW] / 100), tuple(asked))
+        drawn_requests.append(draw(requests(distances, others, names_foreign=names_foreign)))
+    return Dialogue((before[SAFETY] / 100, before[SLOW] / 100), tuple(drawn_requests))
 
 
 def starts(kind: str) -> st.SearchStrategy[Request]:
-    """Draw the values of a start: some of the parameters, whose distances fit or contradict also the default of one."""
+    """Draw start values, whose distances fit or contradict each other, or the default of the one that is missing."""
     distances = contradictions(50, 100) if kind == REFUSED else matches(50, 100, GAP, MARGIN)
     return distances.flatmap(lambda drawn: requests(drawn, OTHERS))
 
 
-def _both(distances: tuple[int, int]) -> dict[str, int]:
+def _named_distances(distances: tuple[int, int]) -> dict[str, int]:
     return dict(zip(DISTANCES, distances, strict=True))

@@ -35,9 +35,9 @@ from autograder.checks.ch05_parameters.support.contract import (
 BEAMS = 360
 SETTLE_SECONDS = 0.2  # s: by then, a node at 10 Hz has reacted to a scan
 TOLERANCE = 0.01  # m/s: a speed may be rounded to centimetres
-RATE_TOLERANCE = 0.08  # of the rate: commands are late in real time, and an error of a tenth must be found
+RATE_TOLERANCE = 0.08  # as a share of the rate: commands are late in real time, and 10 % must be detected
 ROUNDED = 0.0051  # m: a value in a sentence may be rounded to centimetres
-STEP_SHARE = 0.05  # of a parameter's range: less than the difference between any drawn start value and the default
+STEP_SHARE = 0.05  # as a share of a parameter's range: any drawn start value differs more from the default
 REFUSAL_KINDS = (Kind.CRASHED_AT_START, Kind.ENDED_EARLY)
 
 
@@ -84,16 +84,16 @@ class Robot(AutoHarness):
         return self.parameters.descriptors(*SPECIFICATIONS)
 
     def allowed(self, name: str, number: float, *, up: bool = False) -> float:
-        """Return the nearest number below, or above, that a parameter's type and steps allow.
+        """Return the nearest number below, or with `up` above, that a parameter's type and steps allow.
 
         A single check tests type and steps, so that no other check fails because of them. The node describes its steps
         itself. If the nearest number is far away, `number` is returned unchanged: otherwise the node could choose the
-        values that it is tested with.
+        values with which it is tested.
         """
-        described = self.descriptors.get(name)
-        if described is None:
+        descriptor = self.descriptors.get(name)
+        if descriptor is None:
             return number
-        ranges = [*described.floating_point_range, *described.integer_range]
+        ranges = [*descriptor.floating_point_range, *descriptor.integer_range]
         low, step = (float(ranges[0].from_value), float(ranges[0].step)) if ranges else (0.0, 0.0)
         is_whole = type(self.initial.get(name)) is int
         if is_whole:
@@ -106,8 +106,10 @@ class Robot(AutoHarness):
 
     def without_read_only(self, values: Mapping[str, parameters.Value]) -> dict[str, parameters.Value]:
         """Return the values of parameters that are not read-only. Another check tests which ones are read-only."""
-        described = self.descriptors
-        return {name: value for name, value in values.items() if name not in described or not described[name].read_only}
+        descriptors = self.descriptors
+        return {
+            name: value for name, value in values.items() if name not in descriptors or not descriptors[name].read_only
+        }
 
     def change(self, values: Mapping[str, parameters.Value]) -> parameters.SetParametersReply:
         """Set parameters in one request, with numbers in the types that the node declares."""
@@ -122,12 +124,12 @@ class Robot(AutoHarness):
         return self.messages("/cmd_vel", since=start + SETTLE_SECONDS)
 
     def advance(self, seconds: float) -> None:
-        """Let time pass in steps fine enough for any new timer period. `run` only suits the periods at the start."""
+        """Let time pass in steps fine enough for any new timer period; `run` suits only the periods at the start."""
         for _ in range(round(seconds * 1e9) // self.finest_tick_ns):
             self.step(self.finest_tick_ns)
 
     def speed_at(self, distance: float) -> float:
-        """Return the speed in m/s on which the node settles; nan without a command."""
+        """Return the speed in m/s on which the node settles; nan if no command comes."""
         commands = self.show_wall(distance)
         return float(commands[-1].message.linear.x) if commands else math.nan
 
@@ -169,7 +171,7 @@ def start_error(workspace: Workspace, values: Mapping[str, parameters.Value]) ->
     """Return the error of a program that refuses to start with these values; None if it starts.
 
     Raises:
-        StudentError: the program does not run for another reason.
+        StudentError: the program fails for another reason.
     """
     try:
         with Robot(workspace, values):
@@ -198,8 +200,8 @@ def missing_from(sentence: str, distances: Mapping[str, float]) -> list[str]:
     """Return the names, and then the values in m, that a sentence about distances does not contain."""
     numbers = [float(number) for number in re.findall(r"\d+(?:\.\d+)?", sentence)]
     values = distances.values()
-    absent = [str(value) for value in values if not any(abs(number - value) < ROUNDED for number in numbers)]
-    return [name for name in distances if name not in sentence] + absent
+    missing_values = [str(value) for value in values if not any(abs(number - value) < ROUNDED for number in numbers)]
+    return [name for name in distances if name not in sentence] + missing_values
 
 
 def expect_speed(speed: float, expected: float, situation: str) -> None:
@@ -212,7 +214,7 @@ def expect_speed(speed: float, expected: float, situation: str) -> None:
 
 
 def expect_rate(rate: float, expected: float, situation: str, fraction: float = 0.0) -> None:
-    """Fail the check unless the rate is the expected one. An error of a tenth fails it."""
+    """Fail the check unless the rate is the expected one. An error of 10 % fails the check."""
     expect(
         abs(rate - expected) <= RATE_TOLERANCE * expected,
         f"{situation}, it published {rate:.1f} commands a second; it should publish {expected:.0f}.",

@@ -1,4 +1,4 @@
-"""Parameter changes at run time."""
+"""Checks of parameter changes at run time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The declared parameters, and the values with which the node starts."""
+"""Checks of the declared parameters, and of the values with which the node starts."""
 
 from __future__ import annotations
 
@@ -60,9 +60,9 @@ def test_refuses(robot: Robot) -> None:
         ("battery_threshold", 101),
         ("robot_name", "R2"),
     ]
-    declared = robot.parameters.names()
+    declared_names = robot.parameters.names()
     for name, value in requests:
-        expect(name in declared, f"It does not declare {name}.")
+        expect(name in declared_names, f"It does not declare {name}.")
         answer = robot.parameters.change({name: value})
         expect(not answer.accepted, f"It took {parameters.value_text(value)} for {name}.")
         expect(bool(answer.reason), f"It refused {parameters.value_text(value)} for {name}, but gave no reason.")

@@ -1,4 +1,4 @@
-"""The fleet's parameter file, which ROS reads for each robot."""
+"""Checks of the fleet's parameter file, which ROS reads for each robot."""
 
 from __future__ import annotations
 
@@ -43,5 +43,5 @@ def test_robots(workspace: Workspace) -> None:
 def test_once(workspace: Workspace) -> None:
     """What every robot has stands once: no entry of one robot sets slow_distance again."""
     file = parameters.read_file(fleet_path(workspace))
-    repeated = [name for name, values in file.items() if name != "/**" and "slow_distance" in values]
-    expect(not repeated, f"Under {', '.join(repeated)}, slow_distance stands again.")
+    repeated_names = [name for name, values in file.items() if name != "/**" and "slow_distance" in values]
+    expect(not repeated_names, f"Under {', '.join(repeated_names)}, slow_distance stands again.")

@@ -2,4 +2,4 @@
 
 PACKAGES = ("speed_guard",)
 MODULES = ("function", "node", "launch", "quality")
-READS = ("solutions/speed_guard",)  # the versions of the package are made from it
+READS = ("solutions/speed_guard",)  # the versions of the package are created from it

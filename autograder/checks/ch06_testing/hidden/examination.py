@@ -2,7 +2,7 @@
 
 Right and faulty versions are mixed and run in the same way, so that a test cannot tell them apart by the time or the
 circumstances of its run. A test that fails on the first right version does not run again. If other tests fail on
-another right version, all runs are repeated without these tests, on newly made versions. Only if the remaining tests
+another right version, all runs are repeated without these tests, on newly created versions. Only if the remaining tests
 pass on all right versions does their failure on a faulty version count.
 """
 
@@ -42,13 +42,13 @@ FILES = {
 COLCON, ENDS = frozenset(("colcon", "linters")), "ends"
 ALL_FILES = COLCON | {"as_given", ENDS}  # checks that need the tests of all three files
 RIGHT_VERSIONS = SECOND, REWORDED, BACKWARDS = "second", "reworded", "backwards"
-BRIEF_FAULTS = frozenset({"believes_distances_too_long"})  # short-lived faults, which a delayed run misses
+BRIEF_FAULTS = frozenset({"believes_distances_too_long"})  # short-lived faults, which a slow run may miss
 ORDER_INDEPENDENT = (LIMITS, GUARD)  # files whose tests also have to pass in the opposite order
 
 
 @dataclass(frozen=True, kw_only=True)
 class Line(CheckRow):
-    """A line of the contract, for the check that a student's tests fail on versions that break it.
+    """A line of the contract. Its check tests whether a student's tests fail on versions that break the line.
 
     Attributes:
         promise: the text of the line, which ends the check's message.
@@ -59,12 +59,12 @@ class Line(CheckRow):
 
 
 class Examination:
-    """The runs of a submission's tests. Each is made once, when a check first needs it.
+    """The runs of a submission's tests. Each takes place once, when a check first needs it.
 
     Args:
         workspace: the student's workspace.
         seed: determines styles, obfuscations and the order of the runs.
-        checks: the ids of the checks that need runs. Runs that only other checks need are not made.
+        checks: the ids of the checks that need runs. Runs that only other checks need do not take place.
     """
 
     def __init__(self, workspace: Workspace, seed: int, checks: frozenset[str]) -> None:
@@ -75,19 +75,19 @@ class Examination:
 
     @cached_property
     def source(self) -> student_test_reports.Source:
-        """The student's package, read before `colcon test` lets its code change the folder."""
+        """The student's package, read before `colcon test` runs its code, which may change the folder."""
         return student_test_runs.read_source(self._workspace, PACKAGE)
 
     @cached_property
     def trial(self) -> dict[str, student_test_reports.Report]:
         """The reports of each file's tests on a right version. Network traffic of the node's tests is sniffed."""
-        needed = {FILES[check] for check in self._checks if check in FILES}
+        needed_files = {FILES[check] for check in self._checks if check in FILES}
         runs = {
             name: student_test_reports.TestRun(
                 (name,), right(STYLES[0], self._draw(name)), sniffed=name == GUARD, is_public=True
             )
             for name in MIN_TESTS
-            if (name in needed or self._checks & ALL_FILES) and name in self.source.tests
+            if (name in needed_files or self._checks & ALL_FILES) and name in self.source.tests
         }
         return dict(zip(runs, self._run(list(runs.values())), strict=True))
 
@@ -95,13 +95,13 @@ class Examination:
     def runs(self) -> dict[tuple[str, str], student_test_reports.Report]:
         """The reports of all other runs, by file and purpose."""
         runs: dict[tuple[str, str], student_test_reports.TestRun] = {}
-        # Slowest first. The order reveals nothing: a test knows its own file.
+        # The slowest files come first. This order reveals nothing: a test knows its own file.
         for name in (name for name in reversed(MIN_TESTS) if is_usable(name, self.trial.get(name))):
             file_runs = self._plan(name, self.trial[name].failed)
             purposes = sorted(file_runs)
             self._draw(name, "order").shuffle(purposes)
             runs |= {(name, purpose): file_runs[purpose] for purpose in purposes}
-        with ThreadPoolExecutor(1) as executor:  # in parallel, because colcon also waits most of the time
+        with ThreadPoolExecutor(1) as executor:  # in parallel, because colcon spends most of its time waiting
             if self._checks & COLCON:
                 executor.submit(lambda: self.colcon)
             return dict(zip(runs, self._run(list(runs.values())), strict=True))
@@ -119,29 +119,31 @@ class Examination:
                 raise CheckFailed(describe_failure(name, self.runs[name, purpose], _WHERE[purpose]))
 
     def expect_usable(self, name: str) -> None:
-        """Fail the check unless one of the student's tests in a file passes on the package as it is."""
+        """Fail the check unless at least one of the student's tests in a file passes on the package as it is."""
         message = f"No test of yours in {name} passes on the package as it is."
         expect(is_usable(name, self.trial.get(name)), message)
 
     def expect_any_usable(self) -> None:
-        """Fail the check unless one of the student's tests in any file passes on the package as it is."""
-        any_usable = any(is_usable(name, report) for name, report in self.trial.items())
-        expect(any_usable, "No test of yours passes on the package as it is, in any of the three files.")
+        """Fail the check unless at least one of the student's tests in all files passes on the package as it is."""
+        is_any_usable = any(is_usable(name, report) for name, report in self.trial.items())
+        expect(is_any_usable, "No test of yours passes on the package as it is, in any of the three files.")
 
     def expect_objection(self, check: str, promise: str) -> None:
-        """Fail the check unless the tests of its file fail on every fault that belongs to it.
+        """Fail the check unless the tests in the check's file fail on every fault that belongs to the check.
 
         A run that has to be stopped counts as failed. Another check tests that runs end by themselves.
         """
         name = FILES[check]
         self.expect_usable(name)
-        relevant = [fault for fault in faults() if fault.check == check]
-        detected = [fault for fault in relevant if self._detects(name, fault)]
+        relevant_faults = [fault for fault in faults() if fault.check == check]
+        detected_faults = [fault for fault in relevant_faults if self._detects(name, fault)]
         expect(
-            len(detected) == len(relevant),
-            f"{len(relevant) - len(detected)} of {len(relevant)} faulty versions that break this line of the contract "
-            f"pass all tests in {name}: {promise}",
-            fraction=len(detected) / len(relevant) if len(detected) < len(relevant) else 0.0,
+            len(detected_faults) == len(relevant_faults),
+            f"{len(relevant_faults) - len(detected_faults)} of {len(relevant_faults)} faulty versions that break this "
+            f"line of the contract pass all tests in {name}: {promise}",
+            fraction=len(detected_faults) / len(relevant_faults)
+            if len(detected_faults) < len(relevant_faults)
+            else 0.0,
         )
 
     def endless_files(self) -> list[str]:
@@ -173,14 +175,14 @@ class Examination:
         return reports
 
     def _rerun(self, name: str) -> dict[str, student_test_reports.Report]:
-        """Run a file on newly made versions, without the tests that fail on right ones; return reports by purpose."""
+        """Run a file on new versions, without the tests that fail on right ones; return the reports by purpose."""
         trial = self.trial[name]
-        failed = trial.failed
-        first = self._plan(name, failed)
+        failed_tests = trial.failed
+        first = self._plan(name, failed_tests)
         reports = self._run(
             [replace(first[purpose], exit_first=False) for purpose in RIGHT_VERSIONS if purpose in first]
         )
-        deselected = tuple(sorted({*failed, *(test for report in reports for test in trial.failed_in(report))}))
+        deselected = tuple(sorted({*failed_tests, *(test for report in reports for test in trial.failed_in(report))}))
         message = (
             f"No test of yours in {name} passes on every right {PACKAGE}, so that none says anything of a faulty one."
         )
@@ -199,21 +201,21 @@ class Examination:
         Args:
             name: the file.
             deselected: tests that do not run.
-            salt: another salt makes other versions.
+            salt: a different salt leads to different versions.
         """
         runs: dict[str, student_test_reports.TestRun] = {}
         tested_faults = [
             fault for fault in faults() if FILES[fault.check] == name and self._checks & {fault.check, ENDS}
         ]
-        # Failing on a faulty version only counts for tests that pass on right ones.
+        # A failure on a faulty version counts only for tests that pass on right versions.
         if tested_faults or RIGHT_CHECKS[name] in self._checks:
             runs[SECOND] = student_test_reports.TestRun(
                 (name,), right(STYLES[1], self._draw(name, SECOND, *salt)), exit_first=True
             )
-            # As similar to the first version as faulty ones, to expose tests that fail on any change of the text.
+            # As similar to the first version as faulty ones are, to expose tests that fail on any change of the text.
             # The notebook requires approximate comparison of a function's results, and advises it for a node's answers.
-            similar = reworded(self._draw(name, REWORDED, *salt), bare=name == LIMITS)
-            runs[REWORDED] = student_test_reports.TestRun((name,), similar, exit_first=True)
+            similar_version = reworded(self._draw(name, REWORDED, *salt), bare=name == LIMITS)
+            runs[REWORDED] = student_test_reports.TestRun((name,), similar_version, exit_first=True)
             if name in ORDER_INDEPENDENT:
                 version = right(STYLES[0], self._draw(name, BACKWARDS, *salt))
                 runs[BACKWARDS] = student_test_reports.TestRun((name,), version, backwards=True, exit_first=True)

@@ -1,4 +1,4 @@
-"""The versions of speed_guard on which a student's tests run: right ones in two styles, and faulty ones of each."""
+"""The versions of speed_guard on which a student's tests run: right ones in two styles, and faulty ones in both."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class Fault:
     """One way to break the contract.
 
     Attributes:
-        id: its id.
-        check: the check that it belongs to.
+        id: the fault's id.
+        check: the id of the check to which the fault belongs.
         file: the file that is changed.
         edits: by style, the text to find and its replacement.
-        last: styles in which only the last match is replaced; in the others there is only one match.
+        last: styles in which only the last match is replaced; in the other styles, there is only one match.
     """
 
     id: str
@@ -45,7 +45,7 @@ def faults() -> tuple[Fault, ...]:
 
 @cache
 def style(name: str) -> versions.Version:
-    """Return the right version in a style."""
+    """Return the right version in this style."""
     first = versions.read(solution_path(PACKAGE), SCRIPTS)
     if name == STYLES[0]:
         return first
@@ -53,17 +53,17 @@ def style(name: str) -> versions.Version:
 
 
 def right(name: str, draw: random.Random) -> versions.Version:
-    """Return a right version in a style, obfuscated."""
+    """Return an obfuscated right version in this style."""
     return versions.obfuscate(style(name), draw.getrandbits(32))
 
 
 def reworded(draw: random.Random, *, bare: bool = False) -> versions.Version:
-    """Return a right version of the first style with one expression of each file reworded, obfuscated.
+    """Return an obfuscated right version in the first style, with one expression of each file reworded.
 
     Args:
         draw: chooses the expressions.
-        bare: whether safe_speed also does no more than its contract says. Its computed speeds have a rounding error,
-            and its error has no text.
+        bare: whether safe_speed also does no more than its contract requires: its computed speeds have a rounding
+            error, and its exception has no text.
     """
     files = dict(style(STYLES[0]).files)
     texts = yaml.safe_load((FOLDER / "reworded.yaml").read_text())
@@ -82,7 +82,7 @@ def _edit(text: str, edit: dict[str, str], label: str) -> str:
 
 
 def broken(fault: Fault, name: str, draw: random.Random) -> versions.Version:
-    """Return a faulty version in a style, obfuscated.
+    """Return an obfuscated faulty version in this style.
 
     Raises:
         GraderError: the fault no longer fits the style's text.

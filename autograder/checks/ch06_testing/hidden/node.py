@@ -9,7 +9,7 @@ from autograder.checks.ch06_testing.support.assertions import expect_passed
 from autograder.checks.ch06_testing.support.contract import GUARD
 
 check = group("node")
-RIGHT = ("guard_right",)
+RIGHT_CHECK = ("guard_right",)
 
 
 @check(points=2, covers="guard-pass", doc=contract.PYTEST)
@@ -27,7 +27,7 @@ def test_guard_right(examination: Examination) -> None:
     examination.expect_right(GUARD, BACKWARDS)
 
 
-@check(points=2, covers="own-domain", after=RIGHT, doc=contract.DOMAIN)
+@check(points=2, covers="own-domain", after=RIGHT_CHECK, doc=contract.DOMAIN)
 @hint("Without a domain of its own, a context listens to whoever is in the default one.")
 @hint("rclpy.init(context=context, domain_id=...): a number that another test process does not use.")
 def test_alone(examination: Examination) -> None:
@@ -39,7 +39,7 @@ def test_alone(examination: Examination) -> None:
     )
 
 
-@check(points=1, covers="guard-pass", after=RIGHT, doc=contract.FIXTURES)
+@check(points=1, covers="guard-pass", after=RIGHT_CHECK, doc=contract.FIXTURES)
 @hint("What stands after yield in a fixture is done in any case, also when the test fails.")
 @hint("Destroy each node, then rclpy.try_shutdown(context=context).")
 def test_nothing_left(examination: Examination) -> None:
@@ -165,7 +165,7 @@ LINES = (
 )
 
 
-@check_each_row(group("node", after=RIGHT), LINES)
+@check_each_row(group("node", after=RIGHT_CHECK), LINES)
 def expect_objection(line: Line, examination: Examination) -> None:
     """Fail the check unless the tests of the file fail on every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)

@@ -1,4 +1,4 @@
-"""The quality of the tests: they wait without sleeping, they end, and colcon runs them and the linters."""
+"""Checks of the tests' quality: they wait without sleeping, they end, and colcon runs them and the linters."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, MIN_T
 
 check = group("craft")
 SHARE_FOLDERS = ("launch", "config")  # folders whose files setup.py installs
-GIVEN_FOLDERS = (PACKAGE, *SHARE_FOLDERS)  # given folders; students write test/, and may replace setup.py
+GIVEN_FOLDERS = (PACKAGE, *SHARE_FOLDERS)  # folders with given files; students write test/, and may replace setup.py
 LINTERS = ("test_flake8", "test_pep257")
 EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use pytest, with every version of setuptools."
 
@@ -23,13 +23,15 @@ EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use py
 def test_as_given(workspace: Workspace, examination: Examination) -> None:
     """The module, the launch file and the configuration of the package are as they were given."""
     examination.expect_any_usable()
-    given = style(STYLES[0]).files
-    texts = {name: text.encode() for name, text in given.items()}
-    changed = given_files.changed_files(examination.source.files, texts, GIVEN_FOLDERS)
-    expect(not changed, f"{' and '.join(changed)} of your package is not as it was given.")
-    # The runs install each version without setup.py, so only this finds files that it does not install.
+    reference_files = style(STYLES[0]).files
+    texts = {name: text.encode() for name, text in reference_files.items()}
+    changed_names = given_files.changed_files(examination.source.files, texts, GIVEN_FOLDERS)
+    expect(not changed_names, f"{' and '.join(changed_names)} of your package is not as it was given.")
+    # The runs install each version without setup.py, so only this check finds files that setup.py does not install.
     installation = installed.inspect_package(workspace.install, PACKAGE)
-    missing = [name for name in given if name.split("/")[0] in SHARE_FOLDERS and installation.read(name) is None]
+    missing = [
+        name for name in reference_files if name.split("/")[0] in SHARE_FOLDERS and installation.read(name) is None
+    ]
     expect(
         not missing,
         f"{' and '.join(missing)} of your package is not installed in share/{PACKAGE}: the given setup.py names it "
@@ -90,10 +92,10 @@ def test_linters(workspace: Workspace, examination: Examination) -> None:
     }
     missing = [name for name in LINTERS if name not in names]
     expect(not missing, f"`colcon test` did not run {' and '.join(missing)}.")
-    failed = [
+    failed_linters = [
         name.partition("::")[2]
         for name, verdict in linter_verdicts.items()
         if verdict is not student_test_reports.ClaimedOutcome.PASSED
     ]
-    expect(not failed, f"{' and '.join(failed)} found something in the package.", fraction=0.5)
+    expect(not failed_linters, f"{' and '.join(failed_linters)} found something in the package.", fraction=0.5)
     linters.expect_tidy(workspace, examination.source, linter_verdicts, fraction=0.5)

@@ -8,7 +8,7 @@ from autograder.checks.ch06_testing.support.contract import GIVEN_TESTS, MIN_TES
 from autograder.checks.ch06_testing.support.sleeping import sleeps
 
 UNFINISHED = "still to be written"
-MAX_FAILED = 50  # tests: a file with more failed ones is not used
+MAX_FAILED = 50  # the largest number of failed tests with which a file is still used
 
 
 def is_usable(name: str, report: student_test_reports.Report | None) -> bool:
@@ -37,8 +37,8 @@ def expect_passed(name: str, report: student_test_reports.Report | None) -> None
 
 def expect_no_sleep(source: student_test_reports.Source) -> None:
     """Fail the check if a test file sleeps."""
-    python = {name: data for name, data in sorted(source.tests.items()) if name.endswith(".py")}
-    sleep_lines = [f"{name}, line {line}" for name, data in python.items() for line in sleeps(data)]
+    python_files = {name: data for name, data in sorted(source.tests.items()) if name.endswith(".py")}
+    sleep_lines = [f"{name}, line {line}" for name, data in python_files.items() for line in sleeps(data)]
     expect(not sleep_lines, f"There is a sleep in {'; '.join(sleep_lines[:3])}.")
 
 

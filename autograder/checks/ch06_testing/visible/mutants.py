@@ -1,4 +1,4 @@
-"""The student's tests on the package as it is, and on mutants that the course provides."""
+"""Runs the student's tests on the package as it is, and on mutants that the course provides."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMIT
 Reports = dict[tuple[str, str], student_test_reports.Report]
 GUARD_FILE = "speed_guard/guard.py"
 
-# Mutants that differ a lot from the right package. The hidden ones differ by a line.
+# Mutants that differ a lot from the right package. The hidden ones differ in one line each.
 LETS_ALL_PASS = {"speed_guard/limits.py": "def safe_speed(wanted, *distances, **more_distances):\n    return wanted\n"}
 GOES_BLIND = {
     "speed_guard/limits.py": """import math

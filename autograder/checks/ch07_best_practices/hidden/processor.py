@@ -1,4 +1,4 @@
-"""The sensor processor: its topics, its filtered scans, its means and its warnings."""
+"""Checks of the sensor processor: its topics, its filtered scans, its means and its warnings."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from autograder.checks.ch07_best_practices.support.drawn_readings import (
     Readings,
     Series,
     averages,
-    drawn,
+    draw_cases,
     expect_all,
     mean_of,
     other_lidars,
@@ -64,16 +64,18 @@ def test_sensor_qos(processor: Processor) -> None:
     """It asks for scans as a lidar offers them, and offers its own likewise: best effort; not so the mean."""
     subscriptions = processor.node.get_subscriptions_info_by_topic("/scan")
     expect(bool(subscriptions), "It does not subscribe to scan.")
-    reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in subscriptions)
-    expect(not reliable, "Its scan subscription asks for reliable delivery, which a lidar does not offer.")
+    is_reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in subscriptions)
+    expect(not is_reliable, "Its scan subscription asks for reliable delivery, which a lidar does not offer.")
     publishers = processor.node.get_publishers_info_by_topic("/scan_filtered")
     expect(bool(publishers), "It does not publish scan_filtered.")
-    reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in publishers)
-    expect(not reliable, "scan_filtered is offered reliably: a slow listener would hold the node up.", fraction=0.5)
-    durable = any(
+    is_reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in publishers)
+    expect(not is_reliable, "scan_filtered is offered reliably: a slow listener would hold the node up.", fraction=0.5)
+    is_durable = any(
         peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in (*subscriptions, *publishers)
     )
-    expect(not durable, "scan or scan_filtered is transient local, and qos_profile_sensor_data is not.", fraction=0.5)
+    expect(
+        not is_durable, "scan or scan_filtered is transient local, and qos_profile_sensor_data is not.", fraction=0.5
+    )
     difference = qos.non_default_qos(processor.node, "/mean_distance")
     expect(not difference, difference, fraction=0.75)
 
@@ -95,7 +97,7 @@ def test_filtered(workspace: Workspace, processor: Processor, draw: random.Rando
     """A scan comes out with its phantoms masked, by the lidar's own limits."""
     far = round(draw.uniform(11.0, 15.0), 1)
     plain = Readings((1.0, 0.0, inf, nan, far, -inf, far + 5.0), 0.05, far + 1.0)
-    others = drawn((other_lidars(at_limits=False) | other_lidars(at_limits=True)).map(_with_infinities), draw, 20)
+    others = draw_cases((other_lidars(at_limits=False) | other_lidars(at_limits=True)).map(_with_infinities), draw, 20)
     _expect_masked(workspace, processor, [plain], fraction=0.0)
     _expect_masked(workspace, processor, others, fraction=0.5)
 
@@ -104,9 +106,9 @@ def test_filtered(workspace: Workspace, processor: Processor, draw: random.Rando
 @hint("Publish the message that came, with other ranges.", "A new LaserScan() has no header and no angles.")
 def test_rest_untouched(processor: Processor, draw: random.Random) -> None:
     """Header, angles, times, limits and intensities come out as they went in."""
-    sent = drawn(messages(), draw, 25)
-    filtered, _ = processor.send_scans(*sent)
-    expect(len(filtered) == len(sent), f"{len(sent)} scans went in, {len(filtered)} came out.")
+    sent_scans = draw_cases(messages(), draw, 25)
+    filtered, _ = processor.send_scans(*sent_scans)
+    expect(len(filtered) == len(sent_scans), f"{len(sent_scans)} scans went in, {len(filtered)} came out.")
 
     def judge(pair: tuple[LaserScan, LaserScan]) -> None:
         before, after = pair
@@ -117,17 +119,17 @@ def test_rest_untouched(processor: Processor, draw: random.Random) -> None:
             fraction = 0.5 if field == "intensities" else 0.0
             expect(is_equal, f"{field} went in as {expected!r} and came out as {actual!r}.", fraction=fraction)
 
-    expect_all(zip(sent, filtered, strict=True), judge)
+    expect_all(zip(sent_scans, filtered, strict=True), judge)
 
 
 @check(points=2, covers=("mean-of-ten", "mean-topic"), after=("filtered",))
 @hint("DataProcessor(10), made once in __init__; publish average() after each scan.", "Float32(data=...)")
 def test_mean_of_ten(workspace: Workspace, fresh_processor: Processor, draw: random.Random) -> None:
     """mean_distance is the average of the newest ten scans' means."""
-    good = drawn(GOOD_SCANS, draw, 14)
+    good = draw_cases(GOOD_SCANS, draw, 14)
     # Blind scans have no mean, and do not count among the ten. Another check tests scans without beams.
     blind = BLIND_SCANS.filter(lambda case: bool(case.readings) and 0.0 not in case.readings)
-    scans = [*good[:1], *drawn(GOOD_SCANS | blind, draw, 20), *good[1:], Readings((0.0,))]
+    scans = [*good[:1], *draw_cases(GOOD_SCANS | blind, draw, 20), *good[1:], Readings((0.0,))]
     scans = [replace(case, low=0.0) for case in scans]
     _, actual = fresh_processor.send_scans(*map(scan_of, scans))
     if not _all_close(actual, _student_averages(workspace, scans)):
@@ -147,10 +149,10 @@ def test_mean_of_ten(workspace: Workspace, fresh_processor: Processor, draw: ran
 @hint("mean_distance(msg.ranges) is None: warn instead of publishing.", "Float32 cannot hold None.")
 def test_blind_scan(workspace: Workspace, processor: Processor, draw: random.Random) -> None:
     """A scan without a distance comes out masked, and no mean with it."""
-    processor.send_scans(scan([1.0]))  # the mean of this scan is known
+    processor.send_scans(scan([1.0]))  # so that a mean is known
     plain = Readings((nan, 0.0, inf))
     # None of these is a distance for any usual lidar. Another check tests whether the limits are the lidar's own.
-    cases = [plain, *drawn(scans_of(st.sampled_from((*PLAIN_PHANTOMS, inf, -inf)), min_size=1), draw, 10)]
+    cases = [plain, *draw_cases(scans_of(st.sampled_from((*PLAIN_PHANTOMS, inf, -inf)), min_size=1), draw, 10)]
     for case in cases:
         _, means = processor.send_scans(scan_of(case))
         expect(not means, f"A scan of {list(case.readings)}, without any distance, made it say {means} m.")
@@ -188,12 +190,12 @@ def test_any_lidar(processor: Processor, draw: random.Random) -> None:
 
 def _expect_separate_histories(workspace: Workspace) -> None:
     """Fail the check if two processors in one process share their history."""
-    node, first, second = calls.call("SensorProcessor"), _message(1.0), _message(3.0)
+    node, first, second = calls.call("SensorProcessor"), _scan_call(1.0), _scan_call(3.0)
     turns = [(0, "scan_callback", first), (1, "scan_callback", second), (0, "scan_callback", first)]
     texts = node_callbacks.published(workspace, PROCESSOR, [node, node], turns)
     means_of_calls = [re.findall(r"Float32\(data=(-?\d{1,40}(?:\.\d{1,40})?)\)", text) for text in texts]
     if not all(len(means) == 1 for means in means_of_calls):
-        return  # it does not publish in its callback, which is allowed
+        return  # the node does not publish in its callback, which is allowed
     actual = [float(mean) for (mean,) in means_of_calls]
     sentence = "Of two sensor processors in one process, one was shown scans of 1 m and the other one of 3 m"
     is_right = _all_close(actual, [1.0, 3.0, 1.0]) or _all_close(actual, _averages_of_two(workspace))
@@ -204,15 +206,15 @@ def _expect_separate_histories(workspace: Workspace) -> None:
     )
 
 
-def _message(distance: float) -> calls.Step:
+def _scan_call(distance: float) -> calls.Step:
     """Return the call that creates a scan with one beam."""
     return calls.call("LaserScan", module="sensor_msgs.msg", ranges=[distance], range_min=0.125, range_max=3.5)
 
 
 def _averages_of_two(workspace: Workspace) -> list[float]:
-    """Return the averages of two of the student's DataProcessors, as `_expect_separate_histories` calls them.
+    """Return the averages of two of the student's DataProcessors, for the scans of `_expect_separate_histories`.
 
-    Other checks test whether they are right.
+    Other checks test whether these averages are right.
     """
     plan = calls.Plan()
     processors = [plan.add(calls.call("DataProcessor", HISTORY)) for _ in range(2)]
@@ -225,11 +227,11 @@ def _averages_of_two(workspace: Workspace) -> list[float]:
 
 
 def _expect_masked(workspace: Workspace, processor: Processor, cases: Sequence[Readings], *, fraction: float) -> None:
-    """Fail the check unless all scans come out masked: rightly, or as the student's mask_invalid does.
+    """Fail the check unless all scans come out masked, correctly or as the student's mask_invalid masks them.
 
     Other checks test whether mask_invalid is right.
     """
-    # A fast lidar shows whether each scan is published, or only what a timer finds.
+    # A fast lidar shows whether each scan is published, or only the newest one when a timer fires.
     apart = FAST_SECONDS if processor.time == LOCKSTEP else SCAN_SECONDS
     filtered, _ = processor.send_scans(*map(scan_of, cases), apart=apart)
     scans = "One scan" if len(cases) == 1 else f"{len(cases)} scans"
@@ -248,12 +250,12 @@ def _expect_masked(workspace: Workspace, processor: Processor, cases: Sequence[R
 
 
 def _with_infinities(case: Readings) -> Readings:
-    """Return the same readings, others that are no numbers, and a distance."""
+    """Return the same readings, followed by infinities, nan and a distance."""
     return replace(case, readings=(*case.readings, inf, nan, -inf, round((case.low + case.high) / 2, 3)))
 
 
 def _student_averages(workspace: Workspace, cases: Sequence[Readings]) -> list[float]:
-    """Return the averages of the student's DataProcessor, for scans for which their mean_distance returns a mean."""
+    """Return the student's averages after all scans for which the student's mean_distance returns a mean."""
     plan = calls.Plan()
     processor = plan.add(calls.call("DataProcessor", HISTORY))
     steps = []
@@ -274,5 +276,5 @@ def _all_close(actual: list[float], expected: list[float]) -> bool:
 
 
 def _close(actual: float, expected: float) -> bool:
-    """Return whether two numbers are equal, if one of them was a 32-bit float."""
+    """Return whether two numbers are equal within the precision of a 32-bit float."""
     return isnan(actual) if isnan(expected) else isclose(actual, expected, rel_tol=1e-6)

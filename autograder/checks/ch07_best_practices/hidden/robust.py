@@ -1,4 +1,4 @@
-"""The robust node: its status and its log while its sensor fails, and after that."""
+"""Checks of the robust node: its status and its log while its sensor fails, and afterwards."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from std_msgs.msg import String
 
 from autograder.checking import LOCKSTEP, Kind, StudentError, Workspace, expect, group, hint
 from autograder.checking.probes import calls, late_joiner, namespaces, node_callbacks, parameters
-from autograder.checks.ch07_best_practices.hidden.bugs import BUGS, PLAIN, call_with_bugs
+from autograder.checks.ch07_best_practices.hidden.bugs import BUGS, PLAIN_BUGS, call_with_bugs
 from autograder.checks.ch07_best_practices.support.contract import (
     ERRORS,
     LOGGING,
@@ -23,15 +23,16 @@ from autograder.checks.ch07_best_practices.support.contract import (
     ROBUST,
     RULE_STATUS,
 )
-from autograder.checks.ch07_best_practices.support.drawn_readings import drawn
-from autograder.checks.ch07_best_practices.support.robot import STATUS, Robust, logged
+from autograder.checks.ch07_best_practices.support.drawn_readings import draw_cases
+from autograder.checks.ch07_best_practices.support.robot import STATUS, Robust, count_logged
 from autograder.checks.ch07_best_practices.support.sensor_run import SensorRun, numbers_and_probabilities
 
 check = group("robust")
 DEFAULTS: dict[str, parameters.Value] = {"failure_probability": 0.1, "seed": 0, "max_errors": 10}
 ERROR_SECONDS = 5.0  # s: the shortest time between two errors in the log
 SLACK = 0.6  # s by which a time may differ in real time, where a reading takes 1 s
-LOG = "rclpy.impl.rcutils_logger._rclpy.rclpy_logging_rcutils_log"
+LOG = "rclpy.impl.rcutils_logger._rclpy.rclpy_logging_rcutils_log"  # the function through which rclpy logs
+# The ranges of the parameters.
 LIMITS = {"failure_probability": (0.0, 1.0), "seed": (0, 2**31 - 1), "max_errors": (1, 1000)}
 
 
@@ -57,8 +58,10 @@ def test_late_joiners(workspace: Workspace) -> None:
         publishers = harness.node.get_publishers_info_by_topic(STATUS)
         # In real time, the node continues to publish while a subscriber joins.
         count = late_joiner.count_kept_messages(harness.node, STATUS, String) if harness.time == LOCKSTEP else 1
-    durable = [peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in publishers]
-    expect(bool(durable) and all(durable), "status is offered volatile: a display that joins late shows nothing.")
+    are_durable = [peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in publishers]
+    expect(
+        bool(are_durable) and all(are_durable), "status is offered volatile: a display that joins late shows nothing."
+    )
     expect(count == 1, f"A display that joins late got {count} messages, not the last one alone.", fraction=0.5)
     message = namespaces.missing_in_namespace(workspace, PACKAGE, "robust_node", ("status",))
     expect(not message, message, fraction=0.5)
@@ -68,20 +71,20 @@ def test_late_joiners(workspace: Workspace) -> None:
 @hint(RULE_STATUS, "A success sets the count back to 0.")
 def test_counts(workspace: Workspace, flaky: SensorRun, draw: random.Random) -> None:
     """It counts failures in a row, and starts again after a success."""
-    # Another check tests from which failure on it is unstable.
-    said, correct = (
+    # Another check tests from which failure on the node is unstable.
+    actual, expected = (
         [each.replace("unstable", "failed") for each in texts] for texts in (flaky.statuses, flaky.expected)
     )
-    wrong = flaky.first_wrong(lambda number: said[number] == correct[number])
-    message = f"{flaky.situation}, reading {(wrong or 0) + 1} made it say {said[wrong or 0]!r}"
-    expect(wrong is None, f"{message} instead of {correct[wrong or 0]!r}.")
+    wrong = flaky.first_wrong(lambda number: actual[number] == expected[number])
+    message = f"{flaky.situation}, reading {(wrong or 0) + 1} made it say {actual[wrong or 0]!r}"
+    expect(wrong is None, f"{message} instead of {expected[wrong or 0]!r}.")
     _expect_one_question(workspace, draw)
     _expect_separate_counts(workspace)
 
 
 def _expect_one_question(workspace: Workspace, draw: random.Random) -> None:
-    """Fail the check unless read_sensor asks its generator once, and fails if the number is below the probability."""
-    cases = [(0.5, 0.0), (0.0, 0.0), (0.5, 1.0), *drawn(numbers_and_probabilities(), draw, 15)]
+    """Fail the check unless read_sensor asks its generator once, and fails only for a number below the probability."""
+    cases = [(0.5, 0.0), (0.0, 0.0), (0.5, 1.0), *draw_cases(numbers_and_probabilities(), draw, 15)]
     plan, numbers = calls.Plan(), []
     for number, probability in cases:
         returns: dict[str, Any] = {"random.return_value": number}
@@ -93,8 +96,8 @@ def _expect_one_question(workspace: Workspace, draw: random.Random) -> None:
         result, _, count = outcomes[step : step + 3]
         is_right = "SensorError" in result.kinds if number < probability else result.value == "Success"
         sentence = f"When the generator says {number}, and failure_probability is {probability}, read_sensor"
-        returned = f"raised {result.raised}" if result.raised else f"returned {result.value!r}"
-        message = f"{sentence} {returned}: only a number below it is a failure."
+        result_text = f"raised {result.raised}" if result.raised else f"returned {result.value!r}"
+        message = f"{sentence} {result_text}: only a number below it is a failure."
         expect(is_right, message, fraction=0.5)
         message = f"{sentence} asked the generator {count.value} times instead of once."
         expect(count.value == 1, message, fraction=0.5)
@@ -146,9 +149,9 @@ def test_no_seed(workspace: Workspace, draw: random.Random) -> None:
 @hint(RULE_STATUS, "More than max_errors, not as many as.")
 def test_unstable(dead: SensorRun, flaky: SensorRun) -> None:
     """More than max_errors failures in a row are called unstable, and one fewer is not."""
-    shown = dead.max_errors + 3
-    message = f"With max_errors {dead.max_errors} and a dead sensor it said {dead.statuses[:shown]}"
-    expect(dead.statuses == dead.expected, f"{message}, instead of {dead.expected[:shown]}.")
+    shown_count = dead.max_errors + 3
+    message = f"With max_errors {dead.max_errors} and a dead sensor it said {dead.statuses[:shown_count]}"
+    expect(dead.statuses == dead.expected, f"{message}, instead of {dead.expected[:shown_count]}.")
     wrong = flaky.first_wrong(lambda number: flaky.statuses[number] == flaky.expected[number])
     message = f"{flaky.situation}, reading {(wrong or 0) + 1} made it say {flaky.statuses[wrong or 0]!r}"
     expect(wrong is None, f"{message} instead of {flaky.expected[wrong or 0]!r}.", fraction=0.5)
@@ -161,24 +164,24 @@ def test_errors_throttled(workspace: Workspace, dead: SensorRun, flaky: SensorRu
     count = sum(reading.count("ERROR") for reading in dead.readings)
     expect(count > 0, f"Its sensor failed for {len(dead.readings)} s, and it said nothing at level ERROR.")
     for run in (dead, flaky):
-        last = -math.inf
+        last_second = -math.inf
         for reading, failures in zip(run.readings, run.failures, strict=True):
             count = reading.count("ERROR")
             errors = ("no error", "an error")[count] if count < 2 else f"{count} errors"
             sentence = f"{run.situation}, it logged {errors} {reading.second:.0f} s after its start"
             expect(count == 0 or failures > 0, f"{sentence}, when no reading had failed.", fraction=0.5)
-            is_soon = count > 1 or (count == 1 and reading.second - last < ERROR_SECONDS - SLACK)
-            message = f"{sentence}, and the one before {reading.second - last:.0f} s earlier."
+            is_soon = count > 1 or (count == 1 and reading.second - last_second < ERROR_SECONDS - SLACK)
+            message = f"{sentence}, and the one before {reading.second - last_second:.0f} s earlier."
             expect(not is_soon, message if count == 1 else f"{sentence}.", fraction=0.5)
-            is_late = count == 0 and failures > 0 and reading.second - last > 2 * ERROR_SECONDS
+            is_late = count == 0 and failures > 0 and reading.second - last_second > 2 * ERROR_SECONDS
             message = f"{sentence}, when a reading had failed, and none in the {2 * ERROR_SECONDS:.0f} s before."
             expect(not is_late, message, fraction=0.5)
-            last = reading.second if count else last
+            last_second = reading.second if count else last_second
     _expect_unstable_error(workspace)
 
 
 def _expect_unstable_error(workspace: Workspace) -> None:
-    """Fail the check if the failure that makes a node unstable is not logged as an error when that is due."""
+    """Fail the check if the failure that makes a node unstable is not logged as an error although one is due."""
     plan = calls.Plan()
     plan.add(calls.call("init", module="rclpy"))
     log = plan.add(calls.call("start", on=plan.add(calls.call("patch", LOG, module="unittest.mock"))))
@@ -225,7 +228,7 @@ def test_recovery_logged(flaky: SensorRun) -> None:
     message = f"{flaky.situation}, at reading {wrong + 1}, it logged a recovery after: {logs}."
     expect(actual == expected, message, fraction=0.5 if actual == without_unstable else 0.0)
     lines = [line for reading in flaky.readings for line in reading.log.splitlines() if "Recovered after " in line]
-    infos = logged("\n".join(lines), "INFO")
+    infos = count_logged("\n".join(lines), "INFO")
     expect(infos == len(lines), f"It logged {infos} of {len(lines)} recoveries at level INFO.", fraction=0.5)
 
 
@@ -234,17 +237,17 @@ def test_recovery_logged(flaky: SensorRun) -> None:
 def test_bugs_are_seen(workspace: Workspace) -> None:
     """It catches SensorError and nothing else: a bug ends the node with a traceback."""
     results = call_with_bugs(workspace)
-    created = results.created
-    expect(not created.raised, f"RobustNode(generator=...) raised {created.raised}: {created.message}")
-    for bug, called in results.called.items():
-        fraction = 0.0 if bug in PLAIN else 0.75
-        expect(bool(called.raised), f"A bug in timer_callback raised {bug}, and it was swallowed.", fraction=fraction)
-        message = f"A bug in timer_callback raised {called.raised} instead of the {bug} itself."
-        expect(called.raised == bug, message, fraction=fraction)
+    creation = results.creation
+    expect(not creation.raised, f"RobustNode(generator=...) raised {creation.raised}: {creation.message}")
+    for bug, result in results.callbacks.items():
+        fraction = 0.0 if bug in PLAIN_BUGS else 0.75
+        expect(bool(result.raised), f"A bug in timer_callback raised {bug}, and it was swallowed.", fraction=fraction)
+        message = f"A bug in timer_callback raised {result.raised} instead of the {bug} itself."
+        expect(result.raised == bug, message, fraction=fraction)
     message = f"RobustNode(namespace='hall') is in {results.namespace.value}: its kwargs are for Node."
     expect(results.namespace.value == "/hall", message, fraction=0.5)
     message = "With the parameter seed 5, a RobustNode did not ask the generator that was handed in."
-    expect(results.seeded.raised == BUGS[-1], message, fraction=0.75)
+    expect(results.seeded_callback.raised == BUGS[-1], message, fraction=0.75)
 
 
 @check(points=1, covers=("failure-probability", "seed", "max-errors"), after=("once_a_second",))
@@ -261,8 +264,11 @@ def test_declared(workspace: Workspace) -> None:
     expect(not wrong, f"Without any file or argument, {', '.join(wrong)}.")
     ranges = {name: [*d.floating_point_range, *d.integer_range] for name, d in descriptors.items()}
     for name, limits in LIMITS.items():
-        declared = [(span.from_value, span.to_value) for span in ranges[name]]
-        expect(declared == [limits], f"{name} is declared with {declared or 'no range'}, and should have {limits}.")
+        declared_limits = [(span.from_value, span.to_value) for span in ranges[name]]
+        expect(
+            declared_limits == [limits],
+            f"{name} is declared with {declared_limits or 'no range'}, and should have {limits}.",
+        )
     for name, default in DEFAULTS.items():
         step, max_step = ranges[name][0].step, 1 if isinstance(default, int) else 0
         message = f"The range of {name} has steps of {step:g}, and should take every value from end to end."
@@ -274,7 +280,7 @@ def test_declared(workspace: Workspace) -> None:
 def test_ranges(workspace: Workspace) -> None:
     """It refuses to start with a probability above 1, or with max_errors below 1."""
     with Robust(workspace, failure_probability=1.0, max_errors=1):
-        pass  # it starts with values at the limits
+        pass  # the node starts with values at the limits
     for name, impossible in (("failure_probability", 1.5), ("max_errors", 0)):
         try:
             with Robust(workspace, **{name: impossible}):

@@ -1,4 +1,4 @@
-"""The utilities: pure functions, which are called in the sandbox with drawn readings."""
+"""Checks of the utilities: pure functions, which are called in the sandbox with drawn readings."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ from autograder.checks.ch07_best_practices.support.drawn_readings import (
     PHANTOMS,
     Readings,
     Series,
-    drawn,
+    draw_cases,
     expect_all,
-    kept,
+    kept_readings,
     lists_with_a_mean,
     mean_of,
     other_lidars,
@@ -43,6 +43,7 @@ from autograder.checks.ch07_best_practices.support.drawn_readings import (
 
 check = group("utils")
 FUNCTIONS = ("mask_invalid", "mean_distance", "process")
+# For each kind of sequence, the module of its type, the type's name, and arguments that come before the readings.
 SEQUENCES = {
     "a list": ("builtins", "list", ()),
     "a tuple": ("builtins", "tuple", ()),
@@ -65,7 +66,7 @@ def test_keeps_places(workspace: Workspace, draw: random.Random) -> None:
             message = f"The good reading in place {place} came back as {masked[place]}: {case.call} returned {masked}."
             expect(not is_good or calls.same(masked[place], reading), message)
 
-    judge_masked(workspace, drawn(scans_of(GOOD | PHANTOMS), draw, 20), judge)
+    judge_masked(workspace, draw_cases(scans_of(GOOD | PHANTOMS), draw, 20), judge)
 
 
 @check(points=2, covers=("phantoms", "mask"), after=("keeps_places",), doc=REP_117)
@@ -74,12 +75,12 @@ def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
     """mask_invalid puts nan where a number cannot be a measurement."""
 
     def judge(case: Readings, masked: list[float]) -> None:
-        unmasked = [reading for reading in masked if not calls.same(reading, nan)]
-        expect(not unmasked, f"{case.call} returned {masked}: each of these readings should become nan.")
+        unmasked_readings = [reading for reading in masked if not calls.same(reading, nan)]
+        expect(not unmasked_readings, f"{case.call} returned {masked}: each of these readings should become nan.")
         message = f"Of {list(case.readings)}, only {len(masked)} were replaced by nan, and the others dropped."
         expect(len(masked) == len(case.readings), message, fraction=0.5)  # another check tests the places of readings
 
-    judge_masked(workspace, drawn(scans_of(PHANTOMS, min_size=1), draw, 20), judge)
+    judge_masked(workspace, draw_cases(scans_of(PHANTOMS, min_size=1), draw, 20), judge)
 
 
 @check(points=1, covers="mask", after=("keeps_places",))
@@ -89,10 +90,14 @@ def test_limits_count(workspace: Workspace, draw: random.Random) -> None:
 
     def judge(case: Readings, masked: list[float]) -> None:
         message = f"{case.call} returned {masked}: a reading of exactly range_min or range_max stays."
-        expect(calls.same(kept(masked), kept(case.masked)), message, fraction=0.0 if case.is_usual else 0.5)
+        expect(
+            calls.same(kept_readings(masked), kept_readings(case.masked)),
+            message,
+            fraction=0.0 if case.is_usual else 0.5,
+        )
 
     plain = Readings((LOW, HIGH))
-    judge_masked(workspace, [plain, *drawn(other_lidars(at_limits=True), draw, 12)], judge)
+    judge_masked(workspace, [plain, *draw_cases(other_lidars(at_limits=True), draw, 12)], judge)
 
 
 @check(points=2, covers=("infinities", "mask"), after=("keeps_places",), doc=REP_117)
@@ -103,7 +108,7 @@ def test_infinities_stay(workspace: Workspace, draw: random.Random) -> None:
     def judge(case: Readings, masked: list[float]) -> None:
         expect(calls.same(masked, case.masked), f"{case.call} returned {masked}: inf and -inf stay, in their places.")
 
-    judge_masked(workspace, drawn(scans_of(st.sampled_from((inf, -inf)) | GOOD, min_size=1), draw, 15), judge)
+    judge_masked(workspace, draw_cases(scans_of(st.sampled_from((inf, -inf)) | GOOD, min_size=1), draw, 15), judge)
 
 
 @check(points=2, covers="mask", after=("keeps_places",))
@@ -112,14 +117,14 @@ def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> Non
     """The limits are the lidar's own, not fixed numbers."""
 
     def judge(case: Readings, masked: list[float]) -> None:
-        actual, expected = kept(masked), kept(case.masked)
+        actual, expected = kept_readings(masked), kept_readings(case.masked)
         advice = f"it should keep {expected or 'none'}, and put nan in the place of the others."
-        # A reading that is hardly beyond a limit costs less.
+        # Keeping a reading that is only just beyond a limit costs less.
         is_blatant = len(actual) < len(expected) or any(case.beyond(reading) > 2 * BEYOND_LIMIT for reading in actual)
         fraction = 0.0 if is_blatant else 0.75
         expect(calls.same(actual, expected), f"{case.call} returned {masked}: {advice}", fraction=fraction)
 
-    judge_masked(workspace, drawn(other_lidars(at_limits=False), draw, 25), judge)
+    judge_masked(workspace, draw_cases(other_lidars(at_limits=False), draw, 25), judge)
 
 
 @check(points=1, covers=("leave-lists", "mask"), after=("keeps_places",))
@@ -127,14 +132,17 @@ def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> Non
 def test_input_untouched(workspace: Workspace, draw: random.Random) -> None:
     """What is given to mask_invalid, and to process, is left as it was."""
     plain = Readings((0.0, 1.0, 99.0))
-    plan, cases = calls.Plan(), [plain, *drawn(scans_of(GOOD | st.just(inf)) | scans_of(GOOD | PHANTOMS), draw, 12)]
+    plan, cases = (
+        calls.Plan(),
+        [plain, *draw_cases(scans_of(GOOD | st.just(inf)) | scans_of(GOOD | PHANTOMS), draw, 12)],
+    )
     processor = plan.add(calls.call("DataProcessor", 3))
     numbers = []
     for case in cases:
         limits, readings = (case.low, case.high), list(case.readings)
-        given = plan.add(calls.call("list", readings, module="builtins"))
-        masked = plan.add(calls.call("mask_invalid", calls.result_of(given), *limits))
-        plan.add(calls.call("is_", calls.result_of(given), calls.result_of(masked), module="operator"))
+        readings_step = plan.add(calls.call("list", readings, module="builtins"))
+        masked = plan.add(calls.call("mask_invalid", calls.result_of(readings_step), *limits))
+        plan.add(calls.call("is_", calls.result_of(readings_step), calls.result_of(masked), module="operator"))
         plan.add(calls.call("process", readings, *limits, on=processor))
         plan.add(calls.call("mean_distance", readings))
         numbers.append(masked)
@@ -143,11 +151,11 @@ def test_input_untouched(workspace: Workspace, draw: random.Random) -> None:
     def judge(number: int) -> None:
         case = cases[numbers.index(number)]
         masked, is_same, processed, mean = outcomes[number : number + 4]
-        if case is plain:  # other checks test whether they take other readings
+        if case is plain:  # other checks test whether the functions take other readings
             calls.value(masked, case.call)
             calls.value(processed, f"DataProcessor(3).process({case!r})")
         for function, outcome in (("mask_invalid", masked), ("process", processed), ("mean_distance", mean)):
-            after = list(outcome.arguments[:1]) or [list(case.readings)]  # there are none after an exception
+            after = list(outcome.arguments[:1]) or [list(case.readings)]  # no arguments are known after an exception
             message = f"{function} changed the list that it was given: {list(case.readings)} became {after[0]}."
             expect(calls.same(after, [list(case.readings)]), message)
         message = f"{case.call} returned the caller's list itself instead of a new one."
@@ -168,7 +176,7 @@ def test_mean(workspace: Workspace, draw: random.Random) -> None:
         message = f"mean_distance({readings}) returned {mean} instead of {expected:.4f}."
         expect(is_right, message, fraction=0.0 if expected else 0.5)
 
-    judge_means(workspace, drawn(lists_with_a_mean(), draw, 25), judge)
+    judge_means(workspace, draw_cases(lists_with_a_mean(), draw, 25), judge)
 
 
 @check(points=1, covers="mean", after=("mean",))
@@ -179,7 +187,7 @@ def test_no_mean(workspace: Workspace, draw: random.Random) -> None:
     def judge(readings: list[float], mean: object) -> None:
         expect(mean is None, f"mean_distance({readings}) returned {mean} instead of None.")
 
-    judge_means(workspace, drawn(st.lists(st.sampled_from((nan, inf, -inf)), max_size=5), draw, 12), judge)
+    judge_means(workspace, draw_cases(st.lists(st.sampled_from((nan, inf, -inf)), max_size=5), draw, 12), judge)
 
 
 @check(points=1, covers=("sequences", "mask"), after=("keeps_places", "mean"))
@@ -187,18 +195,18 @@ def test_no_mean(workspace: Workspace, draw: random.Random) -> None:
 def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
     """The readings may come as a tuple, as an array.array or as a numpy array."""
     eighths = st.integers(2, 47).map(lambda number: number / 8)  # exact in 32 bits
-    odd = st.sampled_from((nan, inf, 18.0))
-    drawn_scans = scans_of(eighths | odd, low=0.125)
+    odd_readings = st.sampled_from((nan, inf, 18.0))
+    drawn_scans = scans_of(eighths | odd_readings, low=0.125)
     plain = Readings((1.5, nan, 4.25, 18.0, inf), 0.125)
-    cases = [plain, *drawn(drawn_scans | scans_of(eighths, low=0.125), draw, 8)]
+    cases = [plain, *draw_cases(drawn_scans | scans_of(eighths, low=0.125), draw, 8)]
     plan, first_steps = calls.Plan(), {}
     for case in cases:
         for kind, (module, name, first) in SEQUENCES.items():
-            given = plan.add(calls.call(name, *first, list(case.readings), module=module))
+            readings_step = plan.add(calls.call(name, *first, list(case.readings), module=module))
             processor = plan.add(calls.call("DataProcessor", 2))
-            masked = plan.add(calls.call("mask_invalid", calls.result_of(given), case.low, case.high))
-            plan.add(calls.call("mean_distance", calls.result_of(given)))
-            plan.add(calls.call("process", calls.result_of(given), case.low, case.high, on=processor))
+            masked = plan.add(calls.call("mask_invalid", calls.result_of(readings_step), case.low, case.high))
+            plan.add(calls.call("mean_distance", calls.result_of(readings_step)))
+            plan.add(calls.call("process", calls.result_of(readings_step), case.low, case.high, on=processor))
             plan.add(calls.attribute("__name__", on=plan.add(calls.attribute("__class__", on=masked))))
             first_steps[case, kind] = masked
     outcomes = calls.calls(workspace, UTILS, *plan.steps)
@@ -210,7 +218,7 @@ def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
         message = f"{situation}, mask_invalid returned a value of type {type_name} instead of a list."
         expect(bool(outcomes[start].raised) or type_name == "list", message, fraction=0.75)
         for number, function in enumerate(FUNCTIONS):
-            with_list = outcomes[list_start + number]  # other checks test whether it is right
+            with_list = outcomes[list_start + number]  # other checks test whether this result is right
             if case is plain or not with_list.raised:
                 actual = calls.value(outcomes[start + number], f"{situation}, {function}")
                 message = f"{situation}, {function} returned {actual}, and as a list {with_list.value}."
@@ -223,9 +231,9 @@ def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
 @hint("deque(maxlen=history).", "The oldest mean goes when a new one comes and there is no room.")
 def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
     """DataProcessor remembers the means of as many scans as it was told, the newest ones."""
-    full = Series(tuple(drawn(GOOD_SCANS, draw, 12)), draw.randint(3, 6))
+    full = Series(tuple(draw_cases(GOOD_SCANS, draw, 12)), draw.randint(3, 6))
     judge_averages(workspace, [full], fraction=0.0)
-    judge_averages(workspace, drawn(series(GOOD_SCANS, st.integers(1, 5)), draw, 12), fraction=0.5)
+    judge_averages(workspace, draw_cases(series(GOOD_SCANS, st.integers(1, 5)), draw, 12), fraction=0.5)
     default = Series(tuple(Readings((metres / 1000,)) for metres in draw.sample(range(1000, 5000), 107)), None)
     judge_averages(workspace, [default], fraction=0.75)
 
@@ -237,7 +245,7 @@ def test_blind_scans_leave_no_mean(workspace: Workspace, draw: random.Random) ->
     good, blind = (Readings((2.0,)), Readings((4.0,))), Readings((nan,))
     judge_averages(workspace, [Series((blind, good[0], blind, blind, good[1]), 3)], fraction=0.0)
     scans = ONE_BEAM | st.just(AT_ZERO) | BLIND_SCANS
-    judge_averages(workspace, drawn(series(scans, st.just(MAX_SCANS)), draw, 20), fraction=0.5)
+    judge_averages(workspace, draw_cases(series(scans, st.just(MAX_SCANS)), draw, 20), fraction=0.5)
 
 
 @check(points=1, covers="silent", after=("masks_phantoms", "mean", "bounded_history"))
@@ -250,12 +258,12 @@ def test_prints_nothing(workspace: Workspace, draw: random.Random) -> None:
         calls.call("StringIO", module="io"),
         calls.call("import_module", "sys", module="importlib"),
         calls.call("setattr", calls.result_of(1), "stderr", calls.result_of(0), module="builtins"),
-        calls.call("simplefilter", "ignore", module="warnings"),  # a warning of numpy is not a print
+        calls.call("simplefilter", "ignore", module="warnings"),  # a warning of numpy is not printed output
         calls.call("disable", module="logging"),  # neither is a log record
         calls.call("DataProcessor", 3),
         *(
             step
-            for case in drawn(scans_of(GOOD | PHANTOMS | st.sampled_from((inf, -inf))), draw, 8)
+            for case in draw_cases(scans_of(GOOD | PHANTOMS | st.sampled_from((inf, -inf))), draw, 8)
             for step in (
                 calls.call("mask_invalid", list(case.readings), case.low, case.high),
                 calls.call("mean_distance", list(case.readings)),
@@ -267,6 +275,6 @@ def test_prints_nothing(workspace: Workspace, draw: random.Random) -> None:
     )
     for outcome in outcomes:
         expect(outcome.raised != "NotImplementedError", "They are still to be written.")
-    printed, errors = "".join(outcome.printed for outcome in outcomes), outcomes[-1].value
-    expect(not printed, f"They printed: {printed[:80]!r}")
+    printed_text, errors = "".join(outcome.printed for outcome in outcomes), outcomes[-1].value
+    expect(not printed_text, f"They printed: {printed_text[:80]!r}")
     expect(not errors, f"They printed on the standard error stream: {str(errors)[:80]!r}", fraction=0.5)

@@ -1,4 +1,4 @@
-"""Names and numbers of the exercises' contracts, and hints and links that several checks use."""
+"""Names and numbers in the exercises' contracts, and hints and links that several checks use."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ HISTORY = 10  # scans over which mean_distance averages
 WARN_PERIOD = 1.0  # s: the shortest time between two warnings
 MAX_SILENCE = 1.5  # s: the longest time between two warnings while no scan has a distance
 PERIOD = 1.0  # s between two readings of RobustNode
-MAX_ERRORS = 10
+MAX_ERRORS = 10  # failures in a row: with more of them, RobustNode is unstable by default
 TOLERANCE = 1e-4  # m: a range is a 32-bit float
 
 RULE_MASK = "A reading is kept when it is an infinity or range_min <= reading <= range_max; else it becomes nan."

@@ -1,4 +1,4 @@
-"""Readings of all lidars that the contract allows, and what the utilities return for them."""
+"""Readings of any lidar that the contract allows, and what the utilities should return for them."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from autograder.checking.drawn_cases import expect_each
 
 LOW, HIGH = 0.2, 6.0  # m: the limits of a usual lidar
 BEYOND_LIMIT = 1e-4  # m beyond a limit, more than a rounding error
-DEFAULT_HISTORY = 100
-MAX_SCANS = 12  # scans in a row
-SHOWN = 7  # scans that a message names
+DEFAULT_HISTORY = 100  # scans
+MAX_SCANS = 12  # the largest number of scans in a series
+SHOWN_SCANS = 7  # the largest number of scans that a message shows
 BLIND: tuple[list[float], ...] = ([nan], [], [inf], [-inf, nan], [inf, 0.0])  # scans without a distance
 
 Case = TypeVar("Case")
@@ -74,11 +74,11 @@ class Series:
 
     def first(self, count: int) -> str:
         """Describe the first `count` scans."""
-        shown = ", ".join(str(list(scan.readings)) for scan in self.scans[max(0, count - SHOWN) : count])
-        return f"{count} scan{'s' * (count > 1)}, {'the last of them ' * (count > SHOWN)}{shown}"
+        shown_scans = ", ".join(str(list(scan.readings)) for scan in self.scans[max(0, count - SHOWN_SCANS) : count])
+        return f"{count} scan{'s' * (count > 1)}, {'the last of them ' * (count > SHOWN_SCANS)}{shown_scans}"
 
 
-def kept(masked: list[Any]) -> list[float]:
+def kept_readings(masked: list[Any]) -> list[float]:
     """Return the numbers that are not masked, in ascending order. Another check tests their places."""
     return sorted(reading for reading in masked if isinstance(reading, int | float) and not isnan(reading))
 
@@ -100,7 +100,7 @@ def averages(case: Series) -> list[float | None]:
 
 
 def metres(low: float, high: float) -> st.SearchStrategy[float]:
-    """Draw a distance of whole millimetres between two distances, which are not drawn themselves."""
+    """Draw a distance in whole millimetres, strictly between two distances."""
     return st.integers(round(low * 1000) + 1, round(high * 1000) - 1).map(lambda number: number / 1000)
 
 
@@ -140,7 +140,7 @@ def lists_with_a_mean(draw: st.DrawFn) -> list[float]:
     return readings
 
 
-# Scans with a distance, which all of their beams read; one whose distance is 0 m; and scans without any.
+# Scans whose beams all read the same distance; a scan whose distance is 0 m; and scans without a distance.
 ONE_BEAM = GOOD.map(lambda reading: Readings((reading,)))
 GOOD_SCANS = st.builds(lambda reading, beams: Readings((reading,) * beams), GOOD, st.integers(1, 4))
 AT_ZERO = Readings((0.0,), low=-1.0)
@@ -148,22 +148,22 @@ BLIND_SCANS = st.sampled_from([Readings(tuple(readings)) for readings in BLIND])
 
 
 def series(scans: st.SearchStrategy[Readings], history: st.SearchStrategy[int]) -> st.SearchStrategy[Series]:
-    """Draw scans in a row."""
+    """Draw scans that are processed in a row."""
     return st.builds(Series, st.lists(scans, min_size=1, max_size=MAX_SCANS).map(tuple), history)
 
 
 # Judging.
 
 
-def drawn(strategy: st.SearchStrategy[Case], draw: random.Random, count: int) -> list[Case]:
-    """Draw cases, for one process that runs all of them."""
+def draw_cases(strategy: st.SearchStrategy[Case], draw: random.Random, count: int) -> list[Case]:
+    """Draw cases that will all run in one process."""
     cases: list[Case] = []
     expect_each(strategy, cases.append, draw, count=count)
     return cases
 
 
 def expect_all(cases: Iterable[Case], judge: Callable[[Case], None]) -> None:
-    """Fail the check with the failure that costs most, and with the shortest message among several of these."""
+    """Judge all cases; raise the failure that costs most, with the shortest message if several cost the same."""
     failures = []
     for case in cases:
         try:

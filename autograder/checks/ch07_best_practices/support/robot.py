@@ -1,4 +1,4 @@
-"""Harnesses of the student's two nodes, sensor_processor and robust_node."""
+"""Harnesses for the student's two nodes, sensor_processor and robust_node."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from autograder.checks.ch07_best_practices.support.drawn_readings import Reading
 
 FILTERED, MEAN, STATUS = "/scan_filtered", "/mean_distance", "/status"
 READING_TIMEOUT = 3.0  # s of ROS time for a reading, which should take 1 s
-DELAY_SECONDS = 3.0  # in real time, for the first reading and for late messages
+DELAY_SECONDS = 3.0  # s to wait in real time for the first reading and for late messages
 
 
 class Processor(AutoHarness):
@@ -41,7 +41,7 @@ class Processor(AutoHarness):
             self.run(apart)
         self.wait_for_late(lambda: len(self.messages(FILTERED, since=start)) >= len(scans))
         if self.time != LOCKSTEP:
-            self.run(SCAN_SECONDS)  # the number of means is not known
+            self.run(SCAN_SECONDS)  # the number of expected means is not known
         filtered = [received.message for received in self.messages(FILTERED, since=start)]
         return filtered, [received.message.data for received in self.messages(MEAN, since=start)]
 
@@ -52,11 +52,11 @@ class Robust(AutoHarness):
     def __init__(self, workspace: Workspace, **values: float) -> None:
         arguments = ("--ros-args", *parameters.override_arguments(values))
         super().__init__(workspace, PACKAGE, "robust_node", subscribes={STATUS: String}, arguments=arguments)
-        self._count = 0  # statuses that were already returned
+        self._count = 0  # how many statuses were already returned
 
     def advance(self, seconds: int) -> list[str]:
-        """Let time pass, with one reading per second; return the statuses that it published meanwhile."""
-        if self.time != LOCKSTEP:  # its timer did not start together with the harness
+        """Let time pass, with one reading per second; return the statuses that the node published meanwhile."""
+        if self.time != LOCKSTEP:  # the node's timer did not start together with the harness
             return self.receive(seconds)
         self.run(seconds + 0.05)
         return self._new_statuses()
@@ -88,7 +88,7 @@ def _status_texts(generator: random.Random, probability: float, max_errors: int)
         yield f"{word}: {errors} in a row" if errors else "ok"
 
 
-def logged(output: str, level: str) -> int:
+def count_logged(output: str, level: str) -> int:
     """Return how many lines of a program's output are log records of a level, with a time and a logger's name."""
     return len(re.findall(rf"\[{level}\] \[\d+\.\d+\] \[[^\]]+\]: ", output))
 

@@ -13,11 +13,11 @@ from functools import cached_property
 from hypothesis import strategies as st
 
 from autograder.checking import LOCKSTEP, Workspace
-from autograder.checks.ch07_best_practices.support.robot import Robust, expected_statuses, logged
+from autograder.checks.ch07_best_practices.support.robot import Robust, count_logged, expected_statuses
 
-DEAD_READINGS = 30
-ALMOST_ONE = math.nextafter(1.0, 0.0)  # the largest number of a generator
-FLAKY_READINGS, REAL_FLAKY_READINGS = 60, 30  # in lockstep, and in real time
+DEAD_READINGS = 30  # readings of a dead sensor
+ALMOST_ONE = math.nextafter(1.0, 0.0)  # the largest number that a generator returns
+FLAKY_READINGS, REAL_FLAKY_READINGS = 60, 30  # readings of a flaky sensor, in lockstep and in real time
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Reading:
 
     def count(self, level: str) -> int:
         """Return how many lines were logged at a level."""
-        return logged(self.log, level)
+        return count_logged(self.log, level)
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class SensorRun:
 
     @property
     def statuses(self) -> list[str]:
-        """The statuses that it published."""
+        """The statuses that the node published."""
         return [reading.status for reading in self.readings]
 
     @cached_property
@@ -85,17 +85,17 @@ def flaky_sensor(workspace: Workspace, draw: random.Random) -> SensorRun:
 
 def draw_flaky(draw: random.Random) -> tuple[int, float, int]:
     """Draw seed, failure probability and max_errors of a node that soon becomes unstable twice."""
-    # Tenths, so that the run does not depend on the step of the parameter's range.
+    # Probabilities in tenths, so that the run does not depend on the step of the parameter's range.
     max_errors, probability = draw.randint(1, 3), draw.choice((0.5, 0.6))
     seeds = itertools.count(draw.randint(1, 2**30))
-    unstable = f"unstable: {max_errors + 1} in a row"
+    unstable_status = f"unstable: {max_errors + 1} in a row"
     statuses = ((seed, expected_statuses(seed, probability, REAL_FLAKY_READINGS, max_errors)) for seed in seeds)
-    return next(seed for seed, texts in statuses if texts.count(unstable) >= 2), probability, max_errors
+    return next(seed for seed, texts in statuses if texts.count(unstable_status) >= 2), probability, max_errors
 
 
 @st.composite
 def numbers_and_probabilities(draw: st.DrawFn) -> tuple[float, float]:
-    """Draw a number of a generator, from 0 up to but not including 1, and a failure probability from 0 to 1."""
+    """Draw a number that a generator may return, from 0 to just below 1, and a failure probability from 0 to 1."""
     number = draw(st.sampled_from((0.0, 0.5, ALMOST_ONE)) | st.integers(1, 999).map(lambda each: each / 1000))
     near = st.sampled_from((number, math.nextafter(number, 1.0), max(0.0, math.nextafter(number, -1.0))))
     return number, draw(near | st.integers(0, 1000).map(lambda each: each / 1000))
@@ -106,10 +106,10 @@ def _run(
 ) -> SensorRun:
     record: list[Reading] = []
     with Robust(workspace, seed=seed, failure_probability=probability, max_errors=max_errors) as harness:
-        logged_before = len(harness.output)
+        log_length = len(harness.output)
         for _ in range(readings if harness.time == LOCKSTEP else real_readings):
             statuses = harness.receive(1)
-            log, logged_before = harness.output[logged_before:], len(harness.output)
+            log, log_length = harness.output[log_length:], len(harness.output)
             record.append(Reading(harness.seconds, " and ".join(statuses) or "nothing", log))
             if not statuses:
                 break

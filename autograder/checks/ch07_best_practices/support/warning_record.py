@@ -1,4 +1,4 @@
-"""When a sensor processor warned while scans came, and the contract's rules for that."""
+"""Records when a sensor processor warns while scans come, and applies the contract's rules to this record."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from autograder.checking import LOCKSTEP, expect
 from autograder.checks.ch07_best_practices.support.contract import MAX_SILENCE, WARN_PERIOD
 from autograder.checks.ch07_best_practices.support.drawn_readings import Readings, mean_of
-from autograder.checks.ch07_best_practices.support.robot import Processor, logged, scan_of
+from autograder.checks.ch07_best_practices.support.robot import Processor, count_logged, scan_of
 
 STEP = 0.1  # s between two looks at the log
 SLACK, REAL_SLACK = 0.15, 0.5  # s by which a time may differ, in lockstep and in real time
@@ -20,8 +20,8 @@ class WarningRecord:
     """The scans that a processor received, and its warnings, with times in seconds.
 
     Attributes:
-        warnings: when it warned.
-        blind: the first and the last scan of each time in which no scan had a distance.
+        warnings: when the processor warned.
+        blind: the times of the first and the last scan in each stretch without a distance.
     """
 
     processor: Processor
@@ -35,20 +35,20 @@ class WarningRecord:
         return SLACK if self.processor.time == LOCKSTEP else REAL_SLACK
 
     def send(self, cases: Sequence[Readings], *, gap: float, seconds: float) -> None:
-        """Publish scans by turns for some time, `gap` seconds apart."""
+        """Publish these scans in turn for some time, `gap` seconds apart."""
         for case in itertools.islice(itertools.cycle(cases), round(seconds / gap)):
             self.processor.publish("/scan", scan_of(case))
-            self._look(min(gap, STEP))
+            self._run_and_record(min(gap, STEP))
             is_blind = mean_of(case.masked) is None
             if is_blind:
                 start = self.blind.pop()[0] if self._was_blind else self.processor.seconds
                 self.blind.append((start, self.processor.seconds))
             self._was_blind = is_blind
             for _ in range(round(gap / STEP) - 1):
-                self._look(STEP)
+                self._run_and_record(STEP)
 
     def expect_throttled(self) -> None:
-        """Fail the check if it warned twice within 1 s."""
+        """Fail the check if the processor warned twice within 1 s."""
         for earlier, later in itertools.pairwise(self.warnings):
             expect(
                 later - earlier >= WARN_PERIOD - self.slack,
@@ -64,8 +64,8 @@ class WarningRecord:
             message = f"For {wait:.1f} s no scan had a distance, and it did not warn."
             expect(wait <= MAX_SILENCE + self.slack, message, fraction=0.5)
 
-    def _look(self, seconds: float) -> None:
-        """Let the processor run, and note how often it warned meanwhile."""
+    def _run_and_record(self, seconds: float) -> None:
+        """Let the processor run, and note how often it warns meanwhile."""
         self.processor.run(seconds)
-        count = logged(self.processor.output, "WARN") - len(self.warnings)
+        count = count_logged(self.processor.output, "WARN") - len(self.warnings)
         self.warnings += [self.processor.seconds] * count

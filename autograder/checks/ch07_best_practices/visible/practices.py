@@ -1,4 +1,4 @@
-"""The student's utilities and nodes, tested with a few readings."""
+"""Checks of the student's utilities and nodes with a few readings."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from autograder.checks.ch07_best_practices.support.robot import (
     STATUS,
     Processor,
     Robust,
+    count_logged,
     expected_statuses,
-    logged,
     scan,
 )
 
-BLIND_SECONDS = 6  # duration of the scans without a distance
+BLIND_SECONDS = 6  # s for which scans without a distance come
 
 
 @check(points=1, covers=("mask", "places", "phantoms"), group="utils", doc=contract.REP_117)
@@ -73,9 +73,9 @@ def test_data_processor(workspace: Workspace) -> None:
 @hint("Both ends of scan and scan_filtered use qos_profile_sensor_data.")
 def test_filters_scans(processor: Processor) -> None:
     """sensor_processor publishes a scan again: masked by its own limits, everything else as it came."""
-    sent = scan([8.0, 0.0, 2.0], range_min=0.5, range_max=8.0)
-    sent.intensities = [4.0, 0.0, 2.0]
-    filtered, _ = processor.send_scans(sent)
+    sent_scan = scan([8.0, 0.0, 2.0], range_min=0.5, range_max=8.0)
+    sent_scan.intensities = [4.0, 0.0, 2.0]
+    filtered, _ = processor.send_scans(sent_scan)
     expect(len(filtered) == 1, f"One scan went in, {len(filtered)} came out on scan_filtered.")
     ranges = list(filtered[0].ranges)
     is_right = len(ranges) == 3 and isnan(ranges[1]) and ranges[::2] == [8.0, 2.0]
@@ -96,8 +96,8 @@ def test_sensor_profile(processor: Processor) -> None:
     }
     for topic, infos in endpoints.items():
         expect(bool(infos), f"It has no {topic}.")
-        reliable = any(endpoint.qos_profile.reliability == ReliabilityPolicy.RELIABLE for endpoint in infos)
-        expect(not reliable, f"{topic} is reliable.")
+        is_reliable = any(endpoint.qos_profile.reliability == ReliabilityPolicy.RELIABLE for endpoint in infos)
+        expect(not is_reliable, f"{topic} is reliable.")
 
 
 @check(points=1, covers=("mean-of-ten", "blind", "warns"), group="processor", after=("data_processor", "filters_scans"))
@@ -111,7 +111,7 @@ def test_means(fresh_processor: Processor) -> None:
     expect(newest == [2.0, 1.5, 1.0], f"After 1, 2 and 11 scans the mean was {newest} instead of [2.0, 1.5, 1.0].")
     _, means = fresh_processor.send_scans(*(scan([nan]) for _ in range(BLIND_SECONDS * 10)))
     expect(not means, f"Scans without a distance brought {len(means)} means.")
-    warnings = logged(fresh_processor.output, "WARN")
+    warnings = count_logged(fresh_processor.output, "WARN")
     message = f"Scans without a distance for {BLIND_SECONDS} s brought {warnings} warnings instead of one a second."
     expect(int(BLIND_SECONDS / contract.MAX_SILENCE) <= warnings <= BLIND_SECONDS + 2, message)
 
@@ -143,8 +143,11 @@ def test_declares(workspace: Workspace) -> None:
         descriptors = parameters.NodeParameters(harness, "/robust_node").descriptors(
             "failure_probability", "seed", "max_errors"
         )
-    durable = [publisher.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for publisher in publishers]
-    expect(bool(durable) and all(durable), "status is not transient local: a node that joins late would hear nothing.")
+    are_durable = [publisher.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for publisher in publishers]
+    expect(
+        bool(are_durable) and all(are_durable),
+        "status is not transient local: a node that joins late would hear nothing.",
+    )
     expect(len(descriptors) == 3, f"Of its three parameters it declares {', '.join(descriptors) or 'none'}.")
     without_range = [
         name
@@ -167,10 +170,10 @@ def test_dead_sensor(workspace: Workspace) -> None:
     """With max_errors 6 and a dead sensor it is unstable from the seventh failure on, fatal once, errors throttled."""
     with Robust(workspace, failure_probability=1.0, max_errors=6) as harness:
         statuses = harness.receive(12)
-        fatal, errors = logged(harness.output, "FATAL"), logged(harness.output, "ERROR")
+        fatals, errors = count_logged(harness.output, "FATAL"), count_logged(harness.output, "ERROR")
     correct = [f"{'failed' if n <= 6 else 'unstable'}: {n} in a row" for n in range(1, 13)]
     expect(statuses == correct, f"It said {statuses}.")
-    expect(fatal == 1, f"It logged {fatal} fatal messages instead of one.")
+    expect(fatals == 1, f"It logged {fatals} fatal messages instead of one.")
     expect(0 < errors <= 4, f"In 12 s it logged {errors} errors instead of one in 5 s.")
 
 

@@ -34,14 +34,14 @@ from autograder.checks.ch08_capstone.support.system import System
 check = group("step_2")
 
 LATE = 4.0  # s: the age of a late scan, much more than the delay of a busy machine
-FILLS = st.sampled_from((math.nan, math.inf, 3.0))
-FRAMES = st.integers(100, 999).map(lambda number: f"lidar_{number}")  # an unusual name for a robot's frame
+FILLS = st.sampled_from((math.nan, math.inf, 3.0))  # m: the reading of all beams that are in no arc
+FRAMES = st.integers(100, 999).map(lambda number: f"lidar_{number}")  # unusual names of frames
 OTHER_LIDARS = st.sampled_from((USUAL_LIMITS, *OTHER_LIMITS)).flatmap(
     lambda limits: drawn_scans(
         distances(limits) | readings(limits), st.just(limits[1]), other_lidars(), limits, frames=FRAMES
     )
 )
-# A wall ahead behind a few beams that read nan, and a scan without beams.
+# A scan of a wall ahead in which a few beams read nan, and a scan without beams.
 WALL = DrawnScan(360, 0.0, 1.0, USUAL_LIMITS, 3.0, (Arc(0, 20, 1.0), Arc(0, 3, math.nan)), "laser", 0.0)
 EMPTY = DrawnScan(0, 0.0, 1.0, USUAL_LIMITS, 3.0, (), "laser", 0.0)
 
@@ -58,7 +58,7 @@ EMPTY = DrawnScan(0, 0.0, 1.0, USUAL_LIMITS, 3.0, (), "laser", 0.0)
 def test_sectors(seeing: System, workspace: Workspace, draw: random.Random) -> None:
     """Each scan becomes one clearance: the nearest thing ahead, on the left and on the right, and the scan's header."""
     things = drawn_scans(distances(), st.just(3.0), ages=st.sampled_from((0.0, LATE)))
-    expect_each(things, lambda case: _expect_stamp(seeing, case), draw, count=_cases(seeing, 20))
+    expect_each(things, lambda case: _expect_stamp(seeing, case), draw, count=_case_count(seeing, 20))
     start = seeing.seconds
     seeing.publish_scans(OPEN, 1.0)
     count = len(seeing.messages(start).clearances)
@@ -79,14 +79,14 @@ def test_sectors(seeing: System, workspace: Workspace, draw: random.Random) -> N
 def test_readings(seeing: System, draw: random.Random) -> None:
     """Readings count by REP 117, and a sector without one that counts makes the clearance invalid."""
     _expect_distances(seeing, WALL, WALL.message(), fraction=0.0)
-    odd = drawn_scans(readings(USUAL_LIMITS), FILLS)
-    expect_each(odd, lambda case: _expect_frame(seeing, case, 0.5), draw, count=_cases(seeing, 50))
-    expect_each(OTHER_LIDARS, lambda case: _expect_frame(seeing, case, 0.75), draw, count=_cases(seeing, 50))
+    special_scans = drawn_scans(readings(USUAL_LIMITS), FILLS)
+    expect_each(special_scans, lambda case: _expect_frame(seeing, case, 0.5), draw, count=_case_count(seeing, 50))
+    expect_each(OTHER_LIDARS, lambda case: _expect_frame(seeing, case, 0.75), draw, count=_case_count(seeing, 50))
     _expect_frame(seeing, EMPTY, 0.75)
     expect_sector_edge(seeing)
 
 
-def _cases(system: System, count: int) -> int:
+def _case_count(system: System, count: int) -> int:
     """Return how many drawn cases a check can afford: fewer in real time."""
     return count if system.harness.time == LOCKSTEP else 3
 
@@ -95,17 +95,17 @@ def _expect_stamp(system: System, case: DrawnScan) -> None:
     """Fail the check unless a scan's clearance has the right distances and the scan's stamp."""
     message = case.message()
     clearance = _expect_distances(system, case, message, fraction=0.25)
-    scanned, stamped = (
+    scan_stamp, clearance_stamp = (
         Time.from_msg(stamp).nanoseconds / 1e9 for stamp in (message.header.stamp, clearance.header.stamp)
     )
     # In real time, the last scan may not have arrived yet.
     tolerance = 1e-3 if system.harness.time == LOCKSTEP else LATE / 2
     message_text = (
-        f"A scan that came {case.age:.0f} s after it was taken was stamped {scanned:.3f} s, and its clearance"
+        f"A scan that came {case.age:.0f} s after it was taken was stamped {scan_stamp:.3f} s, and its clearance"
     )
     expect(
-        abs(stamped - scanned) < tolerance,
-        f"{message_text} {stamped:.3f} s: its header is the scan's own.",
+        abs(clearance_stamp - scan_stamp) < tolerance,
+        f"{message_text} {clearance_stamp:.3f} s: its header is the scan's own.",
         fraction=0.5,
     )
 

@@ -37,8 +37,9 @@ check = group("step_2")
 SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
 TURN = PARAMETERS[CONTROLLER]["turn_speed"].default
 DATA_TIMEOUT = PARAMETERS[CONTROLLER]["data_timeout"].default
-AHEAD = 0.1, 0.6, 1.0, 5.0  # s by which the lidar's clock is ahead, in part more than data_timeout
+AHEAD = 0.1, 0.6, 1.0, 5.0  # s by which the lidar's clock is ahead; some of them are more than data_timeout
 TURN_RIGHT, TURN_LEFT = View(0.4, 1.0, 2.0), View(0.4, 2.0, 1.0)
+# Drives in which the turn is kept, although one side is blind for a while, or the robot is held still.
 KEPT_WHILE_BLIND = Moment(TURN_RIGHT), Moment(replace(TURN_RIGHT, left=math.nan)), Moment(TURN_LEFT)
 KEPT_WHILE_HELD = Moment(TURN_RIGHT), Moment(CLEAR, enable=False), Moment(TURN_LEFT, enable=True)
 BLIND = scan(Part(-35.0, 35.0, math.nan))
@@ -89,17 +90,17 @@ def _expect_turns(driving: System, draw: random.Random) -> None:
         expect_turning(commands, situation, side, TURN, fraction=0.5 if left == right else 0.0)
         expect_driving(driving.publish_scans(OPEN).commands, "When the way is clear again", SPEED, fraction=0.5)
     expect_drive(driving, KEPT_WHILE_BLIND, DRIVE, LEFT, RIGHT, fraction=0.75)
-    # The drives in which the robot also stands still belong to this check only for what it does afterwards.
+    # In drives in which the robot also stands still, this check judges only what the robot does afterwards.
     expect_each(
         turns(),
         lambda drive: expect_drive(driving, drive, DRIVE, LEFT, RIGHT, fraction=0.5),
         draw,
-        count=_cases(driving, 18),
+        count=_case_count(driving, 18),
     )
     expect_exact_limits(driving)
 
 
-def _cases(system: System, count: int) -> int:
+def _case_count(system: System, count: int) -> int:
     """Return how many drawn drives a check can afford: fewer in real time."""
     return count if system.harness.time == LOCKSTEP else 2
 
@@ -126,7 +127,7 @@ def _expect_stops(driving: System, slow_system: SharedSystem, draw: random.Rando
         stops(),
         lambda drive: expect_drive(driving, drive, DRIVE, STILL, fraction=0.5),
         draw,
-        count=_cases(driving, 10),
+        count=_case_count(driving, 10),
     )
     if driving.harness.time == LOCKSTEP:  # in real time, the clocks of the machine cannot be slowed
         slow_driving = slow_system.get(PROCESSOR, CONTROLLER)
@@ -179,5 +180,5 @@ def _expect_enable_service(system: System, draw: random.Random) -> None:
         calls(),
         lambda drive: expect_drive(system, drive, STILL, DRIVE, LEFT, RIGHT, fraction=0.5),
         draw,
-        count=_cases(system, 12),
+        count=_case_count(system, 12),
     )

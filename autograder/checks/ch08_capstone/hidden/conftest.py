@@ -30,7 +30,7 @@ def driving(shared_system: SharedSystem) -> System:
 
 @pytest.fixture(scope="session")
 def slow_system(workspace: Workspace) -> Iterator[SharedSystem]:
-    """Keeps a system on a machine whose clocks are slower than ROS time."""
+    """A shared system on a machine whose clocks are slower than ROS time."""
     shared = SharedSystem(workspace, SLOW_CLOCK_RATE)
     yield shared
     shared.close()
@@ -38,7 +38,7 @@ def slow_system(workspace: Workspace) -> Iterator[SharedSystem]:
 
 @pytest.fixture(scope="session")
 def lone_controller(workspace: Workspace) -> Iterator[SharedSystem]:
-    """Keeps the controller alone, to which the expected clearances are sent."""
+    """The controller alone, to which the expected clearances are sent."""
     shared = SharedSystem(workspace, absent=(PROCESSOR, MONITOR), sends_clearances=True)
     yield shared
     shared.close()
@@ -46,13 +46,13 @@ def lone_controller(workspace: Workspace) -> Iterator[SharedSystem]:
 
 @pytest.fixture
 def judge_driving(shared_system: SharedSystem, lone_controller: SharedSystem) -> BodyRunner:
-    """Tests the controller with the student's processor and, if that fails, with the expected clearances."""
+    """A function that judges the controller with the student's processor, or else with the expected clearances."""
     return partial(run_with_fallback, shared_system, lone_controller)
 
 
 @pytest.fixture(scope="session")
 def lone_monitor(workspace: Workspace) -> Iterator[SharedSystem]:
-    """Keeps the monitor alone; checks publish what the other two programs would."""
+    """The monitor alone; checks publish what the other two programs would."""
     shared = SharedSystem(workspace, absent=(PROCESSOR, CONTROLLER))
     yield shared
     shared.close()

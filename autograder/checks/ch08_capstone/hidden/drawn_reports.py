@@ -1,4 +1,4 @@
-"""What status_monitor can hear of the other nodes, and the reports that the contract asks for."""
+"""What status_monitor can hear of the other nodes, and the reports that the contract requires."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from autograder.checks.ch08_capstone.support.system import System
 
 SILENCE_TIMEOUT = PARAMETERS[MONITOR]["silence_timeout"].default
 MARGIN = {LOCKSTEP: 0.06, REAL: 0.25}  # s around silence_timeout, where a topic may be silent or not
-ALL = frozenset(WATCHED_TOPICS)
-SOME = [frozenset(topics) for count in range(len(ALL)) for topics in combinations(WATCHED_TOPICS, count)]
+ALL_TOPICS = frozenset(WATCHED_TOPICS)
+SOME_TOPICS = [frozenset(topics) for count in range(len(ALL_TOPICS)) for topics in combinations(WATCHED_TOPICS, count)]
 
 
 @dataclass(frozen=True)
 class Span:
-    """A time in which messages come ten times a second.
+    """A span of time in which messages come ten times a second.
 
     Attributes:
         topics: the topics on which they come.
@@ -58,8 +58,8 @@ class Span:
 History = tuple[Span, ...]
 
 
-class Heard:
-    """What the monitor has heard, from which the contract's rule makes its report."""
+class ReportRule:
+    """The contract's rule for the monitor's reports, which depend on what the monitor has heard."""
 
     def __init__(self, silence_timeout: float, margin: float) -> None:
         self._timeout, self._margin = silence_timeout, margin
@@ -74,14 +74,14 @@ class Heard:
 
     def is_right(self, report: ReceivedMessage) -> bool:
         """Return whether a report says which topics are silent, and has the level that follows from this."""
-        silent, is_silent = (
+        silent, excesses = (
             silent_topics(report),
             {topic: report.seconds - arrival - self._timeout for topic, arrival in self._arrivals.items()},
         )
-        if any((excess > 0) != (topic in silent) for topic, excess in is_silent.items() if abs(excess) > self._margin):
+        if any((excess > 0) != (topic in silent) for topic, excess in excesses.items() if abs(excess) > self._margin):
             return False
         if silent:
-            return bool(report.message.level == FAILED and silent <= ALL)
+            return bool(report.message.level == FAILED and silent <= ALL_TOPICS)
         # A clearance that comes together with the report may count already, or not yet.
         arrivals = [arrival for arrival, _ in self._validity]
         first = bisect_left(arrivals, report.seconds - self._margin)
@@ -99,19 +99,19 @@ def expect_reports(
     system: System, history: History, *, fraction: float = 0.0, silence_timeout: float = SILENCE_TIMEOUT
 ) -> None:
     """Fail the check unless each report during a history, which begins with messages on all topics, is right."""
-    heard = Heard(silence_timeout, MARGIN[system.harness.time])
-    for number, span in enumerate((Span(ALL, 3), *history)):
+    rule = ReportRule(silence_timeout, MARGIN[system.harness.time])
+    for number, span in enumerate((Span(ALL_TOPICS, 3), *history)):
         for _ in range(span.messages):
             start = system.seconds
             send_all(system, span.topics, span.blind, span.age)
             for topic in span.topics:
-                heard.hear(topic, system.seconds, valid=not span.blind)
+                rule.hear(topic, system.seconds, valid=not span.blind)
             for report in system.messages(start).reports if number else ():
                 before = ", then ".join(map(repr, history[:number]))
                 sentence = f"Messages came on all topics, then {before}: health said {describe(report.message)}"
                 expect(
-                    heard.is_right(report),
-                    f"{sentence}, instead of {heard.expected(report.seconds)}.",
+                    rule.is_right(report),
+                    f"{sentence}, instead of {rule.expected(report.seconds)}.",
                     fraction=fraction,
                 )
 
@@ -147,10 +147,10 @@ _AGES = st.sampled_from((0.0, 0.3, 1.5, 30.0, -0.5, -5.0))
 
 @st.composite
 def seeing(draw: st.DrawFn) -> History:
-    """Draw a history in which all topics come, with pauses in which none is silent yet, nor for long."""
+    """Draw a history of messages on all topics, with pauses that are shorter or little longer than the time-out."""
     spans: list[Span] = []
     for blind in draw(st.lists(_BLIND, min_size=2, max_size=4)):
-        spans.append(Span(ALL, draw(st.integers(2, 9)), blind, draw(_AGES)))
+        spans.append(Span(ALL_TOPICS, draw(st.integers(2, 9)), blind, draw(_AGES)))
         pause = draw(st.sampled_from((0, 0, 8, 13)))
         spans += [Span(frozenset(), pause)] * bool(pause)
     return tuple(spans)
@@ -160,10 +160,10 @@ def seeing(draw: st.DrawFn) -> History:
 def silences(draw: st.DrawFn, timeout: float = SILENCE_TIMEOUT) -> History:
     """Draw a history in which some topics are silent for about the time-out, or for longer."""
     spans: list[Span] = []
-    for topics in draw(st.lists(st.sampled_from(SOME), min_size=2, max_size=3)):
+    for topics in draw(st.lists(st.sampled_from(SOME_TOPICS), min_size=2, max_size=3)):
         spans.append(
             Span(topics, round(timeout / SCAN_SECONDS) + draw(st.sampled_from((-2, 2, 4, 6))), age=draw(_AGES))
         )
         if draw(st.booleans()):
-            spans.append(Span(ALL, draw(st.integers(1, 5)), draw(_BLIND), draw(_AGES)))
+            spans.append(Span(ALL_TOPICS, draw(st.integers(1, 5)), draw(_BLIND), draw(_AGES)))
     return tuple(spans)

@@ -1,4 +1,4 @@
-"""Scans of all lidars that the contract allows, and the distances that the contract asks for each of them."""
+"""Scans from any lidar that the contract allows, and the distances that the contract requires for each scan."""
 
 from __future__ import annotations
 
@@ -12,15 +12,16 @@ from sensor_msgs.msg import LaserScan
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN
 from autograder.checks.ch08_capstone.support.clearances import HALF_ANGLE, MIDDLES
 
-EDGE = math.radians(0.1)  # around a sector's edge, where a beam may count or not; 30° and 0.5 rad are further away
+# Radians to each side of a sector's edge, where a beam may count or not; 30° and 0.5 rad are further away.
+EDGE = math.radians(0.1)
 USUAL_LIMITS = RANGE_MIN, RANGE_MAX  # m
 OTHER_LIMITS = (0.45, 8.25), (0.0, 6.5), (0.12, 0.75)  # m, of lidars for which other readings are phantoms
-SECTOR = math.degrees(HALF_ANGLE)
+SECTOR = math.degrees(HALF_ANGLE)  # degrees to each side of a sector's middle
 
 
 @dataclass(frozen=True)
 class Arc:
-    """Neighbouring beams that read the same: the first one's number, their count, and the reading in metres."""
+    """Neighbouring beams with the same reading: the number of the first one, their count, and the reading in metres."""
 
     first: int
     beams: int
@@ -34,7 +35,7 @@ class DrawnScan:
     Attributes:
         beams: the number of beams.
         first: the unwrapped bearing of beam 0.
-        step: from one beam to the next; negative if the lidar counts clockwise.
+        step: the angle from one beam to the next; negative if the lidar turns clockwise.
         limits: `range_min` and `range_max`.
         fill: the reading of all beams that are in no arc.
         arcs: the beams with other readings.
@@ -58,7 +59,8 @@ class DrawnScan:
             ranges[arc.first : arc.first + arc.beams] = arc.reading
         start, increment = _float32(math.radians(self.first)), _float32(math.radians(self.step))
         message = LaserScan(angle_min=start, angle_increment=increment, ranges=ranges.tolist())
-        message.angle_max = _float32(start + increment * self.beams)  # many drivers count a full turn twice
+        # Many drivers count one direction of a full turn twice.
+        message.angle_max = _float32(start + increment * self.beams)
         message.range_min, message.range_max = map(_float32, self.limits)
         message.header.frame_id = self.frame
         return message
@@ -81,8 +83,8 @@ class DrawnScan:
 def possible_distances(message: LaserScan, middle: float) -> set[float]:
     """Return the distances that a sector may have: more than one if it depends on beams on the sector's edge.
 
-    Requirements: a beam belongs to a sector when it is at most half_angle from its middle, the shorter way round, and
-    readings count by REP 117. nan means that no reading counts.
+    The requirements: a beam belongs to a sector if it is at most half_angle from the sector's middle, the shorter way
+    round, and REP 117 says which readings count. nan means that no reading counts.
     """
     ranges = np.asarray(message.ranges, np.float64)
     bearings = message.angle_min + np.arange(ranges.size) * message.angle_increment
@@ -94,7 +96,7 @@ def possible_distances(message: LaserScan, middle: float) -> set[float]:
 
 
 def readings(limits: tuple[float, float]) -> st.SearchStrategy[float]:
-    """Draw a reading: one that REP 117 makes special, one around each limit, or a distance."""
+    """Draw a reading: one to which REP 117 gives a meaning, one around a limit, or a distance."""
     low, high = limits
     special, lowest = st.sampled_from((math.nan, math.inf, -math.inf)), st.sampled_from((0.0, -1.0, low - 0.01, low))
     return special | lowest | st.sampled_from((high, high + 0.01)) | distances(limits)
@@ -117,7 +119,9 @@ def other_lidars(draw: st.DrawFn) -> tuple[int, float, float]:
     return beams, first, span / beams
 
 
+# Numbers of beams, bearings of beam 0, and steps in degrees.
 USUAL_LIDARS = st.sampled_from(((360, 0.0, 1.0), (360, -180.0, 1.0), (600, -180.0, 0.6)))
+# Bearings in degrees, around the middles and the edges of the sectors.
 BEARINGS = st.builds(
     lambda middle, offset: math.degrees(middle) + offset,
     st.sampled_from([*MIDDLES.values()]),
@@ -139,7 +143,7 @@ def drawn_scans(
     beams, first, step = draw(lidars)
     arcs = []
     for reading in draw(st.lists(arc_readings, min_size=1, max_size=6)) if beams else ():
-        # The beams that look in this direction, or any beam if there are none.
+        # The beams that look in this direction, or any beam if none does.
         turn = 360.0 / abs(step)
         start = (draw(BEARINGS) - first) / step % turn
         starts = [beam for number in range(3) if (beam := round(start + number * turn)) < beams] or [

@@ -13,17 +13,17 @@ import numpy as np
 
 from autograder.checking import ReceivedMessage, drive
 from autograder.checks.ch02_nodes.hidden import world_generation
-from autograder.checks.ch08_capstone.hidden.tracks import Floats, LidarFault, blocked
+from autograder.checks.ch08_capstone.hidden.tracks import Floats, LidarFault, blocked_scan
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PARAMETERS
 from autograder.checks.ch08_capstone.support.system import System
 from sim import Pose, Recording, RobotSpec, Scan, Simulation, State, World, box
 
-RADIUS = 0.18  # m
-ROOM_SECONDS, CORRIDOR_SECONDS, FAULTY_SECONDS = 20.0, 36.0, 14.0
+RADIUS = 0.18  # m: the robot's radius
+ROOM_SECONDS, CORRIDOR_SECONDS, FAULTY_SECONDS = 20.0, 36.0, 14.0  # s: the lengths of the drives
 SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
 TURN = PARAMETERS[CONTROLLER]["turn_speed"].default
 STILL = 0.02  # m/s, rad/s: a slower robot stands still
-MIN_SPEED_SHARE = 0.1  # of the contract's speeds: a slower robot gets no additional time
+MIN_SPEED_SHARE = 0.1  # of the contract's speeds: a robot that is even slower gets no more time
 DEAD = LidarFault("dead", 3.0, 7.0)
 BLOCKED = LidarFault("blocked", 9.5, 11.5)
 
@@ -54,12 +54,12 @@ class Drives:
     def corridor(self) -> DriveResult:
         """A short corridor with one bend to the left or to the right, until the robot has passed it."""
 
-        def arrived(state: State) -> bool:
+        def has_arrived(state: State) -> bool:
             pose = state.robots[0].pose
             return bool(self._bend.share(np.array([pose.x]), np.array([pose.y])).max() >= 1.0)
 
         draw = random.Random(f"{self._seed}:corridor")
-        return self._drive_at_own_pace(self._bend.world, CORRIDOR_SECONDS, draw, arrived)
+        return self._drive_at_own_pace(self._bend.world, CORRIDOR_SECONDS, draw, has_arrived)
 
     @cached_property
     def faulty_lidar(self) -> DriveResult:
@@ -82,7 +82,7 @@ class Drives:
         world: World,
         seconds: float,
         draw: random.Random,
-        arrived: Callable[[State], bool] = lambda state: False,
+        has_arrived: Callable[[State], bool] = lambda state: False,
     ) -> DriveResult:
         """Drive until the robot has arrived, for `seconds` at most.
 
@@ -92,7 +92,7 @@ class Drives:
 
         def is_over(state: State) -> bool:
             pace.add(state)
-            return arrived(state) or state.time_ns / 1e9 >= seconds / pace.share
+            return has_arrived(state) or state.time_ns / 1e9 >= seconds / pace.share
 
         return self._drive(world, seconds / MIN_SPEED_SHARE, draw, until=is_over)
 
@@ -171,5 +171,5 @@ def _inject_faults(scan: Scan, seconds: float) -> Scan | None:
     if DEAD.covers(seconds):
         return None
     if BLOCKED.covers(seconds):
-        return blocked(scan)
+        return blocked_scan(scan)
     return scan

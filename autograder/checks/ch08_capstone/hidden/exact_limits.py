@@ -36,30 +36,30 @@ def expect_exact_limits(system: System) -> None:
 def expect_sector_edge(system: System) -> None:
     """Fail the check unless a beam at exactly half_angle from the middle belongs to its sector.
 
-    One of several is enough, because sine and cosine may add a rounding error.
+    One of several such beams is enough, because sine and cosine may add a rounding error.
     """
     is_in_sector = []
     for half_angle in EXACT_HALVES:
         with system.changed_parameter(PROCESSOR, "half_angle", half_angle) as reply:
             if reply.accepted:
-                published = scan(fill=3.0, beams=3)
-                published.angle_min, published.angle_max = -half_angle, half_angle
-                published.angle_increment = half_angle
-                published.ranges = [1.0, 3.0, 1.0]
-                is_in_sector.append(abs(newest_clearance(system, published).front - 1.0) <= TOLERANCE)
+                scan_message = scan(fill=3.0, beams=3)
+                scan_message.angle_min, scan_message.angle_max = -half_angle, half_angle
+                scan_message.angle_increment = half_angle
+                scan_message.ranges = [1.0, 3.0, 1.0]
+                is_in_sector.append(abs(newest_clearance(system, scan_message).front - 1.0) <= TOLERANCE)
     situation = f"With something 1.00 m away exactly half_angle ({EXACT_HALVES[-1]:g} rad) from the middle"
     message = f"{situation}, front was 3.00: at most half_angle belongs to the sector."
     expect(any(is_in_sector) or not is_in_sector, message, fraction=0.75)
 
 
-def newest_clearance(system: System, published: LaserScan, age: float = 0.0, fraction: float = 0.0) -> Any:
-    """Publish a scan, in real time for a while; return the last clearance, or fail the check without one."""
+def newest_clearance(system: System, scan_message: LaserScan, age: float = 0.0, fraction: float = 0.0) -> Any:
+    """Publish a scan, in real time repeatedly; return the last clearance; fail the check if none comes."""
     start = system.seconds
-    system.publish_scan(published, age)
+    system.publish_scan(scan_message, age)
     if system.harness.time != LOCKSTEP or not system.messages(start).clearances:
-        system.publish_scans(published, 0.5, age=age)
+        system.publish_scans(scan_message, 0.5, age=age)
     clearances = system.messages(start).clearances
-    situation = "while scans did" if published.ranges else "for a scan without beams: each scan becomes one"
+    situation = "while scans did" if scan_message.ranges else "for a scan without beams: each scan becomes one"
     expect(bool(clearances), f"No clearance came {situation}.", fraction=fraction)
     return clearances[-1].message
 

@@ -1,4 +1,4 @@
-"""Step 2: tests the controller with the student's processor, and without it if that fails."""
+"""Step 2: tests the controller with the student's processor and, if that fails, without it."""
 
 from __future__ import annotations
 

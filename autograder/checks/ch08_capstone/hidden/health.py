@@ -52,10 +52,12 @@ def test_health_levels(system: System, lone_monitor: SharedSystem, draw: random.
     first = system.before_first_scan.reports
     _expect_reports(first[-1:], FAILED, LIDAR_TOPICS, "Before the first scan")
     # The controller may start later than the monitor, so cmd_vel may be silent at first, too.
-    early = next((r.message for r in first if r.message.level != FAILED or not silent_topics(r) >= LIDAR_TOPICS), None)
-    description = "" if early is None else describe(early)
+    early_report = next(
+        (r.message for r in first if r.message.level != FAILED or not silent_topics(r) >= LIDAR_TOPICS), None
+    )
+    description = "" if early_report is None else describe(early_report)
     expect(
-        early is None,
+        early_report is None,
         f"Before the first scan, an early report said {description}: nothing was heard yet.",
         fraction=0.5,
     )
@@ -68,14 +70,14 @@ def test_health_levels(system: System, lone_monitor: SharedSystem, draw: random.
     blind_reports = system.publish_scans(scan(Part(-35.0, 35.0, math.nan)), 1.0).reports
     _expect_reports(blind_reports[-1:], DEGRADED, set(), "With nan from every beam ahead", fraction=0.5)
     monitor = lone_monitor.get(MONITOR)
-    heard = draw.sample(WATCHED_TOPICS, draw.choice((1, 2)))
+    heard_topics = draw.sample(WATCHED_TOPICS, draw.choice((1, 2)))
     for _ in range(12):
-        send_all(monitor, heard)
-    situation = f"With messages on {' and '.join(heard)} alone since the start"
-    never_heard = {*WATCHED_TOPICS} - {*heard}
+        send_all(monitor, heard_topics)
+    situation = f"With messages on {' and '.join(heard_topics)} alone since the start"
+    never_heard = {*WATCHED_TOPICS} - {*heard_topics}
     _expect_reports(monitor.messages(0.0).reports[-1:], FAILED, never_heard, situation, fraction=0.5)
     expect_each(
-        seeing(), lambda history: expect_reports(monitor, history, fraction=0.5), draw, count=_cases(monitor, 6)
+        seeing(), lambda history: expect_reports(monitor, history, fraction=0.5), draw, count=_case_count(monitor, 6)
     )
 
 
@@ -91,10 +93,10 @@ def test_dead_sensor(
     system.publish_scans(OPEN, 2.0)
     start = system.seconds
     reports = system.wait(4.0).reports
-    first_failed = next((r for r in reports if r.message.level == FAILED), None)
-    delay = "never" if first_failed is None else f"only {first_failed.seconds - start:.1f} s after"
+    first_failure = next((r for r in reports if r.message.level == FAILED), None)
+    delay = "never" if first_failure is None else f"only {first_failure.seconds - start:.1f} s after"
     expect(
-        first_failed is not None and first_failed.seconds - start <= REPORT_DEADLINE,
+        first_failure is not None and first_failure.seconds - start <= REPORT_DEADLINE,
         f"The lidar died, and health was FAILED {delay}.",
     )
     is_paced = message_period.is_paced(reports, 0.5, system.harness.time)
@@ -109,17 +111,17 @@ def test_dead_sensor(
         _expect_ros_time(slow_system.get(*PROGRAMS))
     monitor = lone_monitor.get(MONITOR)
     expect_each(
-        silences(), lambda history: expect_reports(monitor, history, fraction=0.75), draw, count=_cases(monitor, 8)
+        silences(), lambda history: expect_reports(monitor, history, fraction=0.75), draw, count=_case_count(monitor, 8)
     )
 
 
-def _cases(system: System, count: int) -> int:
+def _case_count(system: System, count: int) -> int:
     """Return how many drawn histories a check can afford: fewer in real time."""
     return count if system.harness.time == LOCKSTEP else 2
 
 
 def _expect_ros_time(system: System) -> None:
-    """Fail the check if the monitor measures silence by another clock than that of ROS."""
+    """Fail the check if the monitor measures silence by a clock other than ROS time."""
     system.publish_scans(OPEN, 2.0)
     reports = system.wait(REPORT_DEADLINE).reports
     _expect_reports(

@@ -55,11 +55,11 @@ HINTS = (
 
 
 @dataclass(frozen=True)
-class Launched:
+class RunningLaunch:
     """The student's launch file, running with the grader's parameters file and with simulated time.
 
     Attributes:
-        harness: where it runs.
+        harness: the harness in which it runs.
         values: the parameters in the file, by node.
         lines: the first line that a program prints, by its name.
     """
@@ -74,16 +74,16 @@ class Launched:
 
 
 def draw_values(seed: int) -> dict[str, dict[str, float]]:
-    """Return a value for each parameter of each node."""
+    """Draw a value for each parameter of each node."""
     draw = Random(f"{seed}:launch")
     return {
-        node: {name: _between(draw, parameter) for name, parameter in parameters.items()}
+        node: {name: _draw_value(draw, parameter) for name, parameter in parameters.items()}
         for node, parameters in PARAMETERS.items()
     }
 
 
 @pytest.fixture(scope="module")
-def launched(workspace: Workspace, seed: int) -> Iterator[Launched]:
+def launched(workspace: Workspace, seed: int) -> Iterator[RunningLaunch]:
     """A launch that all checks of this module share."""
     values = draw_values(seed)
     text = yaml.safe_dump({node: {"ros__parameters": dict(parameters)} for node, parameters in values.items()})
@@ -92,7 +92,7 @@ def launched(workspace: Workspace, seed: int) -> Iterator[Launched]:
     copy = launch_probe.with_files(workspace, "launched", PACKAGE, {OTHER_CONFIG: text}, scripts)
     arguments = {"params_file": str(copy.install / PACKAGE / "share" / PACKAGE / OTHER_CONFIG), "use_sim_time": "true"}
     with LaunchHarness(copy, PACKAGE, LAUNCH_FILE, arguments) as harness:
-        yield Launched(harness, values, {name: lines[name] for name in scripts})
+        yield RunningLaunch(harness, values, {name: lines[name] for name in scripts})
 
 
 @check(points=1, covers="launch-arguments", needs=("build",), after=INSTALL_CHECKS)
@@ -102,15 +102,17 @@ def test_launch_arguments(workspace: Workspace) -> None:
     """The launch file declares params_file, by default the package's own, and use_sim_time, by default false."""
     arguments = launch_probe.declared_arguments(workspace, PACKAGE, LAUNCH_FILE)
     launch_probe.expect_argument(arguments, "use_sim_time", "false")
-    declared = ", ".join(arguments)
-    expect("params_file" in arguments, f"The launch file declares no argument params_file; it declares: {declared}.")
+    declared_names = ", ".join(arguments)
+    expect(
+        "params_file" in arguments, f"The launch file declares no argument params_file; it declares: {declared_names}."
+    )
     argument = arguments["params_file"]
     if argument.default is None:
         _expect_starts_without(workspace, "params_file")
     else:  # launch does not show a default that is computed when it runs
-        installed = workspace.install / PACKAGE / "share" / PACKAGE / CONFIG
+        installed_config = workspace.install / PACKAGE / "share" / PACKAGE / CONFIG
         message = f"The argument params_file has the default {argument.default!r}, instead of"
-        is_installed = Path(argument.default).resolve() == installed.resolve()
+        is_installed = Path(argument.default).resolve() == installed_config.resolve()
         expect(is_installed, f"{message} the whole path of the installed {CONFIG}.", fraction=0.5)
     expect(bool(argument.description), "The argument params_file has no description.", fraction=0.5)
 
@@ -131,7 +133,7 @@ def _expect_starts_without(workspace: Workspace, name: str) -> None:
 
 @check(points=2, covers="launches", needs=("build",), after=START_CHECKS)
 @hint(*HINTS)
-def test_launch_starts(launched: Launched) -> None:
+def test_launch_starts(launched: RunningLaunch) -> None:
     """The launch file starts the three nodes under their names, and nothing else."""
     launch_probe.expect_nodes(launched.harness, [name_of(name) for name in PROGRAMS])
     # Two nodes with the same name may look like one in the graph.
@@ -143,7 +145,7 @@ def test_launch_starts(launched: Launched) -> None:
 @check(points=2, covers=("launch-arguments", "launches", "relative"), needs=("build",), after=("launch_starts",))
 @hint(*HINTS)
 @hint("A robot in a namespace has topics of its own: no remapping to a name with a slash in front, no namespace='/'.")
-def test_launch_configures(launched: Launched, workspace: Workspace) -> None:
+def test_launch_configures(launched: RunningLaunch, workspace: Workspace) -> None:
     """What params_file and use_sim_time say reaches all three nodes, and all names stay in their namespace."""
     running_nodes = {
         node: values for node, values in launched.values.items() if name_of(node) in launched.harness.nodes()
@@ -172,7 +174,7 @@ def test_launch_configures(launched: Launched, workspace: Workspace) -> None:
 @check(points=2, covers="launch-ctrl-c", needs=("build",), after=("launch_starts",))
 @hint("Each program's main goes through run(...), which ends without a traceback.")
 @hint("except (KeyboardInterrupt, ExternalShutdownException): pass, and rclpy.try_shutdown() in finally.")
-def test_launch_stops(launched: Launched) -> None:
+def test_launch_stops(launched: RunningLaunch) -> None:
     """Ctrl-C ends the launch and each of its nodes cleanly."""
     expect(bool(launched.harness.nodes()), "No node runs that Ctrl-C could end.")
     launch_probe.expect_clean_stop(launched.harness)
@@ -199,7 +201,7 @@ def _absolute_remapping(workspace: Workspace) -> str:
 
 
 def _script_with_line(workspace: Workspace, name: str, line: str) -> str:
-    """Return the script of an installed program with a first statement that prints a line; empty if that fails."""
+    """Return an installed program's script, with a new first statement that prints a line; empty if that fails."""
     data = files.read_plain(workspace.executable(PACKAGE, name), MAX_SCRIPT) or b""
     first, _, remaining = data.decode(errors="replace").partition("\n")
     # A __future__ import has to be the first statement.
@@ -207,5 +209,5 @@ def _script_with_line(workspace: Workspace, name: str, line: str) -> str:
     return f"{first}\nprint({line!r}, flush=True)\n{remaining}" if is_suitable else ""
 
 
-def _between(draw: Random, parameter: BoundedParameter) -> float:
+def _draw_value(draw: Random, parameter: BoundedParameter) -> float:
     return round(draw.uniform(parameter.lowest, parameter.highest), 3)

@@ -12,6 +12,7 @@ from autograder.checks.ch08_capstone.support.contract import INTERFACES, LICENCE
 from autograder.checks.ch08_capstone.support.sources import require_built, source_of
 
 check = group("step_1", doc=contract.PACKAGES_DOC)
+# Dependencies of the launch file, and of the tests.
 FOR_LAUNCH = ("ament_index_python", "launch", "launch_ros")
 FOR_TESTS = ("ament_flake8", "ament_pep257", "launch_pytest")
 
@@ -80,14 +81,14 @@ def test_executables(workspace: Workspace) -> None:
     installation = installed.inspect_package(workspace.install, PACKAGE)
     absent = [name for name in PROGRAMS if name not in installation.executables]
     executables = ", ".join(installation.executables) or "none"
-    misplaced = (
+    misplaced_text = (
         f" bin/, where ros2 run does not look, has {', '.join(installation.misplaced)}."
         if installation.misplaced
         else ""
     )
     expect(
         not absent,
-        f"The executable {', '.join(absent)} is not installed; installed are: {executables}.{misplaced}",
+        f"The executable {', '.join(absent)} is not installed; installed are: {executables}.{misplaced_text}",
         fraction=round(0.9 * (1.0 - len(absent) / len(PROGRAMS)), 2),
     )
 
@@ -109,9 +110,9 @@ def test_shares(workspace: Workspace) -> None:
 def test_grows(workspace: Workspace, draw: random.Random) -> None:
     """A new launch file and a new configuration are installed without a change of setup.py."""
     name = f"maze_{draw.randrange(100, 1000)}"
-    added = (f"launch/{name}.launch.py", f"config/{name}.yaml")
-    shared = added_files.install_with(workspace, PACKAGE, added).shared
-    absent = [path for path in added if path not in shared]
+    added_paths = (f"launch/{name}.launch.py", f"config/{name}.yaml")
+    shared = added_files.install_with(workspace, PACKAGE, added_paths).shared
+    absent = [path for path in added_paths if path not in shared]
     expect(not absent, f"The new {' and '.join(absent)} stayed behind: look at data_files.", fraction=0.5)
 
 

@@ -19,7 +19,7 @@ from autograder.checks.ch08_capstone.hidden.drawn_drives import (
     View,
     expect_drive,
 )
-from autograder.checks.ch08_capstone.hidden.drawn_reports import ALL, Span, expect_reports
+from autograder.checks.ch08_capstone.hidden.drawn_reports import ALL_TOPICS, Span, expect_reports
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN, newest_clearance
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
@@ -35,7 +35,7 @@ from autograder.checks.ch08_capstone.support.expectations import expect_driving
 from autograder.checks.ch08_capstone.support.system import SharedSystem, System
 
 check = group("step_5", doc=contract.PARAMETERS_DOC)
-# Ranges from which other values are drawn: a speed is a maximum, so a lower one shows, and the others show either way.
+# Ranges from which other values are drawn. A speed is a maximum, so only a lower one shows; the others show either way.
 VALUES: dict[str, dict[str, tuple[tuple[float, float], ...]]] = {
     CONTROLLER: {
         "safety_distance": ((0.32, 0.45), (0.8, 2.0)),
@@ -117,10 +117,10 @@ def test_used(system: System, lone_monitor: SharedSystem, draw: random.Random) -
     """A parameter that is changed while the system runs has an effect immediately."""
     monitor, errors = lone_monitor.get(MONITOR), list[str]()
     for node, values in VALUES.items():
-        changed = monitor if node == MONITOR else system
+        changed_system = monitor if node == MONITOR else system
         for name, ranges in values.items():
             value = round(draw.uniform(*draw.choice(ranges)), 2)
-            errors += _effect_errors(changed, node, name, value)
+            errors += _effect_errors(changed_system, node, name, value)
     errors += _errors_after_change_in_turn(system)
     if errors:
         total = sum(map(len, VALUES.values())) + 1
@@ -143,7 +143,7 @@ def test_config(workspace: Workspace) -> None:
 
 
 def _effect_errors(system: System, node: str, name: str, value: float) -> list[str]:
-    """Change a parameter, test the effect, and change it back; describe the error, if there is one."""
+    """Change a parameter, test the effect, and restore the parameter; describe the error, if there is one."""
     with system.changed_parameter(node, name, value) as reply:
         if not reply.accepted:
             return [f"{node} refuses {name} = {value:g}: {reply.reason}"]
@@ -162,8 +162,8 @@ def _expect_effect(system: System, name: str, value: float) -> None:
             sentence = f"something 1.00 m away at {bearing:.0f}° to {bearing + 1.0:.0f}° made front {front:.2f} m."
             expect(abs(front - expected) <= TOLERANCE, sentence)
     elif name == "silence_timeout":
-        # Reports are 0.5 s apart, so they come at all times after the last messages.
-        expect_reports(system, (Span(frozenset(), 13), Span(ALL, 4)) * 3, silence_timeout=value)
+        # Reports are 0.5 s apart: in three silences, they come at different times after the last messages.
+        expect_reports(system, (Span(frozenset(), 13), Span(ALL_TOPICS, 4)) * 3, silence_timeout=value)
     else:
         limit = value if name == "safety_distance" else 0.6
         drives: dict[str, Drive] = {"data_timeout": (Moment(CLEAR), Moment(None, round(value / SCAN_SECONDS) + 3))}
@@ -173,7 +173,7 @@ def _expect_effect(system: System, name: str, value: float) -> None:
 
 
 def _errors_after_change_in_turn(system: System) -> list[str]:
-    """Describe the error if a turn does not end after safety_distance was set to a value that ends it."""
+    """Describe the error if a turn does not end after safety_distance was set to a value that should end it."""
     obstacle = Part(-40.0, 40.0, 0.5)
     system.publish_scans(OPEN)
     system.publish_scans(scan(obstacle, fill=3.0))

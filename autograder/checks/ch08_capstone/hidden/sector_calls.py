@@ -1,4 +1,4 @@
-"""Step 2: calls of `nearest` for sectors in every direction, also behind the robot."""
+"""Step 2: calls of `nearest` for sectors in every direction, including behind the robot."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from autograder.checks.ch08_capstone.support import clearances
 from autograder.checks.ch08_capstone.support.contract import PACKAGE
 
 MODULE = f"{PACKAGE}.sectors"
-MIDDLES = (math.pi, -math.pi, 2.8, -2.8, 0.0, 1.2, -1.2)  # rad
-FIRSTS = (0.0, -180.0, 90.0)  # degrees
-OFFSETS = (-1.3, -0.7, 0.7, 1.3)  # half angles from the middle to the wall; no beam of the wall is on an edge
+MIDDLES = (math.pi, -math.pi, 2.8, -2.8, 0.0, 1.2, -1.2)  # rad: the middles of sectors
+FIRST_BEARINGS = (0.0, -180.0, 90.0)  # degrees: the bearings of beam 0
+OFFSETS = (-1.3, -0.7, 0.7, 1.3)  # from the middle to the wall, in half angles; no beam of the wall is on an edge
 FIELDS = ("angle_min", "angle_increment", "range_min", "range_max")
-WALL, REST = 1.0, 3.0  # m
+WALL, REST = 1.0, 3.0  # m: the readings of the wall, and of all other beams
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,8 @@ class SectorCall:
 
 
 def expect_any_sector(workspace: Workspace, draw: random.Random) -> None:
-    """Fail the check unless `nearest` finds a wall in sectors in every direction, and only there."""
-    sector_calls = [_drawn_call(draw, middle, offset) for middle in MIDDLES for offset in OFFSETS]
+    """Fail the check unless `nearest` finds a wall within a sector in any direction, and none outside it."""
+    sector_calls = [_draw_call(draw, middle, offset) for middle in MIDDLES for offset in OFFSETS]
     plan = calls.Plan()
     results: list[int] = []
     expected = []
@@ -53,9 +53,9 @@ def expect_any_sector(workspace: Workspace, draw: random.Random) -> None:
         expect(calls.same(actual, distance), f"{call!r} returned {actual}, instead of {distance:g}.", fraction=0.75)
 
 
-def _drawn_call(draw: random.Random, middle: float, offset: float) -> SectorCall:
+def _draw_call(draw: random.Random, middle: float, offset: float) -> SectorCall:
     """Draw a scan with a wall `offset` half angles from the middle of a sector."""
-    half_angle, first = draw.uniform(0.3, 0.9), draw.choice(FIRSTS)
+    half_angle, first = draw.uniform(0.3, 0.9), draw.choice(FIRST_BEARINGS)
     wall = math.degrees(middle + offset * half_angle)
     beam = round(wall - first) % 360
     return SectorCall(

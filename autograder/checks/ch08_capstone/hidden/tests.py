@@ -63,9 +63,11 @@ def test_sector_tests_pass(examined: SectorTestReports) -> None:
 @hint("Put the odd reading before a wall and after it: the order of the beams must not matter.")
 def test_sector_tests_find_faults(examined: SectorTestReports) -> None:
     """The tests of the sectors fail on broken versions of sectors.py."""
-    missed = [fault.description for fault, report in examined.faulty if not report.detects_fault(examined.correct)]
+    missed_faults = [
+        fault.description for fault, report in examined.faulty if not report.detects_fault(examined.correct)
+    ]
     expect(
-        not missed,
-        f"Your tests are content with {'; with '.join(missed)}.",
-        fraction=round(1.0 - len(missed) / len(examined.faulty), 2),
+        not missed_faults,
+        f"Your tests are content with {'; with '.join(missed_faults)}.",
+        fraction=round(1.0 - len(missed_faults) / len(examined.faulty), 2),
     )

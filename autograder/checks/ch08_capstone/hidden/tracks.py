@@ -37,19 +37,19 @@ def speeds(recording: Recording) -> Floats:
 
 
 def driven_since(recording: Recording, start: float) -> Floats:
-    """Return the metres driven since a time, one value for each state, 0 before it."""
+    """Return how many metres were driven since a time: one value for each state, 0 before that time."""
     metres = blindness.driven_distances(recording)
     at_start = float(np.interp(start, recording.times, metres))
     return np.where(recording.times < start, 0.0, metres - at_start)
 
 
 def changes_of_direction(times: Sequence[float], rates: Sequence[float], window: float) -> list[float]:
-    """Count how often a turn followed one to the other side in the last `window` seconds, for each command.
+    """For each command, count how often a turn in the last `window` seconds followed one to the other side.
 
     Args:
         times: the times of the commands in seconds, in ascending order.
         rates: their turn rates in rad/s; left is positive.
-        window: seconds.
+        window: the length of the time before each command, in seconds.
     """
     changes: list[float] = []
     side = 0.0
@@ -63,6 +63,6 @@ def changes_of_direction(times: Sequence[float], rates: Sequence[float], window:
     return counts
 
 
-def blocked(scan: Scan) -> Scan:
+def blocked_scan(scan: Scan) -> Scan:
     """Return the scan of a blocked lidar, in which every reading is nan."""
     return replace(scan, ranges=np.full_like(scan.ranges, np.nan))

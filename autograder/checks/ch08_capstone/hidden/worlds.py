@@ -1,4 +1,4 @@
-"""Step 2, the whole system: the robot in hidden worlds, tested by temporal logic over its track."""
+"""Step 2, the whole system: the robot's drives through hidden worlds, tested by temporal logic over its track."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from sim.rows import row_at, state_at
 
 check = group("step_2")
 SAFE = "gap > 0.01"  # m between the footprint and the nearest thing
-STEADY = "changes < 3.5"  # turns that followed one to the other side, in the last WINDOW seconds
-WINDOW = 6.0  # s
+STEADY = "changes < 3.5"  # turns that followed a turn to the other side, in the last WINDOW seconds
+WINDOW = 6.0  # s in which changes of direction are counted
 STOPPING_DISTANCE = 0.3  # m at 0.3 m/s: 0.5 s until data are stale, and delays of the nodes at 10 Hz and of the motor
 BLOCKED_STOPPING_DISTANCE = 0.15  # m: the scans of a blocked lidar are invalid immediately
 SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
-STILL = 0.01  # m/s
-ROOM_SHARE = 1 / 3  # of the way that it could drive at its speed, as it also turns
-MIN_WAY_SHARE = 0.1  # of the way at the contract's speed: a robot with less than that did not drive
+STILL = 0.01  # m/s: a slower robot stands still
+ROOM_SHARE = 1 / 3  # of the way that it could drive at its speed: it also has to turn
+MIN_WAY_SHARE = 0.1  # of the way at the contract's speed: a robot that covers less did not drive
 STOP_SECONDS = 1.5  # s: 0.5 s until the data are stale, and time to brake
-AHEAD = 1.0  # m: the robot turns if a thing is within 0.6 m, until 0.7 m are clear
-RESTART_SECONDS = 2.0  # s
+AHEAD = 1.0  # m: the robot turns if a thing is within 0.6 m, until 0.7 m ahead are clear
+RESTART_SECONDS = 2.0  # s within which the robot drives again
 SIDE_DISTANCE = 0.15  # m, little more than range_min
 SECTOR = 35.0  # degrees to each side of a middle, a little more than half_angle
 PICTURE_HINT = ("Look at the picture: what did the lidar see at the marked instant, and at which bearing?",)
@@ -56,8 +56,8 @@ def test_touches_nothing(drives: Drives, driving: System, artifacts: Artifacts) 
     metres = float(blindness.driven_distances(recording)[-1])
     _save_track(artifacts, result, f"{metres:.1f} m in {result.seconds:.0f} s, nothing touched.", rules)
     speeds = tracks.speeds(recording)
-    moving = speeds[speeds > STILL]
-    pace = min(SPEED, float(moving.mean())) if moving.size else 0.0
+    moving_speeds = speeds[speeds > STILL]
+    pace = min(SPEED, float(moving_speeds.mean())) if moving_speeds.size else 0.0
     message = (
         f"It touched nothing, but drove only {metres:.1f} m in {result.seconds:.0f} s, at {pace:.2f} m/s on average."
     )
@@ -131,11 +131,13 @@ def test_stops_in_time(drives: Drives, driving: System, artifacts: Artifacts) ->
             )
             fraction = 0.0 if fault is DEAD else 0.5
             _fail(artifacts, result, sentence, verdict.violated_at, "still drives", fraction, rules)
-        late = times[_should_stand(fault, times) & (speed > STILL)]
-        if late.size:
+        late_times = times[_should_stand(fault, times) & (speed > STILL)]
+        if late_times.size:
             beginning = f"The lidar was {fault.name} from t = {fault.start:.0f} s on"
-            sentence = f"{beginning}; at t = {late[0]:.1f} s the robot still drove."
-            _fail(artifacts, result, sentence, float(late[0]), "still drives", 0.0 if fault is DEAD else 0.5, rules)
+            sentence = f"{beginning}; at t = {late_times[0]:.1f} s the robot still drove."
+            _fail(
+                artifacts, result, sentence, float(late_times[0]), "still drives", 0.0 if fault is DEAD else 0.5, rules
+            )
     caption = "the lidar died and came back, was blocked and came free; the robot stood still meanwhile."
     _save_track(artifacts, result, caption, rules)
     _expect_half_blind_stop(driving)

@@ -1,4 +1,4 @@
-"""Numbers and names of the exercise's contract."""
+"""Numbers and names in the exercise's contract."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ OK, DEGRADED, FAILED = range(3)
 LEVELS = ("OK", "DEGRADED", "FAILED")
 REPORT_DEADLINE = 2.0  # s: a topic is silent after 1.0 s, and reports are 0.5 s apart
 
-TOLERANCE = 0.005  # m, m/s, rad/s: a tenth of the smallest forward_speed, and above the rounding error of float32
+TOLERANCE = 0.005  # m, m/s, rad/s: 10 % of the smallest forward_speed, and above the rounding error of float32
 
 
 @dataclass(frozen=True)

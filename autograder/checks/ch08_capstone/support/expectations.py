@@ -67,7 +67,7 @@ def expect_turning(
 
 
 def _commands_to_test(commands: Sequence[ReceivedMessage], always: bool = False) -> Sequence[ReceivedMessage]:
-    """Return the commands that a check tests: all of them, or without `always` those that move, if any does."""
+    """Return the commands that a check tests: all of them if `always`; otherwise those that move, if there are any."""
     return commands if always else [c for c in commands if not _is_still(c)] or commands
 
 

@@ -39,20 +39,20 @@ HEALTH = ExpectedMessage(
     {name: value for value, name in enumerate(LEVELS)},
 )
 _ACCEPTED_TYPES = {"float": ("float", "double"), "uint8": ("uint8", "int8", "uint16", "int16", "uint32", "int32")}
-# The types of a .msg file, by rosidl's names.
+# The types in a .msg file, by rosidl's names for them.
 _MSG_TYPES = {"boolean": "bool", "float": "float32", "double": "float64", "sequence<string>": "string[]"}
 
 
 def load_messages(workspace: Workspace) -> Any:
-    """Return the student's messages, read from their definitions. Raises like `load_interfaces`."""
+    """Return the student's messages, read from their definitions. Raises the errors of `load_interfaces`."""
     return load_interfaces(workspace, INTERFACES)
 
 
 def message_types(package: Any) -> MessageTypes:
-    """Return the two messages of a package. Other checks test whether they are exactly as the contract says.
+    """Return the two messages of a package. Other checks test whether they are exactly as the contract requires.
 
     Raises:
-        CheckFailed: one is missing, or lacks a field that the grader needs to talk to the nodes.
+        CheckFailed: a message is missing, or lacks a field that the grader needs to talk to the nodes.
     """
     for expected in (CLEARANCE, HEALTH):
         message = getattr(package.msg, expected.name, None)
@@ -69,7 +69,7 @@ def message_types(package: Any) -> MessageTypes:
 def differences(workspace: Workspace, expected: ExpectedMessage) -> list[str]:
     """Describe how the student's definition of a message differs from the contract; near misses are named.
 
-    Raises like `load_interfaces`.
+    Raises the errors of `load_interfaces`.
     """
     package = load_messages(workspace)
     message = getattr(package.msg, expected.name, None)

@@ -46,7 +46,7 @@ class System:
     In lockstep, a scan, its clearance and the command that follows belong to one step.
 
     Args:
-        workspace: where they are installed.
+        workspace: the workspace in which they are installed.
         types: the types of the student's messages.
         needed: programs that have to run; the others may be missing, or fail.
         clock_rate: seconds on the clocks of the programs' machine in a second of ROS time; always 1 in real time.
@@ -54,9 +54,9 @@ class System:
         sends_clearances: whether the expected clearance of each scan is sent if sensor_processor is absent.
 
     Attributes:
-        harness: where they run.
+        harness: the harness in which they run.
         types: the types of the student's messages.
-        before_first_scan: the messages that they published before the first scan.
+        before_first_scan: the messages that the programs published before the first scan.
     """
 
     def __init__(
@@ -70,12 +70,12 @@ class System:
         sends_clearances: bool = False,
     ) -> None:
         self.types, self._sends_clearances = types, sends_clearances and PROCESSOR in absent
-        published = {PROCESSOR: ("/clearance", types.clearance), CONTROLLER: ("/cmd_vel", Twist)}
-        started = [n for n in PROGRAMS if n not in absent and (n in needed or _is_installed(workspace, n))]
+        outputs = {PROCESSOR: ("/clearance", types.clearance), CONTROLLER: ("/cmd_vel", Twist)}
+        started_names = [n for n in PROGRAMS if n not in absent and (n in needed or _is_installed(workspace, n))]
         self.harness = AutoHarness(
             workspace,
-            programs=tuple(Program(PACKAGE, name) for name in started),
-            publishes={"/scan": LaserScan, **dict(published[name] for name in published if name in absent)},
+            programs=tuple(Program(PACKAGE, name) for name in started_names),
+            publishes={"/scan": LaserScan, **dict(outputs[name] for name in outputs if name in absent)},
             subscribes={"/clearance": types.clearance, "/cmd_vel": Twist, "/health": types.health},
             clock_rate=clock_rate,
         )
@@ -167,7 +167,7 @@ class System:
         self.harness.publish(topic, message)
 
     def wait(self, seconds: float) -> SystemMessages:
-        """Publish nothing for a while; return the messages of that time."""
+        """Publish nothing for a while; return the messages that come meanwhile."""
         start = self.seconds
         self.harness.run(seconds)
         return self.messages(start)
@@ -179,10 +179,10 @@ class System:
 
 
 class SharedSystem:
-    """Keeps one system for several checks, and starts it again once one of its programs has ended.
+    """Keeps one system for several checks, and restarts it once one of its programs has ended.
 
     Args:
-        workspace: where the programs are installed.
+        workspace: the workspace in which the programs are installed.
         clock_rate, absent, sends_clearances: see `System`.
     """
 
@@ -201,7 +201,7 @@ class SharedSystem:
             sends_clearances,
         )
         self._needed: tuple[str, ...] = ()
-        self._shared = Shared(self._make, lambda system: system.runs(self._needed))
+        self._shared = Shared(self._start_system, lambda system: system.runs(self._needed))
 
     def get(self, *needed: str) -> System:
         """Return a system in which these programs run; the others may fail."""
@@ -214,7 +214,7 @@ class SharedSystem:
         """End the current system; the next check gets a new one."""
         self._shared.close()
 
-    def _make(self) -> System:
+    def _start_system(self) -> System:
         types = message_types(load_messages(self._workspace))
         return System(
             self._workspace,

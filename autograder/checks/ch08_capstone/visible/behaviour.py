@@ -48,12 +48,12 @@ def test_starts(system: System) -> None:
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]; left is positive.")
 def test_sees(system: System) -> None:
     """Step 2: sensor_processor says how near things are ahead, on the left and on the right, and when it is blind."""
-    published = scan(Part(-5.0, 5.0, 1.0), Part(80.0, 90.0, 1.5), Part(-90.0, -80.0, 2.0), fill=3.0)
-    clearances = system.publish_scans(published).clearances
+    published_scan = scan(Part(-5.0, 5.0, 1.0), Part(80.0, 90.0, 1.5), Part(-90.0, -80.0, 2.0), fill=3.0)
+    clearances = system.publish_scans(published_scan).clearances
     expect(bool(clearances), "No clearance came while scans did.")
     newest = clearances[-1].message
     is_same_header = (
-        newest.header.stamp == published.header.stamp and newest.header.frame_id == published.header.frame_id
+        newest.header.stamp == published_scan.header.stamp and newest.header.frame_id == published_scan.header.frame_id
     )
     expect(is_same_header, "The clearance's header is not that of its scan: it says when and where the scan was taken.")
     distances = (newest.front, newest.left, newest.right)
@@ -65,8 +65,11 @@ def test_sees(system: System) -> None:
         is_near and newest.valid,
         f"front, left, right were {distances_text}, valid {newest.valid}, not 1.00, 1.50, 2.00, valid True.",
     )
-    blocked = system.publish_scans(scan(Part(-35.0, 35.0, math.nan))).clearances
-    expect(bool(blocked) and not blocked[-1].message.valid, "With nan from every beam ahead, the clearance was valid.")
+    blind_clearances = system.publish_scans(scan(Part(-35.0, 35.0, math.nan))).clearances
+    expect(
+        bool(blind_clearances) and not blind_clearances[-1].message.valid,
+        "With nan from every beam ahead, the clearance was valid.",
+    )
 
 
 @check(points=1, covers=("drive", "turn", "untrusted"), group="step_2", needs=("sees",), doc=contract.NODES_DOC)

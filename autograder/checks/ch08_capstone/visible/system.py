@@ -106,8 +106,8 @@ def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
     )
     report = reports.result()[TESTS]
     messages = report.claims.messages
-    failed = "; ".join(f"{name}: {messages.get(name, '')}" for name in report.failed[:3])
-    expect(not report.failed, f"{len(report.failed)} tests fail: {failed}")
+    failures = "; ".join(f"{name}: {messages.get(name, '')}" for name in report.failed[:3])
+    expect(not report.failed, f"{len(report.failed)} tests fail: {failures}")
     expect(len(report.executed) >= 4, f"{len(report.executed)} tests ran. {report.output.strip()[-300:]}")
 
 

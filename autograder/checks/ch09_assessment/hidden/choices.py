@@ -1,4 +1,4 @@
-"""Question 1: a check for each choice, which explains why a wrong answer is wrong."""
+"""Question 1: a check for each choice, with an explanation of why a wrong answer is wrong."""
 
 from __future__ import annotations
 

@@ -25,24 +25,24 @@ from autograder.checks.ch09_assessment.support.contract import (
 from autograder.checks.ch09_assessment.support.robot import MESSAGE_SECONDS, NodeHarness, Start, near
 
 READING_COUNT = 12  # readings in a series
-RECORDING_SECONDS = 2.2  # time for which readings are received, more than four default periods
+RECORDING_SECONDS = 2.2  # s for which readings are received: more than four default periods
 FLOAT32 = 1e-6  # the precision of a number in a message
 MAX_AGE = 0.1  # s between the stamp of a reading and its arrival
 
 
 def expect_measured(start: Start, period: float, mean: float, swing: float, reading: Callable[..., float]) -> None:
-    """Fail the check unless a thermometer uses these parameters, even after others were set."""
+    """Fail the check unless a thermometer uses these parameters, even after other values were set."""
     with start(THERMOMETER, period=period, mean=mean, swing=swing) as harness:
         harness.expect_readings(READING_COUNT, period, mean, swing, reading=reading)
         harness.try_to_set(period=2 * period, mean=mean + 10.0, swing=swing + 5.0)
         try:
             harness.expect_readings(READING_COUNT, period, mean, swing, reading=reading)
-        except CheckFailed as failed:
-            raise CheckFailed(f"With other parameters set after the start: {failed.message}", fraction=0.5) from failed
+        except CheckFailed as error:
+            raise CheckFailed(f"With other parameters set after the start: {error.message}", fraction=0.5) from error
 
 
 def student_reading(start: Start) -> Callable[[int, float, float], float]:
-    """Return what the student's thermometer would measure with other parameters, from its readings by default."""
+    """Return a formula for the student's readings with other parameters, derived from those with the defaults."""
     with start(THERMOMETER) as harness:
         harness.run((2 * READING_COUNT + 2) * PERIOD)
         shares = [(received.message.celsius - MEAN) / SWING for received in harness.published()]
@@ -83,7 +83,7 @@ def expect_averages(
 def expect_full_averages(
     actual: list[float], readings: list[float], window: int, prefix: str = "", *, fraction: float = 0.0
 ) -> None:
-    """Fail the check unless the averages of full windows are right. Another check tests those before them."""
+    """Fail the check unless the averages of full windows are right. Another check tests the averages before them."""
     expected = averages(readings, window)[window - 1 :]
     newest = actual[-len(expected) :]
     count = f"{prefix}{len(readings)} readings became {len(actual)} averages."
@@ -104,13 +104,13 @@ def expect_decisions(
     fraction: float = 0.0,
     apart: float = MESSAGE_SECONDS,
 ) -> None:
-    """Fail the check unless the guard makes right decisions on these temperatures, which come `apart` s apart."""
+    """Fail the check unless the guard makes the right decisions on these temperatures, sent `apart` s apart."""
     actual = [bool(message.cooling) for message in harness.send(temperatures, apart=apart)]
     count = f"{len(temperatures)} averages became {len(actual)} decisions."
     expect(len(actual) == len(temperatures), count, fraction=fraction)
-    allowed = decisions(temperatures, hot, cool)
+    allowed_states = decisions(temperatures, hot, cool)
     numbers = ", ".join(f"{celsius:g}" for celsius in temperatures)
-    wrong = next((i for i, decision in enumerate(actual) if decision not in allowed[i]), None)
+    wrong = next((i for i, decision in enumerate(actual) if decision not in allowed_states[i]), None)
     message = f"{prefix}at {numbers} °C, cooling was {actual}; decision number {(wrong or 0) + 1} is wrong."
     expect(wrong is None, message[:1].upper() + message[1:], fraction=fraction)
 
@@ -120,7 +120,7 @@ def expect_passed_on(
 ) -> None:
     """Fail the check unless these decisions have the temperatures and stamps of their averages.
 
-    The averages' stamps start with this one, in s and ns, and are a second apart.
+    The averages' stamps start with `stamp`, in s and ns, and are a second apart.
     """
     expect(len(decisions) == len(temperatures), f"{len(temperatures)} averages became {len(decisions)} decisions.")
     first, nanoseconds = stamp
@@ -142,8 +142,8 @@ def expect_separate_windows(workspace: Workspace) -> None:
     turns = [(number, "temperature_callback", message) for number, message in ((0, cold), (1, warm), (0, cold))]
     texts = node_callbacks.published(workspace, f"{PACKAGE}.{SMOOTHER}", [node, node], turns)
     averages_of_calls = [re.findall(r"celsius=(-?\d{1,40}(?:\.\d{1,40})?)[,)]", text) for text in texts]
-    if not all(len(found) == 1 for found in averages_of_calls):
-        return  # it does not publish in its callback, which is allowed
+    if not all(len(averages_of_call) == 1 for averages_of_call in averages_of_calls):
+        return  # the smoother does not publish in its callback, which is allowed
     actual = [float(average) for (average,) in averages_of_calls]
     situation = "Of two smoothers in one process, one was sent readings of 20 °C and the other one of 40 °C"
     is_right = all(map(near, actual, (20.0, 40.0, 20.0)))

@@ -28,21 +28,21 @@ from autograder.checks.ch09_assessment.support.robot import Start, Types, requir
 
 check = group("launch", doc=contract.LAUNCH_DOC)
 NODES = tuple(f"/{name}" for name in PROGRAMS)
-DEFAULTS: dict[str, dict[str, parameters.Value]] = {  # of the parameters that no argument sets
+DEFAULTS: dict[str, dict[str, parameters.Value]] = {  # the defaults of parameters that no argument sets
     THERMOMETER: {"period": PERIOD, "mean": MEAN, "swing": SWING},
     SMOOTHER: {"window": WINDOW},
     GUARD: {"cool": COOL},
 }
-FIRST_SECONDS = 20.0  # real time for the first decision, which takes one period
+FIRST_SECONDS = 20.0  # s of real time to wait for the first decision, which takes one period
 
 
 def draw_hot(seed: int) -> int:
-    """Return the argument hot, a whole number of degrees Celsius."""
+    """Draw the argument hot, a whole number of degrees Celsius."""
     return Random(f"{seed}:hot").randint(52, 58)
 
 
 @dataclass(frozen=True)
-class Launched:
+class SharedLaunches:
     """The launches that all checks share.
 
     Attributes:
@@ -55,7 +55,7 @@ class Launched:
 
 
 @pytest.fixture(scope="module")
-def launched(workspace: Workspace, builds: Mapping[str, Diagnosis], types: Types, hot: int) -> Iterator[Launched]:
+def launched(workspace: Workspace, builds: Mapping[str, Diagnosis], types: Types, hot: int) -> Iterator[SharedLaunches]:
     """One launch for all checks of this module, and a second one if the guard refuses a whole number."""
     require_built(builds, PACKAGE)
     shared = installed.inspect_package(workspace.install, PACKAGE).shared
@@ -63,10 +63,10 @@ def launched(workspace: Workspace, builds: Mapping[str, Diagnosis], types: Types
     subscribes = {"/decision": types.decision}
     with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": str(hot)}, subscribes=subscribes) as with_integer:
         if f"/{GUARD}" in launch_probe.settle(with_integer, NODES):
-            yield Launched(with_integer, with_integer)
+            yield SharedLaunches(with_integer, with_integer)
             return
     with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": f"{hot}.0"}, subscribes=subscribes) as harness:
-        yield Launched(harness, with_integer)
+        yield SharedLaunches(harness, with_integer)
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +82,7 @@ def hot(seed: int) -> int:
 )
 @hint("Node(package='motor_guard', executable='guard', name='guard', output='screen'), and two more.")
 @hint("ros2 topic echo /decision shows whether the three talk to each other.")
-def test_launches(launched: Launched) -> None:
+def test_launches(launched: SharedLaunches) -> None:
     """The launch file is installed, starts the three nodes under their names, and decisions come out."""
     harness = launched.harness
     launch_probe.expect_nodes(harness, NODES)
@@ -93,7 +93,7 @@ def test_launches(launched: Launched) -> None:
 @check(points=2, covers=("hot-argument", "hot-cool"), after=("launches",))
 @hint("DeclareLaunchArgument('hot', default_value='60.0')")
 @hint("ParameterValue(LaunchConfiguration('hot'), value_type=float): else 55 becomes an integer.")
-def test_argument(workspace: Workspace, launched: Launched, start: Start, hot: int, draw: Random) -> None:
+def test_argument(workspace: Workspace, launched: SharedLaunches, start: Start, hot: int, draw: Random) -> None:
     """Its argument hot, by default 60.0, becomes the guard's parameter, always as a float."""
     harness = launched.harness
     launch_probe.expect_parameters(harness, f"/{GUARD}", {"hot": float(hot)})
@@ -104,26 +104,26 @@ def test_argument(workspace: Workspace, launched: Launched, start: Start, hot: i
     for name, values in DEFAULTS.items():
         launched_values = harness.parameters(f"/{name}", list(values)) or {}
         if parameters.differences(launched_values, values):  # other checks test the node's own defaults
-            with start(name) as alone:
-                own = parameters.NodeParameters(alone, f"/{name}").values(*values)
-            others = parameters.differences(launched_values, own)
+            with start(name) as lone_harness:
+                own_values = parameters.NodeParameters(lone_harness, f"/{name}").values(*values)
+            others = parameters.differences(launched_values, own_values)
             message = (
                 f"Launched with hot:={hot} and nothing else, {name} differs from {name} alone: {'; '.join(others)}."
             )
             expect(not others, message, fraction=0.75)
-    fraction = hot + draw.randrange(100_001, 1_000_000, 2) / 1e6  # six digits, none of which may be lost
-    with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": str(fraction)}) as precise:
-        launch_probe.settle(precise, NODES)
+    fraction = hot + draw.randrange(100_001, 1_000_000, 2) / 1e6  # six decimal places, none of which may be lost
+    with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": str(fraction)}) as precise_launch:
+        launch_probe.settle(precise_launch, NODES)
         try:
-            launch_probe.expect_parameters(precise, f"/{GUARD}", {"hot": fraction})
-        except CheckFailed as failed:
-            raise CheckFailed(f"Launched with hot:={fraction}: {failed.message}", fraction=0.5) from failed
+            launch_probe.expect_parameters(precise_launch, f"/{GUARD}", {"hot": fraction})
+        except CheckFailed as error:
+            raise CheckFailed(f"Launched with hot:={fraction}: {error.message}", fraction=0.5) from error
 
 
 @check(points=1, covers="ctrl-c", after=("launches",))
 @hint("Each main() catches KeyboardInterrupt and ExternalShutdownException: running.py does it for you.")
 @hint("A node that never ends by itself has to be killed: look at loops of your own.")
-def test_stops(launched: Launched) -> None:
+def test_stops(launched: SharedLaunches) -> None:
     """Ctrl-C ends the launch and all of its nodes, cleanly."""
     expect(bool(launched.harness.nodes()), "No node runs that Ctrl-C could end.")
     launch_probe.expect_clean_stop(launched.harness)

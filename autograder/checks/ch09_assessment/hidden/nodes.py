@@ -39,21 +39,21 @@ from autograder.checks.ch09_assessment.support.contract import (
 from autograder.checks.ch09_assessment.support.robot import NANOSECONDS, Start, Types, near, refuses
 
 check = group("nodes")
-BUILT = ("installs",)
-BETWEEN = (COOL + 1.0, HOT - 1.0)  # degrees Celsius
-UNSUBSCRIBED_SECONDS = 2.2  # time after the start of a node before anything subscribes
-MARGIN = 0.002  # degrees: rounded to hundredths, such a temperature is no longer between the thresholds
+BUILD_CHECKS = ("installs",)
+BETWEEN = (COOL + 1.0, HOT - 1.0)  # degrees Celsius: the limits of temperatures that leave the fan as it is
+UNSUBSCRIBED_SECONDS = 2.2  # s after the start of a node before anything subscribes to it
+MARGIN = 0.002  # degrees from a threshold: rounded to hundredths, such a temperature is the threshold
 HUGE = 1e20  # degrees: added to a running sum, it erases all other numbers
-SILENCE = 2.5  # s without an average
+SILENCE = 2.5  # s without an average, which must not change the state of the fan
 STAMP = (1_700_000_000, 123_456_789)  # s and ns of a realistic time, which a float of seconds cannot represent
-QUEUE = 10
+QUEUE = 10  # how many messages a queue should hold
 SLOW = 0.25  # s that the machine's clocks count in a second of ROS time
 
 
 @check(
     points=2,
     covers=("reading", "formula", "period", "mean-swing", "thermometer-topics"),
-    after=BUILT,
+    after=BUILD_CHECKS,
     doc=contract.NODES_DOC,
 )
 @hint("create_timer(period, self.timer_callback), and a count in self.", "math.sin takes radians.")
@@ -105,7 +105,7 @@ def test_stamps(start: Start) -> None:
         expect(near(celsius, expected), f"{observation}; {expectation}", fraction=0.5)
 
 
-@check(points=2, covers=("smoother", "window", "smoother-topics"), after=BUILT, doc=contract.NODES_DOC)
+@check(points=2, covers=("smoother", "window", "smoother-topics"), after=BUILD_CHECKS, doc=contract.NODES_DOC)
 @hint("sum(...) / len(...) of what the window holds now; at the start that is less.", "Publish for each reading.")
 def test_average(workspace: Workspace, start: Start, draw: Random) -> None:
     """Smoother publishes, for each reading, the average of the newest five, with the stamp of the newest."""
@@ -162,21 +162,23 @@ def test_no_number(start: Start, draw: Random) -> None:
         expect_series(harness, series(HUGE, -HUGE), 2, draw, readings, fraction=0.75)
 
 
-@check(points=4, covers=("hysteresis", "guard-topics"), after=BUILT, doc=contract.NODES_DOC)
+@check(points=4, covers=("hysteresis", "guard-topics"), after=BUILD_CHECKS, doc=contract.NODES_DOC)
 @hint("Two thresholds, and a decision that is remembered.", "elif: from hot on True, down to cool False.")
 def test_hysteresis(start: Start, draw: Random) -> None:
     """Guard switches the fan on when it is hot, off when it is cool, and leaves it as it was between the two."""
     between, cold, warm = (round(draw.uniform(*limits), 1) for limits in (BETWEEN, (10.0, 40.0), (70.0, 90.0)))
     with start(GUARD) as harness:
         harness.expect_in_graph()
-        at_start = [bool(message.cooling) for message in harness.send([between])]
+        first_decisions = [bool(message.cooling) for message in harness.send([between])]
         expect_decisions(harness, [cold, warm, cold], "")
         expect_decisions(harness, [warm, between, cold, between], "Between the thresholds: ", fraction=0.5)
         expect_decisions(harness, [HOT, COOL, HOT - 0.1, HOT, COOL + 0.1], "At the thresholds: ", fraction=0.75)
         edges = switched(HOT, COOL, HOT - 0.1, COOL + 0.1)
         expect_switching(harness, edges, draw, "At the thresholds: ", fraction=0.75)
         expect(
-            at_start == [False], f"At first, at {between} °C, cooling was {at_start}: the fan is off.", fraction=0.75
+            first_decisions == [False],
+            f"At first, at {between} °C, cooling was {first_decisions}: the fan is off.",
+            fraction=0.75,
         )
 
 
@@ -200,10 +202,17 @@ def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Rand
         harness.try_to_set(hot=hot + 5.0, cool=cool - 5.0)
         prefix = f"Started with hot {hot} and cool {cool}, both then set 5 °C further apart: "
         expect_decisions(harness, [hot + 1.0, cool - 1.0], prefix, hot=hot, cool=cool, fraction=0.5)
-    odd: dict[str, float] = draw.choice(({"hot": 0.0, "cool": -20.0}, {"hot": 20.0, "cool": 0.0}))
-    with start(GUARD, **odd) as harness:
-        both_ways = [odd["hot"] + 1.0, odd["cool"] + 1.0, odd["cool"] - 1.0, odd["hot"] - 1.0]
-        expect_decisions(harness, both_ways, f"With {_text(odd)}: ", fraction=0.75, **odd)
+    unusual_thresholds: dict[str, float] = draw.choice(({"hot": 0.0, "cool": -20.0}, {"hot": 20.0, "cool": 0.0}))
+    with start(GUARD, **unusual_thresholds) as harness:
+        both_ways = [
+            unusual_thresholds["hot"] + 1.0,
+            unusual_thresholds["cool"] + 1.0,
+            unusual_thresholds["cool"] - 1.0,
+            unusual_thresholds["hot"] - 1.0,
+        ]
+        expect_decisions(
+            harness, both_ways, f"With {_values_text(unusual_thresholds)}: ", fraction=0.75, **unusual_thresholds
+        )
     for wrong in (
         {"hot": hot, "cool": hot},
         {"hot": COOL - MARGIN},
@@ -211,8 +220,8 @@ def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Rand
         {"cool": math.nan},
         {"hot": math.nan},
     ):
-        refused = refuses(workspace, types, GUARD, **wrong)
-        expect(refused, f"guard started with {_text(wrong)}.", fraction=0.5)
+        is_refused = refuses(workspace, types, GUARD, **wrong)
+        expect(is_refused, f"guard started with {_values_text(wrong)}.", fraction=0.5)
 
 
 @check(points=1, covers="unknown", after=("hysteresis",))
@@ -234,7 +243,7 @@ def test_passes_on(start: Start, draw: Random) -> None:
         expect_passed_on(temperatures, harness.send(temperatures, first, nanoseconds=nanoseconds), (first, nanoseconds))
         others = [*UNKNOWN, -temperatures[0], HUGE]
         decisions = harness.send(others, first, nanoseconds=nanoseconds)
-        if len(decisions) == len(others):  # test_unknown tests whether there is one for each
+        if len(decisions) == len(others):  # `unknown` tests whether each average gets a decision
             expect_passed_on(others, decisions, (first, nanoseconds), fraction=0.5)
         count = len(harness.send(temperatures[:1] * QUEUE, apart=0.0))
     observation = f"Of {QUEUE} averages that came at once, {count} got a decision: a queue of {QUEUE} holds them all."
@@ -259,17 +268,17 @@ def test_relative(workspace: Workspace) -> None:
     expect(not messages, " ".join(messages))
 
 
-def _text(values: Mapping[str, float]) -> str:
+def _values_text(values: Mapping[str, float]) -> str:
     return " and ".join(f"{name} {value}" for name, value in values.items())
 
 
 def draw_wave(draw: Random) -> tuple[float, float, float]:
-    """Return a period in s, a mean and a swing in degrees Celsius."""
+    """Draw a period in s, a mean and a swing in degrees Celsius."""
     period = draw.choice((0.1, 0.2, 0.8))
     return period, draw.choice((-1, 1)) * round(draw.uniform(20.0, 40.0), 1), round(draw.uniform(3.0, 9.0), 1)
 
 
 def draw_thresholds(draw: Random) -> tuple[float, float]:
-    """Return the temperatures hot and cool in degrees Celsius."""
+    """Draw the temperatures hot and cool in degrees Celsius."""
     cool = round(draw.uniform(20.0, 30.0), 1)
     return round(cool + draw.uniform(5.0, 10.0), 1), cool

@@ -29,8 +29,10 @@ def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagn
     """Colcon builds motor_guard_interfaces, with both messages."""
     require_built(builds, INTERFACES)
     shared = installed.inspect_package(workspace.install, INTERFACES).shared
-    absent = [path for path in contract.MESSAGES if path not in shared]
-    expect(not absent, f"The build made no code for {' and '.join(absent)}: CMakeLists.txt does not list it.")
+    missing_paths = [path for path in contract.MESSAGES if path not in shared]
+    expect(
+        not missing_paths, f"The build made no code for {' and '.join(missing_paths)}: CMakeLists.txt does not list it."
+    )
 
 
 @check(points=1, covers=("interfaces-manifest", "licence", "stamp-package"), doc=contract.INTERFACES_DOC)
@@ -79,7 +81,7 @@ def test_dependencies(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> 
     packaging.expect_same_facts(installation, package_manifest, fraction=0.5)
     packaging.expect_installs_itself(installation)
     packaging.expect_pytest(workspace, installation, fraction=0.5)
-    metadata_name = installation.metadata.get("Name", "").replace("-", "_")  # setuptools may replace one with the other
+    metadata_name = installation.metadata.get("Name", "").replace("-", "_")  # setuptools may write - for _
     expect(
         metadata_name == PACKAGE, f"The name is {metadata_name} in setup.py, {PACKAGE} in package.xml.", fraction=0.5
     )

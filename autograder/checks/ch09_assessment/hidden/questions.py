@@ -13,8 +13,8 @@ class Question:
     """A single choice of four.
 
     Attributes:
-        objective: the key of the objective that it tests, in the syllabus.
-        title: its topic, which must not give the answer away.
+        objective: the key, in the syllabus, of the objective that the question tests.
+        title: the question's topic, which must not give the answer away.
         right: the right letter.
         wrong: for each other letter, why it is wrong, without naming the right one.
         hints: shown one after the other if the answer is wrong.

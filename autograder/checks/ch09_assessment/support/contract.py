@@ -1,4 +1,4 @@
-"""Names and numbers of the practical question's contract, and links that several checks use."""
+"""Names and numbers in the contract of the practical question, and links that several checks use."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from statistics import fmean
 
-SHEET = "assessment/answers.yaml"  # below src
+SHEET = "assessment/answers.yaml"  # the path below src
 QUESTIONS = tuple(f"q{number}" for number in range(1, 13))
 LETTERS = "abcd"
 
@@ -22,8 +22,8 @@ MESSAGES = {
 
 PERIOD, MEAN, SWING = 0.5, 50.0, 20.0  # s, degrees Celsius, degrees
 READINGS_PER_TURN = 20
-WINDOW = 5
-HOT, COOL = 60.0, 50.0  # degrees Celsius
+WINDOW = 5  # readings in an average
+HOT, COOL = 60.0, 50.0  # degrees Celsius: where the fan starts, and where it stops
 TOLERANCE = 1e-3  # degrees: a temperature is a 32-bit float
 
 _DOCS = "https://docs.ros.org/en/jazzy"
@@ -35,12 +35,12 @@ LAUNCH_DOC = f"{_DOCS}/Tutorials/Intermediate/Launch/Creating-Launch-Files.html"
 
 
 def reading(number: int, mean: float = MEAN, swing: float = SWING) -> float:
-    """Return the thermometer's reading with this number, which starts from 0, in degrees Celsius."""
+    """Return the thermometer's reading with this number, in degrees Celsius. Numbers start from 0."""
     return mean + swing * math.sin(math.tau * number / READINGS_PER_TURN)
 
 
 def windows(readings: Iterable[float], window: int = WINDOW) -> list[list[float]]:
-    """Return the readings that each average is made of. A reading that is not finite counts for none."""
+    """Return the readings that enter each average. A reading that is not finite enters none."""
     finite = [celsius for celsius in readings if math.isfinite(celsius)]
     return [finite[max(0, stop - window) : stop] for stop in range(1, len(finite) + 1)]
 
@@ -51,16 +51,16 @@ def averages(readings: Iterable[float], window: int = WINDOW) -> list[float]:
 
 
 def decisions(temperatures: Iterable[float], hot: float = HOT, cool: float = COOL) -> list[set[bool]]:
-    """Return whether the fan may run after each temperature. It is off at first.
+    """Return the allowed states of the fan after each temperature. The fan is off at first.
 
-    Both decisions are allowed between the thresholds, after a temperature that is not finite.
+    Between the thresholds, both states are allowed after a temperature that is not finite.
     """
-    allowed, remembered = [], {False}
+    allowed_states, states = [], {False}
     for celsius in temperatures:
         if not math.isfinite(celsius):
-            allowed.append({True})
-            remembered = {False, True}
+            allowed_states.append({True})
+            states = {False, True}
             continue
-        remembered = {True} if celsius >= hot else {False} if celsius <= cool else remembered
-        allowed.append(remembered)
-    return allowed
+        states = {True} if celsius >= hot else {False} if celsius <= cool else states
+        allowed_states.append(states)
+    return allowed_states

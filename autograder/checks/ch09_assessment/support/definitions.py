@@ -11,13 +11,13 @@ from autograder.checks.ch09_assessment.support.robot import source_of
 
 
 def expect_definitions(workspace: Workspace) -> None:
-    """Fail the check unless both messages follow the contract, with a part of the points for right fields."""
+    """Fail the check unless both messages follow the contract; right fields earn part of the points."""
     folder = source_of(workspace, INTERFACES)
     sentences, shares = [], []
     for path, text in MESSAGES.items():
         expected = interfaces.parse(INTERFACES, path, text)
         try:
-            actual = interfaces.parse(INTERFACES, path, _text(folder, path))
+            actual = interfaces.parse(INTERFACES, path, _definition_text(folder, path))
         except interfaces.Unreadable as error:
             raise CheckFailed(str(error)) from None
         differences = (*interfaces.compare(expected, actual), *_empty_defaults(path, actual))
@@ -39,7 +39,7 @@ def _empty_defaults(path: str, interface: interfaces.Interface) -> list[interfac
     ]
 
 
-def _text(folder: Path, path: str) -> str:
+def _definition_text(folder: Path, path: str) -> str:
     file = folder / path
     if file.is_symlink() or not file.is_file():
         names = sorted(str(other.relative_to(folder)) for other in folder.glob("msg/*.msg"))

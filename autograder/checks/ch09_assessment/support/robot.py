@@ -1,4 +1,4 @@
-"""Harnesses of the student's three nodes, which send and receive the messages of each node."""
+"""Harnesses for the student's three nodes, which send and receive each node's messages."""
 
 from __future__ import annotations
 
@@ -37,9 +37,10 @@ from autograder.checks.ch09_assessment.support.contract import (
 )
 
 FIELDS = {"Temperature": ("stamp", "celsius"), "Decision": ("stamp", "cooling", "celsius")}
-MESSAGE_SECONDS = 0.1  # between two messages
-NANOSECONDS = 250_000_000  # of each stamp, in addition to its seconds
+MESSAGE_SECONDS = 0.1  # s between two messages
+NANOSECONDS = 250_000_000  # the nanoseconds of each stamp, in addition to its seconds
 HEAD_START = 0.2  # s that a node in real time may run before it is discovered
+# For each node, the topics that it subscribes to and those that it publishes, with their message types.
 _TOPICS = {
     THERMOMETER: ({}, {"/temperature": "Temperature"}),
     SMOOTHER: ({"/temperature": "Temperature"}, {"/smoothed": "Temperature"}),
@@ -49,7 +50,7 @@ _TOPICS = {
 
 @dataclass(frozen=True)
 class Types:
-    """The student's messages, as classes of plain values."""
+    """Classes for the student's messages, which hold plain values."""
 
     temperature: Any
     decision: Any
@@ -65,8 +66,11 @@ class Types:
         for name, fields in FIELDS.items():
             message = getattr(package.msg, name, None)
             field_names = message.get_fields_and_field_types() if message is not None else {}
-            absent = [field for field in fields if field not in field_names]
-            expect(not absent, f"{name}.msg has no {' and no '.join(absent)}: nobody can talk to the nodes.")
+            missing_fields = [field for field in fields if field not in field_names]
+            expect(
+                not missing_fields,
+                f"{name}.msg has no {' and no '.join(missing_fields)}: nobody can talk to the nodes.",
+            )
         return cls(package.msg.Temperature, package.msg.Decision)
 
 
@@ -103,7 +107,7 @@ class NodeHarness(AutoHarness):
         self._output, self._input = next(iter(outputs)), next(iter(inputs), "")
 
     def subscribe_late(self) -> None:
-        """Subscribe to the node's output, if it was started with `is_subscribed` False."""
+        """Subscribe to the node's output, if the harness was created with `is_subscribed` False."""
         self.subscribe(self._outputs)
 
     def published(self, since: float = -1.0) -> list[ReceivedMessage]:
@@ -126,14 +130,14 @@ class NodeHarness(AutoHarness):
             apart: the ROS time between two messages in s, at most `MESSAGE_SECONDS`. 0 sends all at once.
             nanoseconds: the nanoseconds of each stamp.
         """
-        start, sent = self.seconds, list(temperatures)
-        for second, celsius in enumerate(sent, first):
+        start, values = self.seconds, list(temperatures)
+        for second, celsius in enumerate(values, first):
             message = self._types.temperature(celsius=float(celsius))
             message.stamp.sec, message.stamp.nanosec = second, nanoseconds
             self.publish(self._input, message)
             self.run(apart)
         self.run(MESSAGE_SECONDS - apart)
-        self.wait_for_late(lambda: len(self.published(start)) >= len(sent))
+        self.wait_for_late(lambda: len(self.published(start)) >= len(values))
         return [received.message for received in self.published(start)]
 
     def expect_readings(
@@ -144,8 +148,8 @@ class NodeHarness(AutoHarness):
         Args:
             count: the number of readings.
             period: the expected period in s.
-            shape: mean and swing in degrees Celsius; none for the defaults.
-            reading: another formula than the contract's, for checks that do not test the formula.
+            shape: mean and swing in degrees Celsius; empty for the defaults.
+            reading: a formula other than the contract's, for checks that do not test the formula.
         """
         start, seconds = self.seconds, (count + 0.5) * period
         self.run(seconds)
@@ -157,10 +161,10 @@ class NodeHarness(AutoHarness):
                 raise CheckFailed(
                     f"Reading number {number} was {celsius:.2f} °C, it should have been {expected:.2f} °C."
                 )
-        published = round(self.rate(self._output, start) * seconds)
+        published_count = round(self.rate(self._output, start) * seconds)
         expect(
-            abs(published - count) <= 1,
-            f"In {seconds:.1f} s it published {published} readings, instead of {count}.",
+            abs(published_count - count) <= 1,
+            f"In {seconds:.1f} s it published {published_count} readings, instead of {count}.",
             fraction=0.5,
         )
 
@@ -174,12 +178,12 @@ class NodeHarness(AutoHarness):
         return next(fits, 0)
 
     def try_to_set(self, **values: parameters.Value) -> None:
-        """Try to change the node's parameters. It may refuse, or have no parameter services."""
+        """Try to change the node's parameters. The node may refuse, or have no parameter services."""
         with suppress(CheckFailed):
             parameters.NodeParameters(self, f"/{self._name}").change(values)
 
     def expect_in_graph(self) -> None:
-        """Fail the check unless the node has its name, and its topics with their types."""
+        """Fail the check unless the node has the right name, and the right topics with the right types."""
         nodes = self.nodes()
         message = f"The node is called {', '.join(nodes)}, it should be /{self._name}."
         expect(f"/{self._name}" in nodes, message, fraction=0.5)
@@ -214,7 +218,7 @@ def refuses(workspace: Workspace, types: Types, name: str, **values: float) -> b
     """Return whether a node does not start with these parameters.
 
     Raises:
-        CheckFailed: it ended without an exception and with exit status 0.
+        CheckFailed: the node ended without an exception and with exit status 0.
     """
     try:
         with NodeHarness(workspace, types, name, is_subscribed=True, **values):

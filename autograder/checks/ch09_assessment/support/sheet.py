@@ -8,7 +8,7 @@ from pathlib import Path
 from autograder.checking import CheckFailed, Workspace, expect
 from autograder.checks.ch09_assessment.support.contract import LETTERS, QUESTIONS, SHEET
 
-MAX_BYTES = 64 * 1024
+MAX_BYTES = 64 * 1024  # the largest sheet that is read
 _QUESTION = re.compile(r"\w+")
 QUOTES = ("'", '"')
 
@@ -50,10 +50,12 @@ def answers(workspace: Workspace) -> dict[str, str]:
     return parse(text)
 
 
-def expect_letter(given: dict[str, str], question: str) -> str:
+def expect_letter(answers_by_question: dict[str, str], question: str) -> str:
     """Return the letter that answers a question; fail the check unless it is one of the four letters."""
-    expect(bool(given.get(question)), f"There is no answer to {question}: write a line `{question}: LETTER`.")
-    letter = given[question]
+    expect(
+        bool(answers_by_question.get(question)), f"There is no answer to {question}: write a line `{question}: LETTER`."
+    )
+    letter = answers_by_question[question]
     expect(
         len(letter) == 1 and letter in LETTERS,
         f"The answer to {question} is {letter[:40]!r}, instead of one letter of {', '.join(LETTERS)}.",

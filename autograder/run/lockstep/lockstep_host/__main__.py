@@ -19,7 +19,7 @@ def main() -> None:
     read_fd, write_fd, start_ns = map(int, sys.argv[1:4])
     clock_rate, program = float(sys.argv[4]), sys.argv[5]
     sys.argv = sys.argv[5:]
-    sys.path[:2] = [str(Path(program).parent)]  # as in a Python that was started with the path of the program
+    sys.path[:2] = [str(Path(program).parent)]  # as if Python had been started with the path of the program
     host = module.Host(module.Pipes(read_fd, write_fd), start_ns, clock_rate)
     host.install()
     try:

@@ -1,7 +1,7 @@
 """Waits in real time for announced messages that have not arrived yet.
 
-Once all messages have arrived, callbacks run in the order of their creation. Otherwise they would run in the order in
-which messages happen to arrive.
+Once all messages have arrived, callbacks run in the order in which they were created. Without the wait, they would run
+in the order in which messages happen to arrive.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from .message_counts import MessageCounts, Reader, belongs_to
 
 LOSS_SECONDS = 5.0  # s of real time without progress, after which announced messages count as lost
-OVERFLOW_SECONDS = 0.3  # s of real time to wait for more messages than a queue holds, of which DDS drops some
+OVERFLOW_SECONDS = 0.3  # the same if more messages were announced than the queue holds, because DDS drops some of them
 
 UnreadReaders = list[tuple[Reader, Any]]
 """Readers with unread messages, each with its entity."""
@@ -27,7 +27,7 @@ class Arrivals:
 
     Attributes:
         lost: channels on which announced messages did not arrive. The host replaces the list when it has reported it.
-        may_come_late: whether any message was ever lost. A busy machine may still deliver it.
+        may_come_late: whether messages count as lost. A busy machine may still deliver them.
     """
 
     def __init__(self, counts: MessageCounts) -> None:
@@ -37,7 +37,7 @@ class Arrivals:
         self._progress = 0.0
 
     def record_progress(self) -> None:
-        """Record that the program has advanced, and may have sent the messages for which it waits only now."""
+        """Record that the program has advanced. Perhaps it has only now sent the messages for which it waits."""
         self._progress = time.monotonic()
 
     def wait(self, executor: Executor) -> UnreadReaders:
@@ -49,7 +49,7 @@ class Arrivals:
         return unread_readers
 
     def drop_overdue(self, unread_readers: UnreadReaders) -> None:
-        """Count messages as lost if the wait for them was long enough."""
+        """Count messages as lost if they have not arrived in time."""
         elapsed = time.monotonic() - self._progress
         lost = [reader for reader, _ in unread_readers if elapsed > _max_wait(reader)]
         self.lost += [reader.channels[0] for reader in lost if not _overflows(reader)]

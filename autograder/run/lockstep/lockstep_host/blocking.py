@@ -1,4 +1,4 @@
-"""Makes blocking calls wait in ROS time, and reports calls that would never return as deadlocks.
+"""Makes blocking calls wait in ROS time, and reports a deadlock if a call would never return.
 
 `time.sleep` and `threading.Event.wait` are replaced. rclpy's own blocking calls use the latter: `client.call()`,
 `rate.sleep()`, `action_client.send_goal()`. In a single-threaded executor, a wait without a time-out is a deadlock,
@@ -23,12 +23,12 @@ from .tasks import awaited_future
 # A program that sleeps this often and this long between its first message and its first spin has a loop and never
 # spins. A program that has not sent anything yet may only be slow to start.
 LOOP_SLEEPS, LOOP_SLEEP_NS = 5, 10**9
-MAX_START_SLEEP_NS = 20 * 10**9
+MAX_START_SLEEP_NS = 20 * 10**9  # a program that sleeps this long in all before its first spin never spins, either
 _wait_for_event = threading.Event.wait
 
 
 class Blocking:
-    """The blocking calls of the program of one `Host`."""
+    """The blocking calls of one `Host`'s program."""
 
     def __init__(self, host: Any) -> None:
         self._host = host
@@ -66,7 +66,7 @@ class Blocking:
         return False
 
     def check(self, executor: Executor, end: int | None) -> None:
-        """Report a callback that never returns, because its callback group prevents the callback for which it waits.
+        """Report a callback that never returns, because its callback group blocks the callback for which it waits.
 
         `executor` has found nothing to do. `end` is the ROS time in ns at which its wait times out, None for never.
         """
@@ -117,7 +117,7 @@ class Blocking:
 
 
 def _waiting_call(caller: Any) -> tuple[str, str, Any]:
-    """Return the waiting call, its service or action, and the entity whose callback would end the wait."""
+    """Return the waiting call, the name of its service or action, and the entity whose callback would end the wait."""
     owner = caller.f_locals.get("self")
     if isinstance(owner, Client):
         return "client.call()", owner.service_name, owner

@@ -1,8 +1,8 @@
-"""Runs callbacks that may block in threads, of which one runs at a time.
+"""Runs callbacks that may block. Each has its own thread, but only one thread runs at a time.
 
-In rclpy's MultiThreadedExecutor, a callback may wait for another callback, as in `client.call()`, `rate.sleep()` or for
-an event. Here, too, each callback of such an executor has a thread. But each thread runs until it is done or waits, and
-then the next one runs, in the same order every time.
+In rclpy's MultiThreadedExecutor, a callback may wait for another callback, for example in `client.call()` or in
+`rate.sleep()`. So each callback of such an executor also has a thread here. But a thread runs until it is done or
+waits, and then the next one runs, in an order that is always the same.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class CallbackThreads:
         self._proceed(worker, task)
 
     def resume(self) -> bool:
-        """Let the first worker run whose condition is true, and return whether one exists.
+        """Let the first worker whose condition is true run. Return whether there is such a worker.
 
         Raises the exceptions of its task.
         """

@@ -1,9 +1,9 @@
 """Names for channels, which connect writers and readers. The host and the grader use the same names.
 
 DDS matches a writer with a reader when names and types are equal and the writer offers the quality of service that the
-reader requests. A channel's name contains all of these, so the count of a channel is the number of messages that each
-of its readers will receive. A response is sent to only one client, so its channel contains the prefix of the GUIDs of
-the client's process.
+reader requests. A channel's name contains all of these, so each of its readers will receive as many messages as are
+sent on it. A response is sent to only one client, so its channel contains the prefix of the GUIDs of the client's
+process.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from typing import Any
 
 RELIABLE, BEST_EFFORT = "reliable", "best-effort"
 TRANSIENT_LOCAL, VOLATILE = "transient_local", "volatile"
-OWN = "own"  # a placeholder for the prefix of the client's process until that is known
+OWN = "own"  # a placeholder for the prefix of the client's process until the prefix is known
 PREFIX = 12  # bytes of a GUID that identify the process
-_GUID = 16
+_GUID = 16  # bytes of a GUID
 _VALUE = object.__basicsize__  # offset of the address of the C struct in a pybind11 object
 
 
@@ -62,7 +62,7 @@ def is_topic(channel: str) -> bool:
 
 
 def response(service: str, kind: Any, prefix: str) -> str:
-    """Return the channel of a service's responses to one process, by the prefix of its GUIDs."""
+    """Return the channel of a service's responses to the process whose GUIDs have a prefix."""
     return f"{service} {type_name(kind)} response {prefix}"
 
 

@@ -1,7 +1,7 @@
 """Makes every clock that the student's code reads depend only on ROS time.
 
 The system clocks, including those of Python's `time` module, show ROS time, or time at another rate if one is given.
-Each reading takes 10 µs of their time, so that a loop that waits for time to pass ends. Other code, such as rclpy's or
+Each reading advances them by 10 µs, so that a loop that waits for time to pass ends. Other code, such as rclpy's or
 Python's own, reads the real clocks. Sleeping, with `time` or with a clock of rclpy, lets ROS time pass.
 """
 
@@ -16,7 +16,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.time import Time
 from rclpy.utilities import get_default_context
 
-READING_NS = 10_000  # time that one reading takes
+READING_NS = 10_000  # by how much each reading advances the system clocks
 _LIBRARY_PATHS = tuple({sys.prefix, sys.base_prefix, "/usr", "/opt/ros", "<frozen"})
 _clock_now = Clock.now
 _clock_sleep_until = Clock.sleep_until
@@ -29,7 +29,7 @@ class Clocks:
         ros_time: returns ROS time in nanoseconds.
         sleep: lets nanoseconds of ROS time pass, or returns False if the machine's time has to pass instead.
         host: the host's own folder, whose code reads the real clocks.
-        rate: seconds of the system clocks in a second of ROS time.
+        rate: how many seconds the system clocks advance per second of ROS time.
     """
 
     def __init__(self, ros_time: Callable[[], int], sleep: Callable[[int], bool], host: str, rate: float = 1.0) -> None:

@@ -11,15 +11,15 @@ from rclpy.clock import ClockType
 from . import channels
 from .message_counts import NOT_COUNTED, is_alive
 
-_OWN_TOPICS = NOT_COUNTED | {"/parameter_events"}  # a harness does not match these
+_OWN_TOPICS = NOT_COUNTED | {"/parameter_events"}  # endpoints on these topics are not matched with others
 
 
 def describe(nodes: list[Any]) -> dict[str, Any]:
     """Describe nodes: their endpoints by channel, each with the current number of its peers.
 
-    `writers` are pairs of a channel and the number of subscriptions. `readers` are pairs of channels and the number of
-    publishers, None if it is unknown. `clients` are pairs of a request channel and whether a server exists. `servers`
-    are request channels.
+    `writers` are pairs of a channel and the number of subscriptions. `readers` are pairs of several channels and the
+    number of publishers, None if that is unknown. `clients` are pairs of a request channel and whether a server exists.
+    `servers` are request channels.
     """
     writers: list[Any] = []
     readers: list[Any] = []

@@ -1,7 +1,7 @@
 """Computes when a program has something to do although nothing was sent to it.
 
-The times of timers and time-outs are known. Other events that may make a program run cannot be predicted. Then the
-program is due at every instant, and so it is run in every step.
+The times of timers and time-outs are known. Other events that may make a program run cannot be predicted. If they are
+possible, the program is due at every instant, and so it is run in every step.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from rclpy.clock import ClockType
 from rclpy.event_handler import EventHandler
 from rclpy.exceptions import InvalidHandle
 
-EVERY_INSTANT = 0  # a special ROS time
+EVERY_INSTANT = 0  # means "at every instant" where a ROS time is expected
 
 
 def next_due(nodes: Iterable[Any], executors: Iterable[Any], wakes: Iterable[int | None]) -> int | None:
-    """Return the ROS time in ns of the next timer or the first of `wakes`, or None if neither exists.
+    """Return the ROS time in ns of the next timer or of the first of `wakes`, or None if neither exists.
 
     It is `EVERY_INSTANT` if a coroutine waits for an unknown event, a goal may expire, a guard condition may be
     triggered, a timer does not use ROS time, or another process or a signal may make the program run.
@@ -39,9 +39,9 @@ def next_due(nodes: Iterable[Any], executors: Iterable[Any], wakes: Iterable[int
 
 
 def is_predictable(waitable: Any) -> bool:
-    """Return whether a waitable becomes ready only by counted messages, timers of `next_due` or rclpy's own logs."""
-    own_event = isinstance(waitable, EventHandler) and waitable.callback.__module__ == EventHandler.__module__
-    return own_event or isinstance(waitable, ActionServer)
+    """Return whether only counted messages, timers of `next_due` and rclpy's own logs can make a waitable ready."""
+    is_own_event = isinstance(waitable, EventHandler) and waitable.callback.__module__ == EventHandler.__module__
+    return is_own_event or isinstance(waitable, ActionServer)
 
 
 def _due(timer: Any) -> int | None:

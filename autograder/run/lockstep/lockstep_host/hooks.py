@@ -153,7 +153,7 @@ class Hooks:
             self._note("clock")
 
     def _on_new_jump_callback(self, *_: Any, **__: Any) -> None:
-        self.unpredictable = True  # it is called at each change of the time
+        self.unpredictable = True  # it is called whenever the time changes
 
     def _on_new_waitable(self, node: Any, waitable: Any, **_: Any) -> None:
         self.unpredictable |= not is_predictable(waitable)
@@ -203,13 +203,16 @@ class Hooks:
             return None
         reader = self.counts.readers.get((handle.pointer, ""))
         if reader is not None and not reader.transient_local and message[1]["source_timestamp"] < reader.matched_ns:
-            return None  # sent before the reader was matched, so that it would arrive only by chance
+            return None  # sent before the reader was matched, so its arrival depends on chance
         self.counts.count_taken(handle, "")
         return message
 
 
 def _is_ready_except_for_status(client: Any, wait_set: Any) -> bool:
-    """Take a goal's new status at once. Its queue holds one message, so the number of messages depends on chance."""
+    """Return whether a client is ready, but take a goal's new status at once.
+
+    The status has a queue of one message, so the number of messages that arrive depends on chance.
+    """
     ready = bool(_is_ready(client, wait_set))
     has_response = (
         client._is_goal_response_ready or client._is_cancel_response_ready or client._is_result_response_ready

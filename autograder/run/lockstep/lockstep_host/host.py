@@ -1,4 +1,4 @@
-"""The host, which provides ROS time and its steps for the program in this process.
+"""The host, which steps the program in this process through ROS time.
 
 The host replaces `Executor.wait_for_ready_callbacks`, which every kind of spin of rclpy calls. When the program waits
 for work and has none, the host waits for the grader's next command instead. The command `step` contains events, each
@@ -68,12 +68,12 @@ class Host:
         self.blocking = Blocking(self)
         self.clocks = Clocks(lambda: self.time, self.blocking.sleep, str(Path(__file__).parent), clock_rate)
         self._nodes: list[weakref.ref[Any]] = []
-        self._clocks: weakref.WeakSet[Any] = weakref.WeakSet()  # time sources
+        self._time_sources: weakref.WeakSet[Any] = weakref.WeakSet()
         self._log_clock = ROSClock()  # rclpy would throttle logs by the wall clock, which is much slower than steps
         self._log_clock._set_ros_time_is_active(True)
         self._log_clock.set_ros_time_override(_ros_time(start_ns))
         self._events: list[tuple[int, dict[str, int]]] = []  # the remaining events of the current step
-        self._sent: list[dict[str, int]] = []  # the messages of each finished event of the current step
+        self._sent: list[dict[str, int]] = []  # how many messages were sent in each finished event of the current step
         self._executors: weakref.WeakSet[Executor] = weakref.WeakSet()
         self._positions = TaskPositions()
         self._has_worked = self._is_stale = self._is_stepping = self._is_quitting = False
@@ -81,7 +81,7 @@ class Host:
         self._main = threading.current_thread()
 
     def install(self) -> None:
-        """Replace functions of rclpy for the program of this process."""
+        """Replace functions of rclpy for the program in this process."""
         self.hooks.install()
         self.blocking.install()
         self.clocks.install()
@@ -104,7 +104,7 @@ class Host:
     # Called by rclpy instead of its own functions.
 
     def init(self, context: Context, args: list[str] | None, **options: Any) -> None:
-        """Initialise a context with simulated time: the default one, or another one of the program."""
+        """Initialise the default context, or another context of the program, with simulated time."""
         if self.phase == "import":
             self.phase = "start"
         arguments = list(sys.argv if args is None else args)
@@ -114,7 +114,7 @@ class Host:
         """Let a new node's clock start at the time of the current step."""
         _init_time_source(source)
         source._last_time_set = _ros_time(self.time)
-        self._clocks.add(source)
+        self._time_sources.add(source)
         if node is not None:
             self._nodes.append(weakref.ref(node))
             source.attach_node(node)
@@ -209,8 +209,8 @@ class Host:
             try:
                 work = _wait_for_work(executor, timeout_sec=0, nodes=nodes, condition=condition)
             except TimeoutException:
-                # Callbacks that ran since the last call of this function may have created tasks, or taken time, so that
-                # timers are due. Only another call finds them.
+                # Callbacks that ran since the last call of this function may have created tasks, or may have taken time
+                # so that timers are due. Only another call finds these.
                 if self._is_stale or (self._has_worked and any(not task.done() for task, _, _ in executor._tasks)):
                     self._has_worked = self._is_stale = False
                     continue
@@ -288,7 +288,7 @@ class Host:
         self._positions.clear()
         now = _ros_time(nanoseconds)
         self._log_clock.set_ros_time_override(now)
-        for source in list(self._clocks):
+        for source in list(self._time_sources):
             source._last_time_set = now
             for clock in source._associated_clocks:
                 clock.set_ros_time_override(now)

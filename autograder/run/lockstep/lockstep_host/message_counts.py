@@ -19,7 +19,7 @@ from . import channels
 
 _take_message = rclpy_implementation.Subscription.take_message
 
-NOT_COUNTED = frozenset({"/rosout", "/clock"})
+NOT_COUNTED = frozenset({"/rosout", "/clock"})  # topics whose messages are not counted
 
 
 class Reader:
@@ -64,7 +64,7 @@ class MessageCounts:
     """The readers and the counts of this process.
 
     Attributes:
-        readers: the readers, by the address of the C object and its part.
+        readers: the readers, each by the address of its C object and its part.
         unreported: the number of messages on each channel that the grader does not know yet.
         kept: the number of messages that transient-local writers keep for late readers, by channel.
         unread_readers: the readers that have unread messages.
@@ -78,7 +78,7 @@ class MessageCounts:
         self.kept: Counter[str] = Counter()
         self.unread_readers: set[Reader] = set()
         self._by_channel: dict[str, list[Reader]] = {}
-        self._held_back: list[Reader] = []
+        self._held_back_readers: list[Reader] = []
         self.is_exact = True
         self.is_complete = False
 
@@ -101,11 +101,11 @@ class MessageCounts:
             self._add_unread(channel, count)
 
     def hold_back(self, channels: Iterable[str]) -> None:
-        """From now on, hold back messages that are not counted yet, on only these channels."""
-        for reader in self._held_back:
+        """From now on, hold back messages that are not counted yet on these channels, and only on these."""
+        for reader in self._held_back_readers:
             reader.held_back = False
-        self._held_back = [reader for channel in channels for reader in self._by_channel.get(channel, ())]
-        for reader in self._held_back:
+        self._held_back_readers = [reader for channel in channels for reader in self._by_channel.get(channel, ())]
+        for reader in self._held_back_readers:
             reader.held_back = True
 
     def is_silent(self, entity: Any) -> bool:
@@ -125,9 +125,9 @@ class MessageCounts:
                 self.unread_readers.discard(reader)
 
     def match(self, prefix: str, kept: dict[str, int], early: dict[str, int]) -> None:
-        """Begin to count for new readers, which are now matched with their writers.
+        """Begin to count messages for new readers, which are now matched with their writers.
 
-        The messages that transient-local writers keep, including those of this program, and early requests are unread.
+        Early requests, and the messages that transient-local writers keep in this and other programs, count as unread.
 
         Args:
             prefix: the prefix of this process's GUIDs.

@@ -1,7 +1,7 @@
-"""Tracks the positions of rclpy's coroutines.
+"""Tracks the positions at which rclpy's coroutines wait.
 
-rclpy resumes waiting coroutines again and again, without knowing what they wait for. So only their positions tell
-whether they advance.
+rclpy resumes waiting coroutines again and again, without knowing what they wait for. So only a change of its position
+shows that a coroutine has advanced.
 """
 
 from __future__ import annotations
