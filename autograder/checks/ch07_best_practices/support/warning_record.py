@@ -19,6 +19,8 @@ SLACK, REAL_SLACK = 0.15, 0.5  # s by which a time may differ, in lockstep and i
 class WarningRecord:
     """The scans that a processor received, and its warnings, with times in seconds.
 
+    What the processor logged before the record began is not part of it.
+
     Attributes:
         warnings: when the processor warned.
         blind: the times of the first and the last scan in each stretch without a distance.
@@ -28,6 +30,10 @@ class WarningRecord:
     warnings: list[float] = field(default_factory=list)
     blind: list[tuple[float, float]] = field(default_factory=list)
     _was_blind: bool = False
+    _earlier: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._earlier = count_logged(self.processor.output, "WARN")
 
     @property
     def slack(self) -> float:
@@ -67,5 +73,5 @@ class WarningRecord:
     def _run_and_record(self, seconds: float) -> None:
         """Let the processor run, and note how often it warns meanwhile."""
         self.processor.run(seconds)
-        count = count_logged(self.processor.output, "WARN") - len(self.warnings)
+        count = count_logged(self.processor.output, "WARN") - self._earlier - len(self.warnings)
         self.warnings += [self.processor.seconds] * count

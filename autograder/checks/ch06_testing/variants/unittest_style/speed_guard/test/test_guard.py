@@ -130,6 +130,14 @@ def test_parameters():
             assert harness.answer(0.5).linear.x == pytest.approx(expected, abs=1e-6)
 
 
+def test_timeout():
+    """The timeout is a parameter, too: with a long one, nothing becomes old within a second."""
+    with running_guard(timeout=30.0) as harness:
+        harness.distance(9.0)
+        assert harness.silence(1.0)
+        assert harness.answer(0.5).linear.x == 0.5
+
+
 def test_stale():
     """An old distance is forgotten."""
     with running_guard(timeout=0.15) as harness:

@@ -15,7 +15,7 @@ class SafeSpeed(unittest.TestCase):
         """The distances are refused unless 0 <= stop < slow."""
         for stop, slow in [(-1e-3, 2.0), (0.7, 0.7), (0.9, 0.2), (-2.0, -1.0)]:
             for wanted in (0.2, -0.2):
-                with self.subTest(stop=stop, slow=slow), pytest.raises(ValueError, match=r"."):
+                with self.subTest(stop=stop, slow=slow), pytest.raises(ValueError):
                     safe_speed(wanted, 5.0, stop_distance=stop, slow_distance=slow)
 
     def test_not_forward(self):

@@ -74,7 +74,8 @@ class Watchdog(Node):
     def report(self):
         """Publish the health of this moment."""
         oldest = self.seconds() - self.get_parameter('silence_timeout').value
-        report = Health(silent=sorted(name for name, time in self.arrivals.items() if time < oldest))
+        silent = sorted(name for name, time in self.arrivals.items() if time < oldest)
+        report = Health(silent=silent)
         report.header.stamp = self.get_clock().now().to_msg()
         report.level = Health.FAILED if report.silent else Health.OK
         if not report.silent and not self.newest['clearance'].valid:
