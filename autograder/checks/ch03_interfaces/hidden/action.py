@@ -13,7 +13,7 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from autograder.checking import LOCKSTEP, expect, group, hint
 from autograder.checking.drawn_cases import expect_each
 from autograder.checking.probes import message_period
-from autograder.checks.ch03_interfaces.hidden.goals import INVALID_GOALS, PLAIN_DISTANCE, VALID_GOALS
+from autograder.checks.ch03_interfaces.hidden.goals import EDGE, INVALID_GOALS, PLAIN_DISTANCE, VALID_GOALS
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import MAX_DISTANCE, MAX_SPEED
 from autograder.checks.ch03_interfaces.support.driver import (
@@ -234,7 +234,8 @@ def test_drive_rejects(free_driver: Driver, draw: random.Random) -> None:
         message = f"Accepted was a goal of {distance:.7g} m at {speed:.7g} m/s."
         expect(not goal.accepted, message, fraction=0.25 if distance == PLAIN_DISTANCE else 0.4)
 
-    judge((PLAIN_DISTANCE, 0.2))
+    for goal in ((PLAIN_DISTANCE, 0.2), (MAX_DISTANCE + EDGE, 0.2), (1.0, MAX_SPEED + EDGE)):
+        judge(goal)
     expect_each(INVALID_GOALS, judge, draw, count=16 if free_driver.time == LOCKSTEP else 8)
     valid_goal = free_driver.send(1.0, 0.2)
     if valid_goal.accepted:

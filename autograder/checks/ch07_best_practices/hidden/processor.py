@@ -106,7 +106,9 @@ def test_filtered(workspace: Workspace, processor: Processor, draw: random.Rando
 @hint("Publish the message that came, with other ranges.", "A new LaserScan() has no header and no angles.")
 def test_rest_untouched(processor: Processor, draw: random.Random) -> None:
     """Header, angles, times, limits and intensities come out as they went in."""
-    sent_scans = draw_cases(messages(), draw, 25)
+    with_phantoms = scan([0.05, 1.0, nan, 9.0])
+    with_phantoms.intensities = [10.0, 20.0, 30.0, 40.0]
+    sent_scans = [*draw_cases(messages(), draw, 25), with_phantoms]
     filtered, _ = processor.send_scans(*sent_scans)
     expect(len(filtered) == len(sent_scans), f"{len(sent_scans)} scans went in, {len(filtered)} came out.")
 

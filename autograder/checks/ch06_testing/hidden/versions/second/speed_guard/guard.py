@@ -26,7 +26,7 @@ class SpeedGuard(Node):
         self.out = self.create_publisher(Twist, "cmd_vel", 10)
         self.create_subscription(Twist, "cmd_vel_raw", self.answer, 10)
         self.create_subscription(Range, "distance", self.measure, SENSOR)
-        self.create_timer(0.04, self.watch)
+        self.create_timer(0.04, self.check_silence)
 
     def nanoseconds(self):
         """Return the ROS time in nanoseconds."""
@@ -54,7 +54,7 @@ class SpeedGuard(Node):
         )
         self.out.publish(result)
 
-    def watch(self):
+    def check_silence(self):
         """Publish one stop command after a silence."""
         if self.newest is not None and self.nanoseconds() - self.newest > self.patience:
             self.out.publish(Twist())
