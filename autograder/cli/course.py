@@ -8,7 +8,7 @@ import click
 
 from autograder import course_paths
 from autograder.author.course.chapter_rules import read_chapter, require_checks
-from autograder.author.course.course_rules import broken_course, broken_course_file
+from autograder.author.course.course_rules import course_file_findings, course_findings
 from autograder.author.course.sync import chapters, sync_chapter
 from autograder.author.course.tables import course_page, titles
 from autograder.author.verification.checks_page import checks_page
@@ -45,10 +45,10 @@ def check(names: tuple[str, ...]) -> None:
     Nothing is graded: `autograder verify` does that. Without an ID, the whole course is checked. The exit status is 1
     if there are problems.
     """
-    if not (problems := list(broken_course_file())):
+    if not (problems := list(course_file_findings())):
         parsed_chapters = {chapter.assignment: read_chapter(chapter) for chapter in chapters(names)}
         problems = [finding for chapter in parsed_chapters.values() for finding in chapter.findings]
-        problems += broken_course(parsed_chapters, whole=not names)
+        problems += course_findings(parsed_chapters, whole=not names)
     for line in dict.fromkeys(map(str, problems)):
         echo(line)
     sys.exit(1 if problems else 0)

@@ -1,9 +1,9 @@
 """Finds the accounts in the names of GitHub Classroom's clones: ASSIGNMENT-ACCOUNT, where both may contain hyphens.
 
 The account is everything after the assignment's name: `hw-ada-bob` does not belong to bob. `gh classroom clone` puts
-the clones in a folder ASSIGNMENT-submissions. In any other folder, the assignment's name is the prefix that most clones
-share. If several prefixes are equally frequent, it is the one that most of the roster's accounts follow, and at least
-two do.
+the clones in a folder named ASSIGNMENT-submissions. In any other folder, the assignment's name is the prefix that most
+clones share. If several prefixes are equally frequent, it is the one that most of the roster's accounts follow, and at
+least two do.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Determines how late a submission is, and which share of its marks it keeps.
+"""Determines how late a submission is, and what share of its marks it keeps.
 
 The deadline is `until` in the student's row of the table of extensions, or the due time plus `days` in that row.
 

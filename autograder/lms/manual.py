@@ -87,12 +87,12 @@ def _with_marks(result: Result, marks: Mapping[str, ManualMark], cells: Mapping[
     if missing_names:
         sentence = f"Not marked yet: {', '.join(missing_names)}."
         return replace(result, status=Status.UNCLEAR, diagnosis=Diagnosis(Kind.UNCLEAR, sentence))
-    checks = [_check(name, max_points, marks[name]) for name, max_points in cells.items()]
+    checks = [_check_result(name, max_points, marks[name]) for name, max_points in cells.items()]
     max_points = math.fsum((result.max_score, *cells.values()))
     return replace(result, checks=(*result.checks, *checks), max_score=max_points)
 
 
-def _check(name: str, max_points: float, mark: ManualMark) -> CheckResult:
+def _check_result(name: str, max_points: float, mark: ManualMark) -> CheckResult:
     points = mark.points or 0.0
     return CheckResult(
         id=name,

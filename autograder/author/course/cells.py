@@ -22,7 +22,7 @@ from nbformat import NotebookNode
 from autograder import course_paths
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding
-from autograder.author.course.schema_sentences import broken_schema
+from autograder.author.course.schema_sentences import schema_violations
 from autograder.author.course.solution_markers import mark_functions, mark_lines
 from autograder.probes.given_files import strip_licence
 
@@ -101,15 +101,15 @@ def metadata(node: NotebookNode) -> Mapping[str, Any]:
     """Return the `course` metadata of a cell or notebook. Raises CourseError if the metadata violate the schema."""
     course: Mapping[str, Any] = node.metadata.get("course", {})
     if not _METADATA.is_valid(course):
-        problems = "; ".join(sentence for _, sentence in broken_schema(course, _SCHEMA, METADATA_NAME))
+        problems = "; ".join(sentence for _, sentence in schema_violations(course, _SCHEMA, METADATA_NAME))
         raise CourseError(f"the metadata are invalid: {problems}")
     return course
 
 
-def broken_metadata(name: str, notebook: NotebookNode) -> Iterator[Finding]:
+def metadata_findings(name: str, notebook: NotebookNode) -> Iterator[Finding]:
     """Yield the problems in the `course` metadata of a notebook, which findings call `name`, and of its cells."""
     for cell, node in ((None, notebook), *((cell.id, cell) for cell in notebook.cells)):
-        for _, sentence in broken_schema(node.metadata.get("course", {}), _SCHEMA, METADATA_NAME):
+        for _, sentence in schema_violations(node.metadata.get("course", {}), _SCHEMA, METADATA_NAME):
             yield Finding(name, cell, f"the metadata are invalid: {sentence}")
 
 

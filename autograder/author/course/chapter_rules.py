@@ -15,13 +15,13 @@ from pathlib import Path
 from nbformat import NotebookNode
 
 from autograder import course_paths
-from autograder.author.course.cells import broken_metadata, is_graded
-from autograder.author.course.contract_rules import broken_cells, broken_coverage
+from autograder.author.course.cells import is_graded, metadata_findings
+from autograder.author.course.contract_rules import cells_findings, coverage_findings
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding, display_path
-from autograder.author.course.mutant_rules import broken_mutants, unproven_checks
-from autograder.author.course.notebook_rules import broken_rules
-from autograder.author.course.reference_rules import broken_packages, broken_python, broken_variants
+from autograder.author.course.mutant_rules import mutants_findings, unproven_checks
+from autograder.author.course.notebook_rules import rules_findings
+from autograder.author.course.reference_rules import packages_findings, python_findings, variants_findings
 from autograder.author.course.suite_rules import read_suite
 from autograder.author.course.sync import Chapter, find_outdated
 from autograder.author.course.tables import titles_of
@@ -73,11 +73,11 @@ def read_chapter(chapter: Chapter) -> ParsedChapter:
     name = chapter.notebook_path.name
     if notebook is not None:
         text = chapter.notebook_path.read_text(encoding="utf-8")
-        invalid_metadata = [*broken_metadata(name, notebook)]
+        invalid_metadata = [*metadata_findings(name, notebook)]
         if invalid_metadata:
-            findings = [*invalid_metadata, *broken_rules(name, notebook)]
+            findings = [*invalid_metadata, *rules_findings(name, notebook)]
         else:
-            findings = _broken_notebook(chapter, notebook, parsed_checks)
+            findings = _notebook_findings(chapter, notebook, parsed_checks)
         findings = [with_line(finding, text) if finding.file == name else finding for finding in findings]
         notebook = None if invalid_metadata else notebook
     path = display_path(chapter.notebook_path)
@@ -98,7 +98,7 @@ def read_checks(assignment: str) -> ParsedChecks:
     folder = course_paths.CHECKS / f"ch{assignment}"
     parsed_suites = {kind: read_suite(assignment, kind) for kind in SUITE_KINDS}
     findings = [finding for suite in parsed_suites.values() for finding in suite.findings]
-    findings += broken_python(folder)
+    findings += python_findings(folder)
     locations = {
         f"{kind} {id}": location for kind, suite in parsed_suites.items() for id, location in suite.locations.items()
     }
@@ -115,9 +115,9 @@ def read_checks(assignment: str) -> ParsedChecks:
     ids = None if checks is None else [check.id for check in checks if check.visibility is Visibility.HIDDEN]
     if ids is None and hidden_suite.is_complete:
         ids = [*hidden_suite.locations]
-    findings += broken_packages(sources)
-    findings += broken_mutants(folder, ids, sources)
-    findings += broken_variants(folder / "variants", sources)
+    findings += packages_findings(sources)
+    findings += mutants_findings(folder, ids, sources)
+    findings += variants_findings(folder / "variants", sources)
     return ParsedChecks(tuple(findings), checks, points, locations)
 
 
@@ -166,20 +166,20 @@ def _read_notebook(chapter: Chapter) -> tuple[NotebookNode | None, list[Finding]
         return None, [Finding(name, None, message.removeprefix(f"{name} ").removeprefix(f"{name}: "), line)]
 
 
-def _broken_notebook(chapter: Chapter, notebook: NotebookNode, parsed_checks: ParsedChecks) -> list[Finding]:
+def _notebook_findings(chapter: Chapter, notebook: NotebookNode, parsed_checks: ParsedChecks) -> list[Finding]:
     """Return the problems in a notebook. Rules that need its checks are skipped if the checks are invalid."""
     if not notebook.cells:
-        return broken_rules(chapter.notebook_path.name, notebook)
+        return rules_findings(chapter.notebook_path.name, notebook)
     name = chapter.notebook_path.name
     rules: Sequence[Callable[[], Iterable[Finding]]] = (
         lambda: find_outdated(chapter, notebook, parsed_checks.points),
-        lambda: broken_rules(name, notebook),
+        lambda: rules_findings(name, notebook),
         lambda: outdated_time_sentence(name, notebook),
-        lambda: broken_cells(name, notebook),
+        lambda: cells_findings(name, notebook),
         lambda: (
             ()
             if not parsed_checks.checks
-            else broken_coverage(name, notebook, parsed_checks.checks, parsed_checks.locations)
+            else coverage_findings(name, notebook, parsed_checks.checks, parsed_checks.locations)
         ),
     )
     return [finding for rule in rules for finding in _apply_rule(name, rule)]

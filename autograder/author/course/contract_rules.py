@@ -19,13 +19,13 @@ from autograder.suite.contract import requirements
 from autograder.suite.quotation import quote
 
 
-def broken_cells(name: str, notebook: NotebookNode) -> Iterator[Finding]:
+def cells_findings(name: str, notebook: NotebookNode) -> Iterator[Finding]:
     """Yield the problems with the requirements in the cells of a notebook, which findings call `name`."""
     for cell in in_form(notebook, Form.RELEASED).cells:
-        yield from (Finding(name, cell.id, message) for message in _broken_cell(cell))
+        yield from (Finding(name, cell.id, message) for message in _cell_findings(cell))
 
 
-def broken_coverage(
+def coverage_findings(
     name: str, notebook: NotebookNode, checks: Sequence[Check], locations: Mapping[str, tuple[str, int]]
 ) -> Iterator[Finding]:
     """Yield the requirements that no check covers, and the checks that cover no requirement of the notebook.
@@ -51,7 +51,7 @@ def broken_coverage(
             yield Finding(file, None, f"the {check.visibility.value} check {check.id!r} {message}", line)
 
 
-def _broken_cell(cell: NotebookNode) -> Iterator[str]:
+def _cell_findings(cell: NotebookNode) -> Iterator[str]:
     """Yield the problems with the requirements of a released cell."""
     course = metadata(cell)
     contract, explains = course.get("contract", {}), course.get("explains", [])

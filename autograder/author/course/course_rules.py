@@ -16,22 +16,22 @@ from autograder.author.course.yaml_files import read_yaml
 from sim import WorldError, load_world
 
 
-def broken_course_file() -> tuple[Finding, ...]:
+def course_file_findings() -> tuple[Finding, ...]:
     """Return the problems in the current `course.yaml`. Reading any other part of the course requires this file."""
     root = Path(os.environ.get(course_paths.COURSE_VARIABLE) or course_paths.ROOT)
     path = root / course_paths.COURSE_FILE
     return read_yaml(path, label=str(path)).findings if path.is_file() else ()
 
 
-def broken_course(parsed_chapters: Mapping[str, ParsedChapter], *, whole: bool) -> list[Finding]:
+def course_findings(parsed_chapters: Mapping[str, ParsedChapter], *, whole: bool) -> list[Finding]:
     """Return the problems of the course outside its chapters.
 
     Args:
-        parsed_chapters: the parsed chapters, by their names.
+        parsed_chapters: the parsed chapters, by name.
         whole: whether these are all chapters of the course. If not, rules that need all chapters are skipped.
     """
-    findings = list(_broken_coverage(parsed_chapters, whole))
-    return [*_misnamed_folders(), *_broken_worlds(), *findings] if whole else findings
+    findings = list(_coverage_findings(parsed_chapters, whole))
+    return [*_misnamed_folders(), *_worlds_findings(), *findings] if whole else findings
 
 
 def _misnamed_folders() -> Iterator[Finding]:
@@ -49,7 +49,7 @@ def _misnamed_folders() -> Iterator[Finding]:
             yield Finding(display_path(folder), None, f"contains checks of {name!r}, but this chapter does not exist")
 
 
-def _broken_worlds() -> Iterator[Finding]:
+def _worlds_findings() -> Iterator[Finding]:
     for path in sorted(course_paths.WORLDS.glob("*.yaml")) if course_paths.WORLDS.is_dir() else ():
         try:
             if "image:" not in path.read_text(encoding="utf-8"):  # otherwise it is a map for map_server
@@ -58,7 +58,7 @@ def _broken_worlds() -> Iterator[Finding]:
             yield Finding(display_path(path), None, f"{error.problem}. {error.remedy}", error.line)
 
 
-def _broken_coverage(parsed_chapters: Mapping[str, ParsedChapter], whole: bool) -> Iterator[Finding]:
+def _coverage_findings(parsed_chapters: Mapping[str, ParsedChapter], whole: bool) -> Iterator[Finding]:
     """Yield the differences between the syllabus and the readable chapters."""
     path = course_paths.course().root / course_paths.course().syllabus
     if not path.is_file():

@@ -14,7 +14,7 @@ from autograder.author.course.yaml_files import YamlFile, read_yaml
 MUTANTS, SURVIVORS, SNAPSHOT = "mutants.yaml", "survivors.yaml", "mutants.snapshot.yaml"
 
 
-def broken_mutants(folder: Path, checks: Collection[str] | None, sources: Collection[str]) -> Iterator[Finding]:
+def mutants_findings(folder: Path, checks: Collection[str] | None, sources: Collection[str]) -> Iterator[Finding]:
     """Yield the problems in a chapter's mutant files.
 
     Args:
@@ -36,7 +36,7 @@ def broken_mutants(folder: Path, checks: Collection[str] | None, sources: Collec
         if checks is not None and "check" in entry and check not in checks:
             message = f"the hidden suite has no check `{check}`: {suggestion(check, checks)}"
             yield file.finding((*path, "check"), message)
-        yield from _broken_edits(file, path, entry, sources)
+        yield from _edits_findings(file, path, entry, sources)
 
 
 def unproven_checks(folder: Path, checks: Collection[str]) -> Iterator[Finding]:
@@ -76,7 +76,9 @@ def _recorded_failures(row: Any, checks: Collection[str]) -> Collection[str]:
     return checks if failed_checks == "all" else failed_checks
 
 
-def _broken_edits(file: YamlFile, path: KeyPath, entry: dict[str, Any], sources: Collection[str]) -> Iterator[Finding]:
+def _edits_findings(
+    file: YamlFile, path: KeyPath, entry: dict[str, Any], sources: Collection[str]
+) -> Iterator[Finding]:
     """Yield the problems in the edits of a mutant. Each edit applies to the result of the previous ones."""
     texts: dict[str, str | None] = {}
     edits = entry.get("edits")

@@ -20,7 +20,7 @@ _IMG = re.compile(r"<img\b[^>]*>", re.IGNORECASE)
 _ALT = re.compile(r"""\balt=(["'])\s*[^"'\s]""", re.IGNORECASE)
 
 
-def broken_rules(name: str, notebook: NotebookNode) -> list[Finding]:
+def rules_findings(name: str, notebook: NotebookNode) -> list[Finding]:
     """Return the rules that a source notebook with this file name breaks."""
     try:
         nbformat.validate(notebook)

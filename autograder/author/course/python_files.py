@@ -62,7 +62,7 @@ def decorator_name(decorator: ast.expr) -> str:
 
 
 def decorators(function: Function) -> dict[str, ast.expr]:
-    """Return the decorators of a function by their names."""
+    """Return the decorators of a function by name."""
     return {decorator_name(decorator): decorator for decorator in function.decorator_list}
 
 

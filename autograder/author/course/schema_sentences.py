@@ -32,7 +32,7 @@ INSTANCE_NAMES = (
 )
 
 
-def broken_schema(data: Any, schema: Mapping[str, Any], whole: str = "the file") -> list[tuple[KeyPath, str]]:
+def schema_violations(data: Any, schema: Mapping[str, Any], whole: str = "the file") -> list[tuple[KeyPath, str]]:
     """Return a key path and a sentence for each part of the data that violates the schema.
 
     Sentences refer to the data as a whole by the text `whole`, and to a part by its key path.

@@ -40,7 +40,7 @@ class ParsedSuite:
 
     Attributes:
         findings: its problems.
-        locations: file and line of each check, by its id.
+        locations: file and line of each check, by id.
         sources: the folders of the reference that the suite grades, as far as they are known.
         is_complete: whether `locations` contains every check.
     """
@@ -63,13 +63,13 @@ def read_suite(assignment: str, kind: str) -> ParsedSuite:
     files = {path.stem: read_python(path) for path in sorted(folder.glob("*.py")) if path.name not in HELPERS}
     findings = [*init.findings, *(finding for file in files.values() for finding in file.findings)]
     if not init.findings:
-        findings += _broken_settings(init, folder, files)
+        findings += _settings_findings(init, folder, files)
     listed_modules = _strings(constants.get("MODULES"))
     in_order = [name for name in listed_modules if name in files] or list(files)
     incomplete_modules = [name for name in in_order if files[name].findings or _has_tables(files[name])]
     locations: dict[str, tuple[str, int]] = {}
     for name in in_order:
-        findings += _broken_checks(files[name], locations, any(map(_has_tables, files.values())))
+        findings += _checks_findings(files[name], locations, any(map(_has_tables, files.values())))
     findings += unknown_fixtures(folder, [files[name] for name in in_order])
     sources = _strings(constants.get("PACKAGES")) + _strings(constants.get("FOLDERS"))
     return ParsedSuite(
@@ -77,7 +77,7 @@ def read_suite(assignment: str, kind: str) -> ParsedSuite:
     )
 
 
-def _broken_settings(file: PythonFile, folder: Path, modules: dict[str, PythonFile]) -> Iterator[Finding]:
+def _settings_findings(file: PythonFile, folder: Path, modules: dict[str, PythonFile]) -> Iterator[Finding]:
     """Yield the problems in the `__init__.py` of a suite."""
     values = dict(file.constants())
     for name, value in values.items():
@@ -114,11 +114,11 @@ def _broken_settings(file: PythonFile, folder: Path, modules: dict[str, PythonFi
                 yield module.finding(first_check, message)
 
 
-def _broken_checks(file: PythonFile, locations: dict[str, tuple[str, int]], has_tables: bool) -> Iterator[Finding]:
+def _checks_findings(file: PythonFile, locations: dict[str, tuple[str, int]], has_tables: bool) -> Iterator[Finding]:
     """Yield the problems in a module's declarations of checks, and add the location of each check to `locations`."""
     for node in file.tree.body:
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
-            yield from _broken_dependencies(file, node.value, locations, None, has_tables)
+            yield from _dependencies_findings(file, node.value, locations, None, has_tables)
     for function in file.functions():
         call = declaration(function)
         if call is None:
@@ -147,11 +147,11 @@ def _broken_checks(file: PythonFile, locations: dict[str, tuple[str, int]], has_
         if id in locations:
             location = "{}:{}".format(*locations[id])
             yield file.finding(function, f"two checks are called `{id}`: the other one is in {location}")
-        yield from _broken_dependencies(file, call, locations, id, has_tables)
+        yield from _dependencies_findings(file, call, locations, id, has_tables)
         locations.setdefault(id, (file.label, function.lineno))
 
 
-def _broken_dependencies(
+def _dependencies_findings(
     file: PythonFile, call: ast.Call, locations: dict[str, tuple[str, int]], id: str | None, has_tables: bool
 ) -> Iterator[Finding]:
     """Yield a finding for each check that a declaration names but that is not declared before it."""

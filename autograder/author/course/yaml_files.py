@@ -11,7 +11,7 @@ import yaml
 
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding, display_path
-from autograder.author.course.schema_sentences import KeyPath, broken_schema, file_schema
+from autograder.author.course.schema_sentences import KeyPath, file_schema, schema_violations
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # equivalent; the C version is ten times as fast
 
@@ -66,7 +66,7 @@ def read_yaml(path: Path, *, label: str = "", schema: str = "") -> YamlFile:
     duplicates = [] if root is None else list(_walk(root, (), lines))
     file = YamlFile(label, data, lines)
     problems = [(key, f"`{key[-1]}` occurs twice: only the last one would count") for key in duplicates]
-    problems += broken_schema(data, file_schema(schema or path.name))
+    problems += schema_violations(data, file_schema(schema or path.name))
     return replace(file, findings=tuple(file.finding(key, message) for key, message in problems))
 
 

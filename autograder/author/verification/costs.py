@@ -106,11 +106,11 @@ def _cells(cost: Cost) -> Iterator[str]:
 def _cost(mutant: Mutant, result: Result) -> Cost:
     not_passed = [check for check in result.checks if check.outcome is not Outcome.PASSED]
     own_check = next(check for check in result.checks if check.id == mutant.check)
-    broken_requirements = dict.fromkeys(
+    requirements_findings = dict.fromkeys(
         name for check in not_passed if check.outcome is Outcome.FAILED for name in check.holds
     )
     lost = _points(not_passed)
-    cost = Cost(result.assignment, mutant.id, own_check.id, own_check.max_points, lost, tuple(broken_requirements))
+    cost = Cost(result.assignment, mutant.id, own_check.id, own_check.max_points, lost, tuple(requirements_findings))
     return replace(cost, reason=_reason(mutant, result, own_check, not_passed)) if cost.is_expensive else cost
 
 

@@ -63,11 +63,11 @@ class GeneratedMutant:
         for file, text in self.texts().items():
             old, new = (course_paths.SOLUTIONS / file).read_text(encoding="utf-8").splitlines(), text.splitlines()
             matcher = difflib.SequenceMatcher(None, old, new, autojunk=False)
-            for tag, first, last, new_first, new_last in matcher.get_opcodes():
+            for tag, first, end, new_start, new_end in matcher.get_opcodes():
                 if tag != "equal":
                     diff_lines += [f"{file}:{first + 1}"]
-                    diff_lines += [f"- {line.strip()}" for line in old[first:last]]
-                    diff_lines += [f"+ {line.strip()}" for line in new[new_first:new_last]]
+                    diff_lines += [f"- {line.strip()}" for line in old[first:end]]
+                    diff_lines += [f"+ {line.strip()}" for line in new[new_start:new_end]]
         return "\n".join(diff_lines)
 
 
@@ -94,7 +94,7 @@ def generated_mutants(assignment: str) -> GeneratedMutants:
                 omitted_count += 1
                 continue
             meanings.add(meaning)
-            mutant = _named(file, function, operator, changes, text)
+            mutant = _make_mutant(file, function, operator, changes, text)
             assert mutant.id not in mutants, f"two mutants are called {mutant.id}"
             mutants[mutant.id] = mutant
     return GeneratedMutants((*mutants.values(), *_pairs(list(mutants.values()))), omitted_count)
@@ -138,7 +138,9 @@ def mutations(file: str, text: str, functions: frozenset[str] | None) -> Iterato
     yield from (("", mutation) for mutation in wall_time(source, nodes))
 
 
-def _named(file: str, function: str, operator: str, changes: tuple[Replacement, ...], text: str) -> GeneratedMutant:
+def _make_mutant(
+    file: str, function: str, operator: str, changes: tuple[Replacement, ...], text: str
+) -> GeneratedMutant:
     """Return a mutant whose id depends on the lines around its change, so that it stays the same when lines move."""
     data = text.encode()
     name_digest = hashlib.sha256(f"{file} {function} {operator}".encode())

@@ -67,7 +67,7 @@ class ChapterMutationResult:
 
 
 def reasons(assignment: str, generated: GeneratedMutants) -> dict[str, str]:
-    """Return the reasons why generated mutants of a chapter may survive, by their ids.
+    """Return the reasons why generated mutants of a chapter may survive, by id.
 
     Raises:
         CourseError: `survivors.yaml` is not YAML, or violates its schema.

@@ -71,8 +71,8 @@ def verify_zero(result: Result) -> str:
     """Describe why an untouched student release scores points or is broken, or return an empty string."""
     if result.score:
         return f"it scores {result.score:g}"
-    broken_diagnoses = BROKEN if suites.hidden(result.assignment).build_may_fail else BROKEN | NOT_BUILT
-    return f"students get it broken: {result.diagnosis.sentence}" if result.diagnosis.kind in broken_diagnoses else ""
+    diagnoses_findings = BROKEN if suites.hidden(result.assignment).build_may_fail else BROKEN | NOT_BUILT
+    return f"students get it broken: {result.diagnosis.sentence}" if result.diagnosis.kind in diagnoses_findings else ""
 
 
 def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozenset()) -> str:

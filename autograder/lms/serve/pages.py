@@ -48,7 +48,7 @@ def sections(
 ) -> list[Section]:
     """Return a student's assignments, with the hand-ins of each.
 
-    `positions` describes the position of each ungraded hand-in in the queue, by its number.
+    `positions` maps the number of each ungraded hand-in to a text that says where it is in the queue.
     """
     student_sections = []
     for name, rules in settings.assignments.items():

@@ -29,8 +29,10 @@ from autograder.checks.ch03_interfaces.support.driver_qos import expect_volatile
 check = group("action")
 SERVER_CHECK, MOTION_CHECK = ("drive_serves",), ("drive_moves",)
 SLACK = 0.02  # m, and m/s: 10 % of the default speed
-PUSH = 0.2  # m of a push, which the robot drives again within a second
-SOON = 0.25  # s after a push: feedback has come, and less than half of the push has been driven again
+PUSH = 0.2  # m that the robot is pushed back; it makes up for them within a second
+FEEDBACK_SECONDS = (
+    0.25  # s after a push: feedback has arrived, and the robot has made up for less than half of the push
+)
 SILENCE = 2.0  # s without odometry before a goal
 DISCOVERY_SECONDS = 5.0  # s of real time until an action is in the graph
 SHORT_OF, GOAL, BEYOND = 0.3055, 0.308, 0.3095  # m: just short of the goal, the goal, just beyond it
@@ -156,12 +158,14 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     placed_driver.roll(goal, LONG_SECONDS, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.6)
     peak, push_time = math.dist((x, y), (placed_driver.x, placed_driver.y)), placed_driver.seconds
     placed_driver.shift(-PUSH)
-    placed_driver.finish(goal, LONG_SECONDS, f"With a way of some metres to drive, and pushed back by {PUSH} m")
+    placed_driver.finish(goal, LONG_SECONDS, f"On a drive of a few metres, pushed back by {PUSH} m on the way")
     driven = math.dist((x, y), (placed_driver.x, placed_driver.y))
     expect(
         abs(goal.result.driven - driven) <= 0.1, f"The result says {goal.result.driven:.2f} m, it was {driven:.2f} m."
     )
-    distances = [item.message.driven for item in goal.feedback if push_time < item.seconds <= push_time + SOON]
+    distances = [
+        item.message.driven for item in goal.feedback if push_time < item.seconds <= push_time + FEEDBACK_SECONDS
+    ]
     x, y = placed_driver.x, placed_driver.y
     goal = placed_driver.start(1.0, 0.5)
     placed_driver.roll(goal, LONG_SECONDS, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.5)
@@ -231,7 +235,7 @@ def test_drive_rejects(free_driver: Driver, draw: random.Random) -> None:
         goal = free_driver.send(distance, speed)
         if goal.accepted:
             free_driver.abandon(goal)
-        message = f"Accepted was a goal of {distance:.7g} m at {speed:.7g} m/s."
+        message = f"A goal of {distance:.7g} m at {speed:.7g} m/s was accepted."
         expect(not goal.accepted, message, fraction=0.25 if distance == PLAIN_DISTANCE else 0.4)
 
     for goal in ((PLAIN_DISTANCE, 0.2), (MAX_DISTANCE + EDGE, 0.2), (1.0, MAX_SPEED + EDGE)):

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from autograder.checking import LOCKSTEP, REAL, expect, group, hint
 from autograder.checking.drawn_cases import expect_each
 from autograder.checks.ch03_interfaces.hidden.trips import (
-    NO_PERCENTAGES,
+    INVALID_PERCENTAGES,
     Trip,
     answers,
     any_trips,
@@ -75,7 +75,7 @@ def test_trip_unknown_battery(silent_reporter: Reporter, reporter: Reporter, dra
         situation = f"Since the percentage is {percentage:.7g}, which is not from 0 to 1"
         _expect_answer(reporter, Trip(UNKNOWN, (10.0,)), situation, fraction=0.75)
 
-    expect_each(NO_PERCENTAGES, judge, draw, count=_case_count(reporter, 4))
+    expect_each(INVALID_PERCENTAGES, judge, draw, count=_case_count(reporter, 4))
 
 
 @check(points=2, covers="trip-rule", needs=SERVICE_CHECK, after=("status_battery",))

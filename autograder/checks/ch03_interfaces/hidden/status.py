@@ -11,7 +11,7 @@ from sensor_msgs.msg import BatteryState
 from autograder.checking import LOCKSTEP, ReceivedMessage, expect, group, hint
 from autograder.checking.drawn_cases import expect_each
 from autograder.checking.probes import late_joiner, message_period
-from autograder.checks.ch03_interfaces.hidden.trips import NO_PERCENTAGES, PERCENTAGES, whole_percents
+from autograder.checks.ch03_interfaces.hidden.trips import INVALID_PERCENTAGES, PERCENTAGES, whole_percents
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import UNKNOWN
 from autograder.checks.ch03_interfaces.support.driver_qos import expect_volatile
@@ -191,7 +191,7 @@ def test_status_bad_battery(reporter: Reporter, draw: random.Random) -> None:
     """A percentage that is nan or outside 0 to 1 is unknown."""
     _expect_level(reporter, math.nan, before=0.5)
     expect_each(
-        NO_PERCENTAGES,
+        INVALID_PERCENTAGES,
         lambda drawn: _expect_level(reporter, drawn, before=0.5, fraction=0.5 * (drawn > 2.0)),
         draw,
         count=_case_count(reporter, 8),

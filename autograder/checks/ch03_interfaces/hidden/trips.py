@@ -23,7 +23,7 @@ class Trip:
         level: the battery's level, in whole percent.
         excess: the charge minus the level in percent, between -0.5 and 0.5.
         legs: the lengths of the legs, in m.
-        reserve: percent that must be left.
+        reserve: the charge that must remain at the end of the trip, in percent.
     """
 
     level: int
@@ -57,13 +57,13 @@ def whole_percents(percentage: float) -> set[int]:
 
 # Multiples of 0.001, and half percents that float32 represents exactly.
 PERCENTAGES = st.integers(0, 1000).map(lambda number: number / 1000) | st.sampled_from((0.125, 0.375, 0.625, 0.875))
-NO_PERCENTAGES = st.sampled_from(
+INVALID_PERCENTAGES = st.sampled_from(
     (math.nan, math.inf, -math.inf, 1.00001, -0.00001, 1.004, -0.004, 1.5, -0.5, 85.0, 100.0)
 )
 _EXACT_LEG = st.integers(1, 40).map(lambda number: number * EIGHTH)
 _LEG = _EXACT_LEG | st.integers(0, 2500).map(lambda number: number / 100)
 SHORT_LEGS = (st.lists(_LEG, max_size=4) | st.lists(_LEG, min_size=MAX_LEGS, max_size=MAX_LEGS)).map(tuple)
-_NO_LEG = st.sampled_from((math.nan, math.inf, -math.inf, -0.001, -0.5, -5.0, -100.0))
+_INVALID_LEG = st.sampled_from((math.nan, math.inf, -math.inf, -0.001, -0.5, -5.0, -100.0))
 
 
 def short_trips() -> st.SearchStrategy[Trip]:
@@ -90,8 +90,8 @@ def long_legs(draw: st.DrawFn, level: int) -> tuple[float, ...]:
 @st.composite
 def wrong_legs(draw: st.DrawFn) -> tuple[float, ...]:
     """Draw legs of which at least one is not a distance."""
-    legs = draw(st.lists(_LEG | _NO_LEG, max_size=MAX_LEGS - 1))
-    legs.insert(draw(st.integers(0, len(legs))), draw(_NO_LEG))
+    legs = draw(st.lists(_LEG | _INVALID_LEG, max_size=MAX_LEGS - 1))
+    legs.insert(draw(st.integers(0, len(legs))), draw(_INVALID_LEG))
     return tuple(legs)
 
 

@@ -61,7 +61,7 @@ def test_endpoints(processor: Processor) -> None:
 @check(points=1, covers=("scan", "scan-filtered", "mean-topic"), after=("endpoints",), doc=QOS)
 @hint("qos_profile_sensor_data instead of 10, on both ends of the scans.", "A lidar publishes best-effort.")
 def test_sensor_qos(processor: Processor) -> None:
-    """It asks for scans as a lidar offers them, and offers its own likewise: best effort; not so the mean."""
+    """It subscribes to and publishes scans with best-effort QoS, as a lidar does. The mean has the default QoS."""
     subscriptions = processor.node.get_subscriptions_info_by_topic("/scan")
     expect(bool(subscriptions), "It does not subscribe to scan.")
     is_reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in subscriptions)

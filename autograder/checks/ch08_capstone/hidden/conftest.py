@@ -46,7 +46,7 @@ def lone_controller(workspace: Workspace) -> Iterator[SharedSystem]:
 
 @pytest.fixture
 def judge_driving(shared_system: SharedSystem, lone_controller: SharedSystem) -> BodyRunner:
-    """A function that judges the controller with the student's processor, or else with the expected clearances."""
+    """Judges the controller with the student's processor and, if that fails, with the expected clearances."""
     return partial(run_with_fallback, shared_system, lone_controller)
 
 

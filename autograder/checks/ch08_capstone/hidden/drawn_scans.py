@@ -13,7 +13,7 @@ from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN
 from autograder.checks.ch08_capstone.support.clearances import HALF_ANGLE, MIDDLES
 
 # Radians to each side of a sector's edge, where a beam may count or not; 30° and 0.5 rad are further away.
-EDGE = math.radians(0.1)
+EDGE_TOLERANCE = math.radians(0.1)
 USUAL_LIMITS = RANGE_MIN, RANGE_MAX  # m
 OTHER_LIMITS = (0.45, 8.25), (0.0, 6.5), (0.12, 0.75)  # m, of lidars for which other readings are phantoms
 SECTOR = math.degrees(HALF_ANGLE)  # degrees to each side of a sector's middle
@@ -21,7 +21,7 @@ SECTOR = math.degrees(HALF_ANGLE)  # degrees to each side of a sector's middle
 
 @dataclass(frozen=True)
 class Arc:
-    """Neighbouring beams with the same reading: the number of the first one, their count, and the reading in metres."""
+    """Adjacent beams with the same reading: the index of the first, how many there are, and the reading in metres."""
 
     first: int
     beams: int
@@ -90,8 +90,8 @@ def possible_distances(message: LaserScan, middle: float) -> set[float]:
     bearings = message.angle_min + np.arange(ranges.size) * message.angle_increment
     from_edge = np.abs(np.remainder(bearings - middle + math.pi, math.tau) - math.pi) - HALF_ANGLE
     counts = np.isinf(ranges) | ((ranges >= message.range_min) & (ranges <= message.range_max))
-    nearest = min(ranges[counts & (from_edge < -EDGE)].tolist(), default=math.nan)
-    on_edge = ranges[counts & (np.abs(from_edge) <= EDGE)].tolist()
+    nearest = min(ranges[counts & (from_edge < -EDGE_TOLERANCE)].tolist(), default=math.nan)
+    on_edge = ranges[counts & (np.abs(from_edge) <= EDGE_TOLERANCE)].tolist()
     return {nearest, *(reading for reading in on_edge if not reading >= nearest)}
 
 
