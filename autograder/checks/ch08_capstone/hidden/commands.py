@@ -83,7 +83,8 @@ def test_turns(judge_driving: BodyRunner, draw: random.Random) -> None:
 
 
 def _expect_turns(driving: System, draw: random.Random) -> None:
-    for side, left, right in ((LEFT, 2.0, 1.0), (RIGHT, 1.0, 2.0), (LEFT, math.inf, math.inf)):
+    sides = ((LEFT, 2.0, 1.0), (RIGHT, 1.0, 2.0), (LEFT, math.inf, math.inf), (RIGHT, 1.0, math.inf))
+    for side, left, right in sides:
         driving.publish_scans(OPEN)
         commands = driving.publish_scans(View(0.4, left, right).scan()).commands
         situation = f"With something 0.4 m ahead, {metres(left)} of room on the left and {metres(right)} on the right"
