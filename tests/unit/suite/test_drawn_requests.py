@@ -33,9 +33,9 @@ Validate = Callable[["Node", dict[str, Any]], bool]
 KINDS: dict[str, tuple[Any, dict[str, Any]]] = {
     "contradiction": (dialogues(REFUSED), {"judged": (False,)}),
     "together": (dialogues(TAKEN), {"judged": (True,)}),
-    "no_side_effects": (dialogues(APART, TAKEN, REFUSED, first=REFUSED, is_tame=True), {}),
+    "no_side_effects": (dialogues(APART, TAKEN, REFUSED, first=REFUSED, is_clear=True), {}),
     "passes": (dialogues(APART, others=ANY), {"judged": (True,)}),
-    "beside_others": (dialogues(REFUSED, TAKEN, APART, is_tame=True, names_foreign=True), {}),
+    "beside_others": (dialogues(REFUSED, TAKEN, APART, is_clear=True, names_foreign=True), {}),
 }
 
 
@@ -112,6 +112,21 @@ def _passes(kind: str, validate: Validate, seed: int) -> bool:
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_right_node_answers_all_requests_as_it_should(kind: str) -> None:
     assert all(_passes(kind, _right, seed) for seed in SEEDS)
+
+
+WRONG_RULES: dict[str, Validate] = {
+    "equal distances": WRONG["equal distances"][1],
+    "the present distances": lambda node, new: all(fits({**node.stored, name: new[name]}) for name in new),
+    "the defaults": lambda node, new: fits(new) or not {*DISTANCES} & {*new},
+    "safety distance alone": lambda node, new: SAFETY not in new or _right(node, new),
+    "slow distance alone": lambda node, new: SLOW not in new or _right(node, new),
+}
+
+
+@pytest.mark.parametrize("kind", ["no_side_effects", "beside_others"])
+@pytest.mark.parametrize("rule", WRONG_RULES)
+def test_a_wrong_rule_for_the_distances_is_the_fault_of_other_checks(rule: str, kind: str) -> None:
+    assert all(_passes(kind, WRONG_RULES[rule], seed) for seed in SEEDS)
 
 
 @pytest.mark.parametrize("mistake", WRONG)

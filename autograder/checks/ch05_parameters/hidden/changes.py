@@ -121,7 +121,7 @@ def test_no_side_effects(fresh_robot: Robot, draw: random.Random, workspace: Wor
         _change(robot, {"battery_threshold": 25}, fraction=0.75)
         situation = "After a refused request for 25 Hz and an accepted one without a frequency"
         expect_rate(robot.command_rate(), rate, situation, fraction=0.75)
-        after_a_refusal = dialogues(APART, TAKEN, REFUSED, first=REFUSED, is_tame=True)
+        after_a_refusal = dialogues(APART, TAKEN, REFUSED, first=REFUSED, is_clear=True)
         expect_answers(robot, after_a_refusal, draw, fraction=0.75)
     period_before, period_after, accepted = bench.call_validate(workspace)
     observation = (
@@ -236,7 +236,7 @@ def test_passes(robot: Robot, draw: random.Random) -> None:
 @hint("ROS stores what is in the very list that validate gets: leave the list as it is.")
 def test_beside_others(robot: Robot, draw: random.Random, workspace: Workspace) -> None:
     """In a request that also names use_sim_time, the rest is judged and carried out as usual, in any order."""
-    mixed_dialogues = dialogues(REFUSED, TAKEN, APART, is_tame=True, names_foreign=True)
+    mixed_dialogues = dialogues(REFUSED, TAKEN, APART, is_clear=True, names_foreign=True)
     expect_answers(robot, mixed_dialogues, draw, fraction=0.5)
     foreign_values = robot.parameters.values(FOREIGN)
     for frequency in (draw.choice((20.0, 25.0)), draw.choice((4.0, 5.0))):

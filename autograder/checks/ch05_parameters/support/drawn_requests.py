@@ -17,6 +17,10 @@ FOREIGN = "use_sim_time"  # rclpy's own parameter, which a request sets to the v
 LOW, HIGH = 20, 300  # cm: the limits of both distances
 LENGTH = 5  # the largest number of requests in a dialogue
 GAP, MARGIN = 30, 5  # cm: distances so far apart, and so far from their limits, fit by any reasonable rule
+# Safety and slow distances in cm which fit, or contradict, each other, the defaults and all other clear values: a rule
+# that compares the wrong ones gives the right answer.
+CLEAR_SAFETY, CLEAR_SLOW = st.integers(30, 45), st.integers(105, 200)
+CLEAR_CONTRADICTION = st.tuples(st.integers(230, HIGH), st.integers(LOW, 25))
 REFUSED, TAKEN, APART = "refused", "taken", "apart"  # the contract's answer, or a request without distances
 Others = Mapping[str, st.SearchStrategy[parameters.Value]]
 OTHERS: Others = {  # parameters that have nothing to do with the distances
@@ -105,7 +109,7 @@ def dialogues(
     *kinds: str,
     first: str = "",
     others: Others = OTHERS,
-    is_tame: bool = False,
+    is_clear: bool = False,
     names_foreign: bool = False,
 ) -> Dialogue:
     """Draw a dialogue.
@@ -115,19 +119,21 @@ def dialogues(
         kinds: the kinds of the requests: `REFUSED`, `TAKEN` or `APART`.
         first: the kind of the first request, if it differs.
         others: what a request may name besides the distances.
-        is_tame: whether distances that fit are far apart, and not at their limits.
+        is_clear: whether any rule for the distances gives the contract's answers: other checks find wrong rules.
         names_foreign: whether each request names `FOREIGN`.
     """
-    gap, margin = (GAP, MARGIN) if is_tame else (1, 0)
-    before = now = draw(pairs(GAP, MARGIN))
+    clear_pairs = st.tuples(CLEAR_SAFETY, CLEAR_SLOW).map(_named_distances)
+    before = now = draw(clear_pairs if is_clear else pairs(GAP, MARGIN))
     drawn_requests = []
     for index in range(draw(st.integers(1 + bool(first), LENGTH))):
         kind = first if first and index == 0 else draw(st.sampled_from(kinds))
         distances: dict[str, int] = {}
         if kind == REFUSED:
-            distances = draw(contradictions(now[SAFETY], now[SLOW]))
+            clear = CLEAR_CONTRADICTION.map(_named_distances)
+            distances = draw(clear if is_clear else contradictions(now[SAFETY], now[SLOW]))
         elif kind == TAKEN:
-            distances = draw(matches(now[SAFETY], now[SLOW], gap, margin))
+            clear = clear_pairs | CLEAR_SAFETY.map(lambda new: {SAFETY: new}) | CLEAR_SLOW.map(lambda new: {SLOW: new})
+            distances = draw(clear if is_clear else matches(now[SAFETY], now[SLOW], gap=1, margin=0))
             now = {**now, **distances}
         drawn_requests.append(draw(requests(distances, others, names_foreign=names_foreign)))
     return Dialogue((before[SAFETY] / 100, before[SLOW] / 100), tuple(drawn_requests))
