@@ -55,9 +55,10 @@ subscribers communicate.
 TUTORIAL_HEAD = f"""## The ROS tutorials
 
 `make tutorials` executes the Python tutorials in {ROS.title}'s documentation, in "Beginner: Client libraries" and
-"Intermediate: Launch". It takes commands, code and file changes from the pages, and compares the output with the pages.
-`make tutorials PYTEST_ARGS="-k NAME"` executes one of them. turtlesim and `demo_nodes_cpp` are written in C++ and have
-no wheels. The tests use Python packages with the same names, topics, services and parameters.
+"Intermediate: Launch". It takes commands, code and file changes from the pages. `tests/e2e/tutorials/pages.yaml` says
+what each command prints. `make tutorials PYTEST_ARGS="-k NAME"` executes one of them. turtlesim and `demo_nodes_cpp`
+are written in C++ and have no wheels. The tests use Python packages with the same names, topics, services and
+parameters.
 """
 TUTORIAL_COLUMNS = ("tutorial", "runs as printed", "NAME of its test", "omitted parts, or why it does not run")
 REAL_LAUNCH = """
