@@ -21,6 +21,7 @@ from xdist.scheduler import LoadScopeScheduling
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.result.model import Artifact, Build, CheckResult, Result, Status
 from autograder.ros import activate
+from autograder.ros.distribution import DISTRIBUTION
 from autograder.ros.domains import Domain
 from autograder.ros.environment import LOGS_TO_STDOUT
 from autograder.run.sandbox.launcher import restore_sigint
@@ -125,7 +126,7 @@ TURNS = _check(
     4,
     "reaction",
     hints=("Where is 0 rad in a scan?", "Compare the smallest forward range with 1.0."),
-    doc="https://docs.ros.org/en/jazzy/p/sensor_msgs/",
+    doc=f"{DISTRIBUTION.docs}/p/sensor_msgs/",
 )
 STOPS = _check("stops", "The robot stops when the scan goes stale.", 2, "safety", needs=("turns",))
 LATE = _check("late", "The robot starts in time.", 1, "safety")

@@ -149,7 +149,7 @@ def test_cmake_errors_are_reported_with_the_student_s_line(log: str, error: str)
 
 
 def test_a_package_that_cmakelists_does_not_name_is_reported_in_a_sentence() -> None:
-    folder = "/opt/ros/jazzy/lib/python3.12/site-packages/rosidl_generator_type_description"
+    folder = "/opt/ros/sourced/lib/python3.12/site-packages/rosidl_generator_type_description"
     log = (
         "--- stderr: my_interfaces\nTraceback (most recent call last):\n"
         f'  File "{folder}/__init__.py", line 160, in generate_type_hash\n    pkg_dir = include_map[pkg]\n'

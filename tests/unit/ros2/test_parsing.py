@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from autograder.ros.distribution import DISTRIBUTION
 from autograder.ros.ros2.exceptions import NotCoveredError
 from autograder.ros.ros2.main import COMMANDS
 from autograder.ros.ros2.main import run_stand_in as main
@@ -49,7 +50,8 @@ def test_an_uncovered_command_is_named_with_the_installation_that_has_it(words: 
     assert isinstance(outcome, str)
     command_name = " ".join(words if words[0] in COVERED else words[:1]).split(" /")[0]
     assert outcome.startswith(f"`ros2 {command_name}` is not covered by this stand-in")
-    assert "works with the real ros2cli: install it with `make real-launch`, or source a ROS 2 Jazzy" in outcome
+    installation = f"install it with `make real-launch`, or source a ROS 2 {DISTRIBUTION.title}"
+    assert f"works with the real ros2cli: {installation}" in outcome
 
 
 @pytest.mark.parametrize("words", [("tpoic", "list"), ("topic", "lst"), ("topic", "echo"), ("topic", "pub", "-r", "0")])

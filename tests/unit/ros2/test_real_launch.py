@@ -192,8 +192,8 @@ def test_a_repository_without_the_package_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_sourced_installation_is_not_changed() -> None:
-    sourced = RosEnvironment("sourced", (Path("/opt/ros/jazzy"),), Path("/opt/ros/jazzy/rclpy"))
-    with pytest.raises(RealLaunchError, match="sourced from /opt/ros/jazzy: it has the real launch and ros2 already"):
+    sourced = RosEnvironment("sourced", (Path("/opt/ros/sourced"),), Path("/opt/ros/sourced/rclpy"))
+    with pytest.raises(RealLaunchError, match="sourced from /opt/ros/sourced: it has the real launch and ros2 already"):
         install(sourced, {})
 
 
