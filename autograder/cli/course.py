@@ -62,6 +62,7 @@ def tables() -> None:
     for finding in problems:
         echo(str(finding))
     course = course_paths.course()
+    # The first page is generated, but in Git: a forge shows it to readers of `chapters/`. A test says if it is old.
     pages = {course_paths.CHAPTERS / "README.md": page, course.root / course.guide: checks_page()}
     for path, text in {**titles(), **pages}.items():
         path.parent.mkdir(parents=True, exist_ok=True)
