@@ -48,13 +48,14 @@ napoleon_use_ivar = True  # one line for each attribute
 
 
 def fix_accessibility(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
-    """Give navigation captions a heading level, and make code that is wider than its box reachable by keyboard."""
+    """Give navigation captions a heading level, and make code and wide tables reachable by keyboard."""
     if "furo_navigation_tree" in context:
         context["furo_navigation_tree"] = context["furo_navigation_tree"].replace(
             'role="heading"', 'role="heading" aria-level="2"'
         )
     if "body" in context:
-        context["body"] = context["body"].replace("<pre>", '<pre tabindex="0">')
+        body = context["body"].replace("<pre>", '<pre tabindex="0">')
+        context["body"] = body.replace('<div class="table-wrapper', '<div tabindex="0" class="table-wrapper')
 
 
 def keep_first_colon(app: Sphinx, kind: str, name: str, subject: object, options: object, lines: list[str]) -> None:
