@@ -12,9 +12,9 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.canvas import missing
+from tests.browser.canvas import KEEP_TIMES, missing
 from tests.browser.jupyter import PATIENCE, Lab, lab
-from tests.browser.looks import Screenshots
+from tests.browser.looks import DRAWN, Screenshots
 
 __all__ = ["lab"]
 
@@ -148,6 +148,31 @@ def test_a_drive_plays_in_the_notebook_which_gets_none_of_its_keys(
     player.get_by_role("button", name="Play").click()
     expect(clock).to_have_text("5.00 s", timeout=PATIENCE * 1000)
     page.screenshot(path=screenshots.folder / "replay-in-notebook.png")
+
+
+def test_a_drive_plays_once_by_itself_and_rests_at_its_end(page: Page, lab: Lab, screenshots: Screenshots) -> None:
+    page.emulate_media(reduced_motion="no-preference")
+    page.add_init_script(KEEP_TIMES)
+    world = str(ROOT / "assets/worlds/smile.yaml")
+    first = f"from sim import Command, RobotSpec, Simulation, load_world\nworld = load_world({world!r})"
+    lab.open(page, "autoplay.ipynb", [first, REPLAY, *["print()"] * 40])
+    player = page.locator(".run-player")
+    canvas, play = player.locator("canvas"), player.get_by_role("button", name="Play")
+    expect(canvas).to_be_visible(timeout=PATIENCE * 1000)
+    canvas.scroll_into_view_if_needed()
+    page.wait_for_function("times.length > 2 && times.at(-1) === '5.00 s'", timeout=PATIENCE * 1000)
+    expect(play).to_be_visible()
+    times = page.evaluate("times")
+    assert times[:2] == ["5.00 s", "0.00 s"]
+    assert missing(canvas) == []
+    page.screenshot(path=screenshots.folder / "autoplay-in-notebook.png")
+    page.locator(".jp-Cell").last.scroll_into_view_if_needed()
+    expect(canvas).not_to_be_in_viewport()
+    canvas.scroll_into_view_if_needed()
+    expect(canvas).to_be_in_viewport()
+    page.evaluate(DRAWN)
+    expect(play).to_be_visible()
+    assert page.evaluate("times") == times
 
 
 def test_a_static_picture_is_shown_in_the_notebook_with_its_alternative_text(
