@@ -62,7 +62,9 @@ def launched(workspace: Workspace, builds: Mapping[str, Diagnosis], types: Types
     expect(f"launch/{LAUNCH_FILE}" in shared, f"launch/{LAUNCH_FILE} is not installed: look at data_files in setup.py.")
     subscribes = {"/decision": types.decision}
     with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": str(hot)}, subscribes=subscribes) as with_integer:
-        if f"/{GUARD}" in launch_probe.settle(with_integer, NODES):
+        # A guard that refuses the number is in the graph for a moment, but never answers.
+        is_there = f"/{GUARD}" in launch_probe.settle(with_integer, NODES)
+        if is_there and with_integer.parameters(f"/{GUARD}", ["hot"]) is not None:
             yield SharedLaunches(with_integer, with_integer)
             return
     with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": f"{hot}.0"}, subscribes=subscribes) as harness:
