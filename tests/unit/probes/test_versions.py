@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, reworded, style
+from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, bare, broken, faults, reworded, style
 from autograder.exceptions import GraderError
 from autograder.probes.leak_markers import markers_in
 from autograder.probes.versions import FILE_TIME, Version, obfuscate, read, write_version
@@ -135,7 +135,7 @@ def test_every_fault_applies_to_both_styles(fault: Fault, name: str) -> None:
 
 
 def test_every_reworded_version_compiles_and_has_the_same_files() -> None:
-    reworded_files = [reworded(random.Random(seed)).files for seed in range(30)]
+    reworded_files = [reworded(random.Random(seed)).files for seed in range(30)] + [bare(random.Random(1)).files]
     plain = obfuscate(style(STYLES[0]), 1).files
     assert all(files.keys() == plain.keys() for files in reworded_files)
     for name in (name for name in plain if name.endswith(".py")):

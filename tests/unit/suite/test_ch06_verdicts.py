@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, REWORDED, SECOND, Examination
+from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, BARE, REWORDED, SECOND, Examination
 from autograder.checks.ch06_testing.hidden.faults import faults
 from autograder.checks.ch06_testing.support.assertions import (
     describe_failure,
@@ -122,7 +122,7 @@ def examination(tmp_path: Path) -> Examination:
     prepared = Examination(Workspace(tmp_path, environment.find(), tmp_path), 1, frozenset())
     prepared.__dict__["trial"] = {LIMITS: ENOUGH}
     prepared.__dict__["runs"] = {(LIMITS, fault.id): report(BAD) for fault in faults()} | {
-        (LIMITS, name): ENOUGH for name in (SECOND, REWORDED, BACKWARDS)
+        (LIMITS, name): ENOUGH for name in (SECOND, REWORDED, BARE, BACKWARDS)
     }
     return prepared
 

@@ -58,7 +58,7 @@ def test_each_way_to_round_halves_up_is_accepted(percentage: float) -> None:
 
 
 @FEW
-@given(percentage=trips.NO_PERCENTAGES)
+@given(percentage=trips.INVALID_PERCENTAGES)
 def test_a_percentage_that_is_none_stays_none_as_a_32_bit_float(percentage: float) -> None:
     assert not 0.0 <= float(np.float32(percentage)) <= 1.0
     assert trips.whole_percents(percentage) == {UNKNOWN}

@@ -48,10 +48,10 @@ def test_only_the_runs_that_a_check_needs_are_executed(
 ) -> None:
     examination = Examination(workspace, 1, frozenset(checks))
     assert set(examination.runs) == {
-        (LIMITS, purpose) for purpose in ("second", "reworded", "backwards", "step", "smooth")
+        (LIMITS, purpose) for purpose in ("second", "reworded", "bare", "backwards", "step", "smooth")
     }
     assert {order.files for order in ordered_runs} == {(LIMITS,)}
-    assert len(ordered_runs) == 6
+    assert len(ordered_runs) == 7
 
 
 def test_all_checks_together_run_every_faulty_version(workspace: Workspace, ordered_runs: list[TestRun]) -> None:
@@ -59,6 +59,7 @@ def test_all_checks_together_run_every_faulty_version(workspace: Workspace, orde
     assert {purpose for _, purpose in examination.runs} == {fault.id for fault in faults()} | {
         "second",
         "reworded",
+        "bare",
         "backwards",
     }
     assert [order.files[0] for order in ordered_runs[:3]] == [LIMITS, GUARD, LAUNCH]

@@ -16,7 +16,7 @@ from functools import cached_property
 
 from autograder.checking import CheckFailed, CheckRow, Workspace, expect
 from autograder.checking.probes import colcon_test, student_test_reports, student_test_runs
-from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, reworded, right
+from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, bare, broken, faults, reworded, right
 from autograder.checks.ch06_testing.support.assertions import describe_failure, is_usable
 from autograder.checks.ch06_testing.support.contract import (
     GIVEN_TESTS,
@@ -41,7 +41,7 @@ FILES = {
 }
 COLCON, ENDS = frozenset(("colcon", "linters")), "ends"
 ALL_FILES = COLCON | {"as_given", ENDS}  # checks that need the tests of all three files
-RIGHT_VERSIONS = SECOND, REWORDED, BACKWARDS = "second", "reworded", "backwards"
+RIGHT_VERSIONS = SECOND, REWORDED, BARE, BACKWARDS = "second", "reworded", "bare", "backwards"
 BRIEF_FAULTS = frozenset({"believes_distances_too_long"})  # short-lived faults, which a slow run may miss
 ORDER_INDEPENDENT = (LIMITS, GUARD)  # files whose tests also have to pass in the opposite order
 
@@ -114,7 +114,7 @@ class Examination:
     def expect_right(self, name: str, *purposes: str) -> None:
         """Fail the check unless a file's tests pass on other right versions, and in the runs with these purposes."""
         self.expect_usable(name)
-        for purpose in (SECOND, REWORDED, *purposes):
+        for purpose in (SECOND, REWORDED, *([BARE] if name == LIMITS else []), *purposes):
             if not self.runs[name, purpose].passed:
                 raise CheckFailed(describe_failure(name, self.runs[name, purpose], _WHERE[purpose]))
 
@@ -213,9 +213,12 @@ class Examination:
                 (name,), right(STYLES[1], self._draw(name, SECOND, *salt)), exit_first=True
             )
             # As similar to the first version as faulty ones are, to expose tests that fail on any change of the text.
-            # The notebook requires approximate comparison of a function's results, and advises it for a node's answers.
-            similar_version = reworded(self._draw(name, REWORDED, *salt), bare=name == LIMITS)
+            similar_version = reworded(self._draw(name, REWORDED, *salt))
             runs[REWORDED] = student_test_reports.TestRun((name,), similar_version, exit_first=True)
+            if name == LIMITS:
+                # The notebook requires approximate comparison for a function, and only advises it for a node.
+                version = bare(self._draw(name, BARE, *salt))
+                runs[BARE] = student_test_reports.TestRun((name,), version, exit_first=True)
             if name in ORDER_INDEPENDENT:
                 version = right(STYLES[0], self._draw(name, BACKWARDS, *salt))
                 runs[BACKWARDS] = student_test_reports.TestRun((name,), version, backwards=True, exit_first=True)
@@ -242,5 +245,6 @@ _OTHERWISE = "on a right speed_guard that is written differently: test the contr
 _WHERE = {
     SECOND: _OTHERWISE,
     REWORDED: _OTHERWISE,
+    BARE: _OTHERWISE,
     BACKWARDS: "when the tests run in the opposite order: one test lives on what another has left behind",
 }

@@ -57,21 +57,30 @@ def right(name: str, draw: random.Random) -> versions.Version:
     return versions.obfuscate(style(name), draw.getrandbits(32))
 
 
-def reworded(draw: random.Random, *, bare: bool = False) -> versions.Version:
-    """Return an obfuscated right version in the first style, with one expression of each file reworded.
+def reworded(draw: random.Random) -> versions.Version:
+    """Return an obfuscated right version in the first style, with one expression of each file reworded."""
+    drawn_edits = _right_edits()["drawn"]
+    return _edited({name: [draw.choice(edits)] for name, edits in drawn_edits.items()}, "in other words", draw)
 
-    Args:
-        draw: chooses the expressions.
-        bare: whether safe_speed also does no more than its contract requires: its computed speeds have a rounding
-            error, and its exception has no text.
+
+def bare(draw: random.Random) -> versions.Version:
+    """Return an obfuscated right version in the first style whose safe_speed does no more than its contract requires.
+
+    Its computed speeds have a rounding error, and its exception has no text.
     """
+    return _edited(_right_edits()["bare"], "without more than its contract", draw)
+
+
+def _right_edits() -> dict[str, dict[str, list[dict[str, str]]]]:
+    edits: dict[str, dict[str, list[dict[str, str]]]] = yaml.safe_load((FOLDER / "reworded.yaml").read_text())
+    return edits
+
+
+def _edited(edits: dict[str, list[dict[str, str]]], label: str, draw: random.Random) -> versions.Version:
     files = dict(style(STYLES[0]).files)
-    texts = yaml.safe_load((FOLDER / "reworded.yaml").read_text())
-    for name, edits in texts["bare"].items() if bare else ():
-        for edit in edits:
-            files[name] = _edit(files[name], edit, f"{name} without more than its contract")
-    for name, edits in texts["drawn"].items():
-        files[name] = _edit(files[name], draw.choice(edits), f"{name} in other words")
+    for name, file_edits in edits.items():
+        for edit in file_edits:
+            files[name] = _edit(files[name], edit, f"{name} {label}")
     return versions.obfuscate(versions.Version(files, SCRIPTS), draw.getrandbits(32))
 
 
